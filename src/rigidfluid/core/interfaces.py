@@ -1,0 +1,186 @@
+"""The four replaceable parts: what a fluid backend, a detector, a force law and a body type must do.
+
+Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
+keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict
+
+from rigidfluid.core.types import (
+    Advance,
+    Contacts,
+    Fields,
+    FloatArray,
+    FluidProblem,
+    FluidState,
+    Mesh,
+    Pose,
+    Step,
+    Twist,
+    Wall,
+)
+
+
+class Options(BaseModel):
+    """The keys that an implementation reads from its table of the scene file; this one reads none."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Part(ABC):
+    """What the four kinds have in common."""
+
+    name: ClassVar[str]
+    requires: ClassVar[Mapping[str, str]] = {}
+    Options: ClassVar[type[Options]] = Options
+
+
+class Body(Part):
+    """A rigid shape in its own frame, its centre of mass at the origin.
+
+    Parameters
+    ----------
+    options : Options
+        The type's own keys of the ``[[body]]`` table.
+    dimension : int
+        2 or 3.
+    """
+
+    def __init__(self, options: Options, dimension: int) -> None:
+        self.options = options
+        self.dimension = dimension
+
+    @property
+    @abstractmethod
+    def volume(self) -> float:
+        """Exact volume of the shape (area in 2D) [length^d]."""
+
+    @property
+    @abstractmethod
+    def gyration(self) -> FloatArray:
+        """Inertia over mass, ∫(|r|² I - r rᵀ) / volume, shape (k, k) [length²]."""
+
+    @property
+    @abstractmethod
+    def bounding_radius(self) -> float:
+        """Radius of the smallest ball about the origin that holds the shape [length]."""
+
+    @property
+    def radius(self) -> float | None:
+        """The radius if the shape is a ball, else None [length]."""
+        return None
+
+    @abstractmethod
+    def closest_point(self, points: FloatArray) -> FloatArray:
+        """Nearest points of the surface, (N, d) for ``points`` (N, d) [length]."""
+
+    @abstractmethod
+    def signed_distance(self, points: FloatArray) -> FloatArray:
+        """Distance to the surface, (N,), > 0 outside the shape, for ``points`` (N, d) [length]."""
+
+    @abstractmethod
+    def sample_surface(self, count: int) -> FloatArray:
+        """About ``count`` points spread over the surface, (N, d) [length]."""
+
+    @abstractmethod
+    def cad_shape(self) -> Any:
+        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator."""
+
+
+class Detector(Part):
+    """Finds which surfaces are near each other.
+
+    Parameters
+    ----------
+    options : Options
+        The detector's own keys of the ``[contact]`` table.
+    bodies : sequence of Body
+        The shapes, in the scene's order.
+    walls : sequence of Wall
+        The walls that repel.
+    """
+
+    def __init__(self, options: Options, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        self.options = options
+        self.bodies = tuple(bodies)
+        self.walls = tuple(walls)
+
+    @abstractmethod
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b); reach may be infinite."""
+
+
+class ForceLaw(Part):
+    """A short-range repulsion.
+
+    Parameters
+    ----------
+    options : Options
+        The law's own keys of the ``[contact]`` table.
+    range : float
+        The gap above which the law is zero [length].
+    """
+
+    def __init__(self, options: Options, range: float) -> None:
+        self.options = options
+        self.range = range
+
+    @abstractmethod
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Force on ``body_a`` at ``point_a``, (m, d) [force]."""
+
+    @abstractmethod
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Potential energy of each contact, (m,), zero at range [energy]."""
+
+
+class FluidBackend(Part):
+    """Moves fluid and bodies together over one step.
+
+    Parameters
+    ----------
+    options : Options
+        The backend's own keys of the ``[fluid]`` table.
+    problem : FluidProblem or None
+        The fluid's equations and boundary conditions; None where there is no fluid.
+    """
+
+    needs_mesh: ClassVar[bool] = True
+
+    def __init__(self, options: Options, problem: FluidProblem | None) -> None:
+        self.options = options
+        self.problem = problem
+
+    @abstractmethod
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> FluidState:
+        """The state of a fluid at rest around bodies that move with ``twist``."""
+
+    @abstractmethod
+    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+        """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+
+    @abstractmethod
+    def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
+        """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
+
+    @abstractmethod
+    def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
+        """Velocity and pressure for output."""
+
+    @abstractmethod
+    def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Velocity (N, d) and pressure (N,) at ``points`` (N, d); a point just outside takes the nearest cell's value."""
+
+    @abstractmethod
+    def unknowns(self, mesh: Mesh | None) -> int:
+        """How many unknowns one step solves for on this mesh."""
+
+    @abstractmethod
+    def forget(self) -> None:
+        """Drop every cache, so that the next step depends on the given state alone (called at each checkpoint)."""

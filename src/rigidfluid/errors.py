@@ -1,0 +1,59 @@
+"""The exception tree: every error a user can meet, and nothing else.
+
+RigidfluidError
+├── SceneError          the scene file, or a value in it, cannot be used
+├── PluginError         a plug-in is missing, misspelt, doubled or incomplete
+├── MeshError           no valid mesh can be made for this geometry
+├── OutputError         a result cannot be written or read back
+└── StepError           the simulation cannot go on, even with the shortest step
+    └── StepRejected    one attempted step is not usable; the loop retries it shorter
+"""
+
+from __future__ import annotations
+
+
+class RigidfluidError(Exception):
+    """Base of all errors that rigidfluid raises on purpose.
+
+    Parameters
+    ----------
+    subject : str
+        What the error is about: a field (``body.0.density``), a body, a pair or a time.
+    found : object
+        The value found there.
+    allowed : str
+        What would have been accepted.
+    remedy : str
+        What the user can do about it.
+    """
+
+    def __init__(self, subject: str, found: object, allowed: str, remedy: str) -> None:
+        self.subject = subject
+        self.found = found
+        self.allowed = allowed
+        self.remedy = remedy
+        super().__init__(f"{subject}: found {found}; allowed is {allowed}. {remedy}")
+
+
+class SceneError(RigidfluidError):
+    """The scene file, or a value in it, cannot be used."""
+
+
+class PluginError(RigidfluidError):
+    """A plug-in is missing, misspelt, doubled or incomplete."""
+
+
+class MeshError(RigidfluidError):
+    """No valid mesh can be made for this geometry."""
+
+
+class OutputError(RigidfluidError):
+    """A result cannot be written or read back."""
+
+
+class StepError(RigidfluidError):
+    """The simulation cannot go on, even with the shortest step."""
+
+
+class StepRejected(StepError):
+    """One attempted step is not usable; the loop retries it shorter."""
