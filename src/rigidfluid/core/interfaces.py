@@ -27,7 +27,7 @@ from rigidfluid.core.types import (
 )
 
 
-class Options(BaseModel):
+class PartOptions(BaseModel):
     """The keys that an implementation reads from its table of the scene file; this one reads none."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
@@ -38,7 +38,7 @@ class Part(ABC):
 
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
-    Options: ClassVar[type[Options]] = Options
+    Options: ClassVar[type[PartOptions]] = PartOptions
 
 
 class Body(Part):
@@ -46,13 +46,13 @@ class Body(Part):
 
     Parameters
     ----------
-    options : Options
+    options : PartOptions
         The type's own keys of the ``[[body]]`` table.
     dimension : int
         2 or 3.
     """
 
-    def __init__(self, options: Options, dimension: int) -> None:
+    def __init__(self, options: PartOptions, dimension: int) -> None:
         self.options = options
         self.dimension = dimension
 
@@ -98,7 +98,7 @@ class Detector(Part):
 
     Parameters
     ----------
-    options : Options
+    options : PartOptions
         The detector's own keys of the ``[contact]`` table.
     bodies : sequence of Body
         The shapes, in the scene's order.
@@ -106,7 +106,7 @@ class Detector(Part):
         The walls that repel.
     """
 
-    def __init__(self, options: Options, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+    def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         self.options = options
         self.bodies = tuple(bodies)
         self.walls = tuple(walls)
@@ -121,13 +121,13 @@ class ForceLaw(Part):
 
     Parameters
     ----------
-    options : Options
+    options : PartOptions
         The law's own keys of the ``[contact]`` table.
     range : float
         The gap above which the law is zero [length].
     """
 
-    def __init__(self, options: Options, range: float) -> None:
+    def __init__(self, options: PartOptions, range: float) -> None:
         self.options = options
         self.range = range
 
@@ -145,7 +145,7 @@ class FluidBackend(Part):
 
     Parameters
     ----------
-    options : Options
+    options : PartOptions
         The backend's own keys of the ``[fluid]`` table.
     problem : FluidProblem or None
         The fluid's equations and boundary conditions; None where there is no fluid.
@@ -153,7 +153,7 @@ class FluidBackend(Part):
 
     needs_mesh: ClassVar[bool] = True
 
-    def __init__(self, options: Options, problem: FluidProblem | None) -> None:
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         self.options = options
         self.problem = problem
 
