@@ -1,0 +1,5 @@
+"""`python -m rigidfluid` is the command `rigidfluid`."""
+
+from rigidfluid.cli import app
+
+app()

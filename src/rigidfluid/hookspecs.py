@@ -1,0 +1,42 @@
+"""The four hooks by which a plug-in offers its classes, and the marker for its functions.
+
+A plug-in is a module that the entry-point group ``rigidfluid`` names::
+
+    from rigidfluid.hookspecs import hookimpl
+
+    @hookimpl
+    def rigidfluid_force_laws():
+        return [MyLaw]
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pluggy
+
+if TYPE_CHECKING:
+    from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
+
+hookspec = pluggy.HookspecMarker("rigidfluid")
+hookimpl = pluggy.HookimplMarker("rigidfluid")
+
+
+@hookspec
+def rigidfluid_fluid_backends() -> list[type[FluidBackend]]:  # type: ignore[empty-body]
+    """Classes that move fluid and bodies together."""
+
+
+@hookspec
+def rigidfluid_detectors() -> list[type[Detector]]:  # type: ignore[empty-body]
+    """Classes that find which surfaces are near each other."""
+
+
+@hookspec
+def rigidfluid_force_laws() -> list[type[ForceLaw]]:  # type: ignore[empty-body]
+    """Classes of short-range repulsion."""
+
+
+@hookspec
+def rigidfluid_bodies() -> list[type[Body]]:  # type: ignore[empty-body]
+    """Classes of rigid shapes."""
