@@ -1,0 +1,235 @@
+"""From names in a scene to classes: loads the plug-ins, checks what they offer, and hands it out by name.
+
+The built-in parts come through the same entry points as everyone else's.
+"""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib import metadata
+from importlib.util import find_spec
+from typing import Any, Generic, TypeVar, cast
+
+import pluggy
+
+from rigidfluid import hookspecs
+from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.errors import PluginError
+
+GROUP = "rigidfluid"
+P = TypeVar("P", bound=Part)
+
+
+@dataclass(frozen=True)
+class Kind(Generic[P]):
+    """One of the four replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
+    ``field`` that names it."""
+
+    title: str
+    hook: str
+    interface: type[P]
+    field: str
+
+
+FLUID_BACKEND = Kind("fluid backend", "rigidfluid_fluid_backends", FluidBackend, "fluid.backend")  # type: ignore[type-abstract]
+DETECTOR = Kind("detector", "rigidfluid_detectors", Detector, "contact.detector")  # type: ignore[type-abstract]
+FORCE_LAW = Kind("force law", "rigidfluid_force_laws", ForceLaw, "contact.law")  # type: ignore[type-abstract]
+BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One implementation: ``origin`` is the distribution it came with, ``hint`` what to do if it is not available."""
+
+    kind: Kind[Any]
+    name: str
+    part: type[Part]
+    origin: str
+    available: bool
+    hint: str
+
+
+@dataclass(frozen=True)
+class Unloaded:
+    """A plug-in that could not be imported, and why."""
+
+    name: str
+    origin: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Registry:
+    """The parts that are installed, and the plug-ins that could not be imported."""
+
+    entries: tuple[Entry, ...]
+    unloaded: tuple[Unloaded, ...]
+
+    @classmethod
+    def load(cls) -> Registry:
+        """Load and check every plug-in of the entry-point group.
+
+        Returns
+        -------
+        Registry
+            Available or not, every part that a plug-in offers.
+
+        Raises
+        ------
+        PluginError
+            If a plug-in misspells a hook, offers an incomplete class, or a name that is taken.
+        """
+        manager = pluggy.PluginManager(GROUP)
+        manager.add_hookspecs(hookspecs)
+        origins: dict[str, str] = {}
+        unloaded = []
+        for point in metadata.entry_points(group=GROUP):
+            origin = _origin(point)
+            plugin = f"{point.name} of {origin}"
+            try:
+                module = _import(point, plugin)
+            except ImportError as error:
+                unloaded.append(Unloaded(point.name, origin, str(error)))
+                continue
+            _register(manager, module, plugin)
+            origins[plugin] = origin
+        entries = tuple(_entries(manager, origins))
+        _refuse_doubles(entries)
+        return cls(entries, tuple(unloaded))
+
+    def names(self, kind: Kind[Any]) -> list[str]:
+        """Names of all parts of a kind, in the order they were found."""
+        return [entry.name for entry in self.entries if entry.kind is kind]
+
+    def get(self, kind: Kind[P], name: str, subject: str | None = None) -> type[P]:
+        """The class of this name.
+
+        Parameters
+        ----------
+        kind : Kind
+            Which of the four kinds.
+        name : str
+            The name that the scene gives.
+        subject : str, optional
+            The scene's field that names it, for the message.
+
+        Returns
+        -------
+        type
+            A complete subclass of the kind's interface.
+
+        Raises
+        ------
+        PluginError
+            If there is no such part, or if a package that it needs is missing.
+        """
+        subject = subject or kind.field
+        allowed = "one of " + ", ".join(self._available(kind))
+        for entry in self.entries:
+            if entry.kind is kind and entry.name == name:
+                if not entry.available:
+                    raise PluginError(subject, f"{name!r}, which is not usable here", allowed, entry.hint)
+                return cast(type[P], entry.part)
+        raise PluginError(subject, repr(name), allowed, self._remedy(kind, name))
+
+    def _available(self, kind: Kind[Any]) -> list[str]:
+        return [entry.name for entry in self.entries if entry.kind is kind and entry.available]
+
+    def _remedy(self, kind: Kind[Any], name: str) -> str:
+        failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}." for one in self.unloaded)
+        guess = suggestion(name, self.names(kind))
+        return (guess or "`rigidfluid plugins` lists what is installed.") + failures
+
+
+def suggestion(word: str, words: Iterable[str]) -> str:
+    """The question "Did you mean …?" with the nearest of ``words``, or nothing where none is near."""
+    near = difflib.get_close_matches(word, list(words), n=1)
+    return f"Did you mean {near[0]!r}?" if near else ""
+
+
+def _origin(point: metadata.EntryPoint) -> str:
+    # An entry point made by hand has no distribution; those that Python finds have one.
+    return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown"
+
+
+def _import(point: metadata.EntryPoint, plugin: str) -> Any:
+    try:
+        return point.load()
+    except ImportError:
+        raise
+    except Exception as error:  # foreign code may raise anything
+        found = f"{type(error).__name__}: {error}"
+        raise PluginError(f"plug-in {plugin}", found, "a module that can be imported", "Mend the plug-in.") from error
+
+
+def _register(manager: pluggy.PluginManager, module: Any, plugin: str) -> None:
+    try:
+        manager.register(module, plugin)
+    except (ValueError, pluggy.PluginValidationError) as error:
+        raise PluginError(
+            f"plug-in {plugin}", str(error), "hooks without arguments, each module named once", "Mend the plug-in."
+        ) from error
+    _check_hooks(manager, module, plugin)
+
+
+def _check_hooks(manager: pluggy.PluginManager, module: Any, plugin: str) -> None:
+    hooks = [kind.hook for kind in KINDS]
+    found = manager.get_hookcallers(module) or []
+    for hook in found:
+        if not hook.has_spec():
+            remedy = suggestion(hook.name, hooks) or "Rename it."
+            raise PluginError(f"plug-in {plugin}", f"hook {hook.name!r}", ", ".join(hooks), remedy)
+    if not found:
+        raise PluginError(f"plug-in {plugin}", "no hook", ", ".join(hooks), "Mark its functions with @hookimpl.")
+
+
+def _entries(manager: pluggy.PluginManager, origins: dict[str, str]) -> Iterable[Entry]:
+    for kind in KINDS:
+        caller: pluggy.HookCaller = getattr(manager.hook, kind.hook)
+        for implementation in caller.get_hookimpls():
+            offered: Any = implementation.function()
+            for part in offered:
+                _check_class(kind, part, implementation.plugin_name)
+                hint = _missing(part)
+                yield Entry(kind, part.name, part, origins[implementation.plugin_name], not hint, hint)
+
+
+def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
+    subject, interface = f"plug-in {plugin}", kind.interface.__name__
+    if not _derives(part, kind.interface):
+        raise PluginError(subject, f"{part!r} as a {kind.title}", f"a subclass of {interface}", "Derive it from there.")
+    if part.__abstractmethods__:
+        found = f"{part.__name__} without {', '.join(sorted(part.__abstractmethods__))}"
+        raise PluginError(subject, found, f"a complete {interface}", "Write what is missing.")
+    if not isinstance(getattr(part, "name", None), str):
+        raise PluginError(subject, f"{part.__name__} without a name", 'name = "…"', "Name the class in its body.")
+    if not _derives(part.Options, PartOptions):
+        raise PluginError(subject, f"{part.__name__}.Options", "a subclass of PartOptions", "Derive it from there.")
+
+
+def _derives(part: Any, parent: type[Any]) -> bool:
+    return inspect.isclass(part) and issubclass(part, parent)
+
+
+def _missing(part: type[Part]) -> str:
+    """How to get the packages that a part needs and this machine lacks; empty where it lacks none."""
+    missing = [package for package in part.requires if find_spec(package.partition(".")[0]) is None]
+    return " ".join(f"Package {package} is missing: {part.requires[package]}." for package in missing)
+
+
+def _refuse_doubles(entries: tuple[Entry, ...]) -> None:
+    first: dict[tuple[str, str], Entry] = {}
+    for entry in entries:
+        other = first.setdefault((entry.kind.title, entry.name), entry)
+        if other is not entry:
+            raise PluginError(
+                f"{entry.kind.title} {entry.name!r}",
+                f"the name twice, in {other.origin} ({other.part.__module__}) and in {entry.origin} "
+                f"({entry.part.__module__})",
+                "one part of a name",
+                "Uninstall one of them, or rename it.",
+            )
