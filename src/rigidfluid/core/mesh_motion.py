@@ -1,0 +1,117 @@
+"""Moves a mesh with its bodies by the paper's harmonic map: one factorisation for a reference mesh, one solve a step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from rigidfluid.core.frames import to_body_frame, to_world
+from rigidfluid.core.interfaces import Body
+from rigidfluid.core.mesh_quality import cell_volumes
+from rigidfluid.core.types import BoolArray, FloatArray, Mesh, Pose
+
+
+class MeshMotion:
+    """Harmonic map of a reference mesh, ∇·((1 + τ)∇x) = 0 with τ_e = (1 - V_min/V_max) / (V_e/V_max), P1.
+
+    Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
+    (of a ball only its translation); vertices on a face of the box slide along it, so their normal coordinate is fixed
+    and the natural condition holds along the face.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The reference: the mesh that the last re-meshing made.
+    bodies : sequence of Body
+        The shapes.
+    reference_pose : Pose
+        Where they are on the reference mesh.
+
+    Notes
+    -----
+    Equation (ALE) of Van Landeghem et al., arXiv:2402.19093; τ after Kanchi and Masud, DOI 10.1002/fld.1512.
+    """
+
+    def __init__(self, mesh: Mesh, bodies: Sequence[Body], reference_pose: Pose) -> None:
+        self._points = mesh.points
+        self._bodies = tuple(bodies)
+        self._pose = reference_pose
+        self._surfaces = [np.unique(mesh.facets[mesh.markers == i]) for i in range(len(bodies))]
+        self._held = held_components(mesh, len(bodies))
+        matrix = stiffness(mesh)
+        self._solves = [Extension(matrix, held) for held in self._held.T]
+
+    def move(self, pose: Pose) -> FloatArray:
+        """Vertices of the mesh when the bodies are at ``pose``.
+
+        Parameters
+        ----------
+        pose : Pose
+            The new pose.
+
+        Returns
+        -------
+        (N, d) array
+            Vertices; those of a body lie on its surface [length].
+        """
+        displacement = np.zeros_like(self._points)
+        for i, body in enumerate(self._bodies):
+            displacement[self._surfaces[i]] = self._rigid_displacement(i, body, pose)
+        for k, extension in enumerate(self._solves):
+            extension.fill(displacement[:, k])
+        return self._points + displacement
+
+    def _rigid_displacement(self, i: int, body: Body, pose: Pose) -> FloatArray:
+        """x - X on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
+        if body.radius is not None:
+            shift: FloatArray = pose.position[i] - self._pose.position[i]
+            return np.broadcast_to(shift, (len(self._surfaces[i]), len(shift)))
+        reference = self._points[self._surfaces[i]]
+        return to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
+
+
+class Extension:
+    """Extends values given at the held vertices to the free ones, A_ff u_f = -A_fh u_h.
+
+    Parameters
+    ----------
+    matrix : (N, N) sparse array
+        Symmetric stiffness matrix.
+    held : (N,) array of bool
+        Where values are given; at least one.
+    """
+
+    def __init__(self, matrix: csc_array, held: BoolArray) -> None:
+        self._held, self._free = np.flatnonzero(held), np.flatnonzero(~held)
+        rows = matrix.tocsr()[self._free].tocsc()
+        self._coupling = rows[:, self._held].tocsr()
+        self._factor = splu(rows[:, self._free], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+    def fill(self, values: FloatArray) -> None:
+        """Overwrite the free entries of ``values`` (N,)."""
+        values[self._free] = self._factor.solve(-(self._coupling @ values[self._held]))
+
+
+def held_components(mesh: Mesh, bodies: int) -> BoolArray:
+    """Which components of the displacement are given, (N, d): all on a body, the normal one on a face of the box."""
+    held = np.zeros(mesh.points.shape, dtype=bool)
+    for surface in range(mesh.markers.max() + 1):
+        components = slice(None) if surface < bodies else (surface - bodies) // 2
+        held[np.unique(mesh.facets[mesh.markers == surface]), components] = True
+    return held
+
+
+def stiffness(mesh: Mesh) -> csc_array:
+    """Matrix of ∫(1 + τ) ∇u·∇v for linear elements, (N, N)."""
+    volume = np.abs(cell_volumes(mesh.points, mesh.cells))
+    tau = (1.0 - volume.min() / volume.max()) / (volume / volume.max())
+    corners = mesh.points[mesh.cells]
+    inner = np.linalg.inv(corners[:, 1:] - corners[:, :1])
+    gradients = np.concatenate([-inner.sum(axis=2, keepdims=True), inner], axis=2)
+    local = ((1.0 + tau) * volume)[:, None, None] * (gradients.swapaxes(1, 2) @ gradients)
+    rows, columns = np.broadcast_arrays(mesh.cells[:, :, None], mesh.cells[:, None, :])
+    count = len(mesh.points)
+    return csc_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count))
