@@ -1,0 +1,14 @@
+"""The body types that come with rigidfluid."""
+
+from __future__ import annotations
+
+from rigidfluid.bodies.ellipsoid import Ellipsoid
+from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.interfaces import Body
+from rigidfluid.hookspecs import hookimpl
+
+
+@hookimpl
+def rigidfluid_bodies() -> list[type[Body]]:
+    """The built-in body types."""
+    return [Sphere, Ellipsoid]
