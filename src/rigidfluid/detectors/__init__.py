@@ -1,0 +1,14 @@
+"""The contact detectors that come with rigidfluid."""
+
+from __future__ import annotations
+
+from rigidfluid.core.interfaces import Detector
+from rigidfluid.detectors.brute_force import BruteForceDetector
+from rigidfluid.detectors.sphere import SphereDetector
+from rigidfluid.hookspecs import hookimpl
+
+
+@hookimpl
+def rigidfluid_detectors() -> list[type[Detector]]:
+    """The built-in detectors."""
+    return [SphereDetector, BruteForceDetector]

@@ -1,0 +1,183 @@
+"""The naive twin of the other detectors: any shapes, from dense samples and a local search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from pydantic import Field
+from scipy.optimize import minimize
+
+from rigidfluid.core.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.rigid import rotation_matrices
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+
+Distance = Callable[[FloatArray], FloatArray]
+
+
+class BruteForceOptions(PartOptions):
+    """Keys of the ``[contact]`` table with detector ``brute_force``: ``samples``, points on each surface [1]."""
+
+    samples: int = Field(default=1000, ge=10)
+
+
+class _Placed(NamedTuple):
+    """A body where it stands, asked in lab coordinates."""
+
+    shape: Body
+    position: FloatArray
+    rotation: FloatArray
+
+    def signed_distance(self, points: FloatArray) -> FloatArray:
+        return self.shape.signed_distance((points - self.position) @ self.rotation)
+
+    def closest_point(self, points: FloatArray) -> FloatArray:
+        local = self.shape.closest_point((points - self.position) @ self.rotation)
+        return self.position + local @ self.rotation.T
+
+    def sample_surface(self, count: int) -> FloatArray:
+        return self.position + self.shape.sample_surface(count) @ self.rotation.T
+
+
+class _Touch(NamedTuple):
+    """One contact before it is put into arrays."""
+
+    body_a: int
+    body_b: int
+    point_a: FloatArray
+    point_b: FloatArray
+    normal: FloatArray
+    gap: float
+    radius_a: float
+    radius_b: float
+
+
+class BruteForceDetector(Detector):
+    """gap = min over x on surface a of the signed distance to b; one contact for each pair of surfaces.
+
+    The best of many samples starts a local minimisation on the surface, so that the gap of smooth convex bodies is
+    accurate to rounding (the points to its square root). Costs grow with the square of the number of bodies.
+
+    Parameters
+    ----------
+    options : BruteForceOptions
+        ``samples``: points on each surface [1].
+    bodies : sequence of Body
+        Shapes of any kind.
+    walls : sequence of Wall
+        The walls that repel.
+    """
+
+    name: ClassVar[str] = "brute_force"
+    Options: ClassVar[type[PartOptions]] = BruteForceOptions
+    options: BruteForceOptions
+
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone."""
+        rotations = rotation_matrices(pose.orientation)
+        placed = [_Placed(*row) for row in zip(self.bodies, pose.position, rotations, strict=True)]
+        touches = self._body_touches(placed, reach) + self._wall_touches(placed, reach)
+        near = sorted((touch for touch in touches if touch.gap <= reach), key=lambda touch: touch[:2])
+        return _contacts(near, pose.position.shape[1])
+
+    def _body_touches(self, placed: Sequence[_Placed], reach: float) -> list[_Touch]:
+        count = len(placed)
+        pairs = [(a, b) for a in range(count) for b in range(a + 1, count)]
+        return [self._body_touch(placed, a, b) for a, b in pairs if _bounding_gap(placed[a], placed[b]) <= reach]
+
+    def _body_touch(self, placed: Sequence[_Placed], a: int, b: int) -> _Touch:
+        point_a, gap = _nearest(placed[a], placed[b].signed_distance, self.options.samples)
+        point_b = placed[b].closest_point(point_a[None])[0]
+        normal = _normal(placed[b], point_a, point_b, gap)
+        return _Touch(a, b, point_a, point_b, normal, gap, _radius(placed[a].shape), _radius(placed[b].shape))
+
+    def _wall_touches(self, placed: Sequence[_Placed], reach: float) -> list[_Touch]:
+        return [
+            self._wall_touch(body, index, wall)
+            for index, body in enumerate(placed)
+            for wall in self.walls
+            if _height(body.position, wall) - body.shape.bounding_radius <= reach
+        ]
+
+    def _wall_touch(self, body: _Placed, index: int, wall: Wall) -> _Touch:
+        point_a, gap = _nearest(body, lambda points: _height(points, wall), self.options.samples)
+        point_b = point_a - gap * wall.normal
+        return _Touch(index, wall.surface, point_a, point_b, wall.normal, gap, _radius(body.shape), np.inf)
+
+
+def _nearest(body: _Placed, distance: Distance, samples: int) -> tuple[FloatArray, float]:
+    """The point of the surface where ``distance`` is least, and that least value."""
+    surface = body.sample_surface(samples)
+    start = surface[np.argmin(distance(surface))]
+    for _ in range(2):
+        # a second search from the end of the first, because a simplex may collapse too early
+        start = _descend(body, distance, start)
+    return start, float(distance(start[None])[0])
+
+
+def _descend(body: _Placed, distance: Distance, start: FloatArray) -> FloatArray:
+    size = body.shape.bounding_radius
+    tangents = _tangents(body, start)
+
+    def on_surface(steps: FloatArray) -> FloatArray:
+        return body.closest_point((start + size * steps @ tangents)[None])
+
+    def objective(steps: FloatArray) -> float:
+        return float(distance(on_surface(steps))[0] / size)
+
+    simplex = 0.01 * np.eye(len(tangents) + 1, len(tangents), k=-1)
+    result = minimize(
+        objective,
+        np.zeros(len(tangents)),
+        method="Nelder-Mead",
+        options={"xatol": 1e-10, "fatol": 1e-16, "initial_simplex": simplex},
+    )
+    return np.asarray(on_surface(result.x)[0])
+
+
+def _tangents(body: _Placed, point: FloatArray) -> FloatArray:
+    """An orthonormal basis (d-1, d) across the surface's normal at ``point``."""
+    _, _, axes = np.linalg.svd(_gradient(body, point)[None])
+    return np.asarray(axes[1:])
+
+
+def _gradient(body: _Placed, point: FloatArray) -> FloatArray:
+    step = 1e-6 * body.shape.bounding_radius * np.eye(len(point))
+    difference = body.signed_distance(point + step) - body.signed_distance(point - step)
+    return np.asarray(difference / np.linalg.norm(difference))
+
+
+def _normal(body: _Placed, point_a: FloatArray, point_b: FloatArray, gap: float) -> FloatArray:
+    # the line from b to a has no direction where they touch
+    if abs(gap) < 1e-4 * body.shape.bounding_radius:
+        return _gradient(body, point_b)
+    return np.asarray((point_a - point_b) / gap)
+
+
+def _bounding_gap(a: _Placed, b: _Placed) -> float:
+    return float(np.linalg.norm(a.position - b.position) - a.shape.bounding_radius - b.shape.bounding_radius)
+
+
+def _height(points: FloatArray, wall: Wall) -> FloatArray:
+    return np.asarray((points - wall.point) @ wall.normal)
+
+
+def _radius(body: Body) -> float:
+    return np.nan if body.radius is None else body.radius
+
+
+def _contacts(touches: Sequence[_Touch], dimension: int) -> Contacts:
+    columns = list(zip(*touches, strict=True)) or [()] * len(_Touch._fields)
+    body_a, body_b, point_a, point_b, normal, gap, radius_a, radius_b = columns
+    shape = (len(touches), dimension)
+    return Contacts(
+        body_a=np.array(body_a, dtype=np.int64),
+        body_b=np.array(body_b, dtype=np.int64),
+        point_a=np.array(point_a, dtype=float).reshape(shape),
+        point_b=np.array(point_b, dtype=float).reshape(shape),
+        normal=np.array(normal, dtype=float).reshape(shape),
+        gap=np.array(gap, dtype=float),
+        radius_a=np.array(radius_a, dtype=float),
+        radius_b=np.array(radius_b, dtype=float),
+    )
