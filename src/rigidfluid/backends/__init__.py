@@ -1,0 +1,13 @@
+"""The fluid backends that come with rigidfluid."""
+
+from __future__ import annotations
+
+from rigidfluid.backends.dry import Dry
+from rigidfluid.core.interfaces import FluidBackend
+from rigidfluid.hookspecs import hookimpl
+
+
+@hookimpl
+def rigidfluid_fluid_backends() -> list[type[FluidBackend]]:
+    """The built-in fluid backends."""
+    return [Dry]

@@ -1,0 +1,72 @@
+"""No fluid: the bodies alone."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.core.interfaces import FluidBackend
+from rigidfluid.core.types import Advance, Fields, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+
+
+class Dry(FluidBackend):
+    """Newton–Euler without a fluid: mass_matrix · twist = load for free bodies, the given twist for controlled ones.
+
+    Parameters
+    ----------
+    options : PartOptions
+        None are read.
+    problem : FluidProblem or None
+        Not read.
+    """
+
+    name: ClassVar[str] = "dry"
+    needs_mesh: ClassVar[bool] = False
+
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> FluidState:
+        """An empty state."""
+        return {}
+
+    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+        """The twists at the new time; the fluid's wrench and powers are zero."""
+        dimension = step.pose.position.shape[1]
+        twist, nothing = _solve(step), np.zeros_like(step.load)
+        return Advance(
+            fluid={},
+            twist=Twist(twist[:, :dimension], twist[:, dimension:]),
+            hydrodynamic_wrench=Wrench(nothing[:, :dimension], nothing[:, dimension:]),
+            kinetic_energy=0.0,
+            dissipation=0.0,
+            boundary_power=0.0,
+            iterations=0,
+        )
+
+    def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
+        """An empty state, and no energy lost."""
+        return {}, 0.0
+
+    def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
+        """Fields without a single point."""
+        dimension = mesh.points.shape[1]
+        nodes = (dimension + 1) * (dimension + 2) // 2
+        nowhere = np.zeros((0, dimension))
+        return Fields(nowhere, np.zeros((0, nodes), dtype=np.int64), nowhere, np.zeros(0))
+
+    def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Zero velocity (N, d) and zero pressure (N,) at ``points`` (N, d)."""
+        return np.zeros_like(points), np.zeros(len(points))
+
+    def unknowns(self, mesh: Mesh | None) -> int:
+        """None of the fluid."""
+        return 0
+
+    def forget(self) -> None:
+        """Nothing is cached."""
+
+
+def _solve(step: Step) -> FloatArray:
+    free = ~step.controlled
+    twist = step.controlled_twist.copy()
+    twist[free] = np.linalg.solve(step.mass_matrix[free], step.load[free, :, None])[..., 0]
+    return twist
