@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from rigidfluid.core.boundary import conditions, face_planes, faces
+from rigidfluid.core.geometry_checks import check_geometry
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
-from rigidfluid.core.types import BoolArray, FloatArray, Pose, Twist, Wall
+from rigidfluid.core.parts import Parts, resolve
+from rigidfluid.core.prescribed import prescribed_motion
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, FluidProblem, Pose, Twist, Wall
 
 
 @dataclass(frozen=True)
@@ -35,3 +42,91 @@ class System:
     backend: FluidBackend
     detector: Detector
     law: ForceLaw | None
+
+
+def build_system(scene: Scene) -> System:
+    """Build the parts of a simulation and check that they fit together.
+
+    Parameters
+    ----------
+    scene : Scene
+        A validated scene.
+
+    Returns
+    -------
+    System
+        Ready for the loop.
+
+    Raises
+    ------
+    SceneError
+        If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
+    """
+    parts, boundary = resolve(scene), conditions(scene)
+    walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
+    mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
+    pose, motion = _initial_pose(scene), prescribed_motion(scene)
+    controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
+    check_geometry(scene, parts, pose)
+    return System(
+        dimension=scene.dimension,
+        bodies=parts.bodies,
+        surfaces=(*(body.name for body in scene.body), *faces(scene.dimension)),
+        walls=walls,
+        lower=np.array(scene.domain.lower),
+        upper=np.array(scene.domain.upper),
+        mass=mass,
+        inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
+        weight=_submerged_weight(scene, parts.bodies, mass),
+        pose=pose,
+        twist=_initial_twist(scene, controlled, motion(0.0)),
+        controlled=controlled,
+        controlled_twist=motion,
+        backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
+        detector=parts.detector.part(parts.detector.options, parts.bodies, walls),
+        law=_law(scene, parts),
+    )
+
+
+def _initial_pose(scene: Scene) -> Pose:
+    position = np.array([body.position for body in scene.body])
+    if scene.dimension == 2:
+        return Pose(position, np.array([[body.angle or 0.0] for body in scene.body]))
+    quaternions = np.array([body.orientation or (1.0, 0.0, 0.0, 0.0) for body in scene.body])
+    return Pose(position, quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True))
+
+
+def _initial_twist(scene: Scene, controlled: BoolArray, controlled_twist: FloatArray) -> Twist:
+    d, twist = scene.dimension, np.zeros_like(controlled_twist)
+    for i, body in enumerate(scene.body):
+        twist[i, :d] = body.velocity or 0.0
+        twist[i, d:] = body.angular_velocity or 0.0
+    twist = np.where(controlled[:, None], controlled_twist, twist)
+    return Twist(twist[:, :d], twist[:, d:])
+
+
+def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
+    """(m - ρV)g with the exact volume, (n, d) [force]; the fluid carries no gravity, so buoyancy belongs here."""
+    volume = np.array([body.volume for body in bodies])
+    gravity = np.array(scene.fluid.gravity or [0.0] * scene.dimension)
+    return np.outer(mass - (scene.fluid.density or 0.0) * volume, gravity)
+
+
+def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProblem | None:
+    fluid = scene.fluid
+    if fluid.density is None or fluid.viscosity is None:
+        return None
+    return FluidProblem(
+        dimension=scene.dimension,
+        bodies=len(scene.body),
+        density=fluid.density,
+        dynamic_viscosity=fluid.viscosity,
+        inertia=fluid.model == "navier-stokes",
+        conditions=boundary,
+    )
+
+
+def _law(scene: Scene, parts: Parts) -> ForceLaw | None:
+    if parts.law is None or scene.contact.range is None:
+        return None
+    return parts.law.part(parts.law.options, scene.contact.range)

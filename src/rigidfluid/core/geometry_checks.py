@@ -1,0 +1,98 @@
+"""Refuses bodies that start in one another or outside the domain, and meshes that cannot resolve a gap."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.boundary import face_planes, faces
+from rigidfluid.core.parts import default_detector
+from rigidfluid.core.types import Contacts, Pose
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import DETECTOR, Registry
+
+if TYPE_CHECKING:
+    from rigidfluid.core.parts import Parts
+    from rigidfluid.core.scene import MeshTable, Scene
+
+
+def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
+    """Refuse a start that cannot be.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, for names and mesh sizes.
+    parts : Parts
+        Its bodies and backend.
+    pose : Pose
+        Where the bodies start.
+
+    Raises
+    ------
+    SceneError
+        If bodies overlap each other or a face of the domain, or if the mesh is too coarse for a gap.
+    """
+    contacts = initial_contacts(scene, parts, pose)
+    _check_overlap(scene, contacts)
+    if parts.backend.part.needs_mesh and scene.mesh is not None:
+        _check_resolution(scene, scene.mesh, parts, contacts)
+
+
+def initial_contacts(scene: Scene, parts: Parts, pose: Pose) -> Contacts:
+    """Every pair of surfaces at the start, with faces that do not repel among them.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, for its box.
+    parts : Parts
+        Its bodies.
+    pose : Pose
+        Where they are.
+
+    Returns
+    -------
+    Contacts
+        At any distance, from the exact detector that suits the bodies best.
+    """
+    detector = Registry.load().get(DETECTOR, default_detector(parts.bodies))
+    return detector(detector.Options(), parts.bodies, face_planes(scene)).detect(pose, None, inf)
+
+
+def _check_overlap(scene: Scene, contacts: Contacts) -> None:
+    if len(contacts) == 0 or np.min(contacts.gap) > 0:
+        return
+    worst = int(np.argmin(contacts.gap))
+    a, b, gap = int(contacts.body_a[worst]), int(contacts.body_b[worst]), float(contacts.gap[worst])
+    other = f"face {_name(scene, b)!r} of the domain" if b >= len(scene.body) else f"body {_name(scene, b)!r}"
+    raise SceneError(
+        f"body.{a}.position",
+        f"{list(scene.body[a].position)}, where body {_name(scene, a)!r} overlaps {other} by {-gap:.6g}",
+        "a place inside the domain and clear of all other surfaces",
+        f"Move it by more than {-gap:.6g}, or make it smaller.",
+    )
+
+
+def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Contacts) -> None:
+    """A chord h of a circle of radius R cuts off h²/(8R), which must stay below half the gap."""
+    halvings = 2**mesh.refinements
+    for k, gap in enumerate(contacts.gap):
+        for surface in (int(contacts.body_a[k]), int(contacts.body_b[k])):
+            if surface >= len(parts.bodies):
+                continue
+            fine = halvings * sqrt(4 * parts.bodies[surface].bounding_radius * float(gap))
+            if mesh.size_body >= fine:
+                a, b = _name(scene, int(contacts.body_a[k])), _name(scene, int(contacts.body_b[k]))
+                raise SceneError(
+                    "mesh.size_body",
+                    f"{mesh.size_body}, too coarse for the gap of {gap:.3g} between {a!r} and {b!r}",
+                    f"less than {fine:.3g}",
+                    f"Refine it, or allow more than {mesh.refinements} `refinements`.",
+                )
+
+
+def _name(scene: Scene, surface: int) -> str:
+    return (*(body.name for body in scene.body), *faces(scene.dimension))[surface]

@@ -1,0 +1,109 @@
+"""The parts that a scene names: their classes, and the keys of the scene's tables that are theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.validation import read_table, unknown_key
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene import ContactTable, FluidTable, Scene
+
+P = TypeVar("P", bound=Part)
+
+
+@dataclass(frozen=True)
+class Choice(Generic[P]):
+    """A class that a scene names, and its validated options."""
+
+    part: type[P]
+    options: PartOptions
+
+
+@dataclass(frozen=True)
+class Parts:
+    """All that a scene names; ``law`` is None in a scene without contact forces."""
+
+    backend: Choice[FluidBackend]
+    bodies: tuple[Body, ...]
+    detector: Choice[Detector]
+    law: Choice[ForceLaw] | None
+
+
+def resolve(scene: Scene) -> Parts:
+    """Find the parts that a scene names and validate their options.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables hold the options of the parts beside their own keys.
+
+    Returns
+    -------
+    Parts
+        Classes with options; the bodies are built, as the default detector depends on their shapes.
+
+    Raises
+    ------
+    PluginError
+        If a part is not there.
+    SceneError
+        If an option is unknown, missing or has a value that is not allowed.
+    """
+    registry = Registry.load()
+    bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
+    detector, law = _contact(scene.contact, registry, bodies)
+    return Parts(_backend(scene.fluid, registry), bodies, detector, law)
+
+
+def default_detector(bodies: Sequence[Body]) -> str:
+    """Name of the exact detector that suits these bodies best."""
+    return "sphere" if all(body.radius is not None for body in bodies) else "brute_force"
+
+
+def _body(scene: Scene, registry: Registry, number: int) -> Body:
+    table, at = scene.body[number], f"body.{number}"
+    part = registry.get(BODY, table.type, f"{at}.type")
+    _refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        return part(options, scene.dimension)
+    except SceneError as error:  # a body does not know its number
+        subject = f"{at}.{error.subject.removeprefix('body.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+
+
+def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:
+    part = registry.get(FLUID_BACKEND, table.backend)
+    _refuse_unread(table.options, [part], type(table).model_fields, "fluid")
+    return Choice(part, read_table(part.Options, table.options, "fluid"))
+
+
+def _contact(
+    table: ContactTable, registry: Registry, bodies: Sequence[Body]
+) -> tuple[Choice[Detector], Choice[ForceLaw] | None]:
+    detector = registry.get(DETECTOR, table.detector or default_detector(bodies))
+    law = registry.get(FORCE_LAW, table.law) if table.law else None
+    readers: list[type[Part]] = [detector, law] if law else [detector]
+    hint = "" if law else "Name the law that reads it: `law = …`."
+    _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
+    return _choose(detector, table), _choose(law, table) if law else None
+
+
+def _choose(part: type[P], table: ContactTable) -> Choice[P]:
+    mine = {key: value for key, value in table.options.items() if key in part.Options.model_fields}
+    return Choice(part, read_table(part.Options, mine, "contact"))
+
+
+def _refuse_unread(
+    options: Mapping[str, Any], readers: Sequence[type[Part]], common: Mapping[str, Any], at: str, hint: str = ""
+) -> None:
+    known = set().union(*(reader.Options.model_fields for reader in readers))
+    for key in options:
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", known | set(common), hint)

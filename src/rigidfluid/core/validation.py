@@ -1,0 +1,123 @@
+"""Reads a table of a scene into its model, and turns pydantic's complaints into ours."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+M = TypeVar("M", bound=BaseModel)
+Location = tuple[int | str, ...]
+
+
+def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
+    """Validate a table.
+
+    Parameters
+    ----------
+    model : type
+        The pydantic model that says what is allowed.
+    data : mapping
+        The table, as TOML gives it.
+    at : str
+        Where the table is in the scene, for messages (``body.0``).
+
+    Returns
+    -------
+    BaseModel
+        An instance of ``model``.
+
+    Raises
+    ------
+    SceneError
+        At the first value that is not allowed; unknown keys come first, as they often explain what is missing.
+    """
+    # Through JSON: its arrays may become tuples in strict mode, while a string never becomes a number.
+    text = json.dumps(data, default=_plain)
+    try:
+        return model.model_validate_json(text)
+    except ValidationError as error:
+        complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
+        raise _scene_error(model, complaints[0], at) from None
+
+
+def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
+    """The error for a key that nobody reads.
+
+    Parameters
+    ----------
+    field : str
+        Where it is in the scene (``body.0.raduis``).
+    known : iterable of str
+        The keys that its table may have.
+    hint : str
+        What to do where no known key is near.
+
+    Returns
+    -------
+    SceneError
+        With the nearest known key as remedy.
+    """
+    key = field.rpartition(".")[2]
+    keys = sorted(known)
+    remedy = suggestion(key, keys) or hint or "Remove it."
+    return SceneError(field, "a key that nothing reads", ", ".join(keys), remedy)
+
+
+def _plain(value: Any) -> Any:
+    """NumPy values as lists and numbers; TOML's dates, which no key takes, as they are written."""
+    return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+def _scene_error(model: type[BaseModel], complaint: ErrorDetails, at: str) -> SceneError:
+    location = complaint["loc"]
+    field = ".".join([*filter(None, [at]), *map(str, location)])
+    if complaint["type"] == "extra_forbidden":
+        return unknown_key(field, _model_at(model, location[:-1]).model_fields)
+    if complaint["type"] == "missing":
+        return _missing_key(model, complaint, field)
+    return SceneError(field or "scene", repr(complaint["input"]), _allowed(complaint), _remedy(model, location))
+
+
+def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:
+    table, key = complaint["input"], str(complaint["loc"][-1])
+    fields = _model_at(model, complaint["loc"][:-1]).model_fields
+    misspelt = [other for other in table if other not in fields and suggestion(other, [key])]
+    if misspelt:
+        return unknown_key(field.removesuffix(key) + misspelt[0], fields)
+    meaning = fields[key].description or "a value"
+    return SceneError(field, "nothing", meaning, f"Add the key {key!r}.")
+
+
+def _allowed(complaint: ErrorDetails) -> str:
+    text = complaint["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    return f"a value {text}" if text.startswith(("greater", "less")) else text
+
+
+def _remedy(model: type[BaseModel], location: Location) -> str:
+    names = [part for part in location if isinstance(part, str)]
+    parent = _model_at(model, names[:-1])
+    meaning = parent.model_fields[names[-1]].description if names and names[-1] in parent.model_fields else None
+    return f"It stands for: {meaning}." if meaning else "Correct the value."
+
+
+def _model_at(model: type[BaseModel], location: Iterable[int | str]) -> type[BaseModel]:
+    """The model of the table at this place of the scene."""
+    for part in location:
+        if isinstance(part, str):
+            model = _table_in(model.model_fields[part].annotation) or model
+    return model
+
+
+def _table_in(annotation: Any) -> type[BaseModel] | None:
+    """The model inside ``tuple[Model, ...]`` or ``Model | None``."""
+    if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(_table_in, get_args(annotation))), None)
