@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rigidfluid.backends.dry import Dry
+from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.interfaces import FluidBackend
 from rigidfluid.hookspecs import hookimpl
 
@@ -10,4 +11,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_fluid_backends() -> list[type[FluidBackend]]:
     """The built-in fluid backends."""
-    return [Dry]
+    return [Dry, ScikitFem]

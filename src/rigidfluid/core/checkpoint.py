@@ -1,0 +1,90 @@
+"""A state on disk: every array of the record tree, by its path, in one HDF5 file that is replaced as a whole."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from rigidfluid.core.state import State
+from rigidfluid.errors import OutputError
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """What a run needs to go on: its ``state``, the ``scene`` as JSON, the ``outputs`` written so far with their
+    ``times``, the ``lengths`` of the tables in bytes, and what the run has cost."""
+
+    state: State
+    scene: str
+    times: tuple[float, ...]
+    lengths: Mapping[str, int]
+    seconds: Mapping[str, float]
+    rejected: int
+    remeshes: int
+    elapsed: float
+
+
+def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Write beside ``path`` first, so that a run killed in the middle leaves the checkpoint before."""
+    part = path.with_name(path.name + ".part")
+    with h5py.File(part, "w") as file:
+        _store(file, checkpoint)
+    part.replace(path)
+
+
+def read_checkpoint(path: Path) -> Checkpoint:
+    """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
+    try:
+        with h5py.File(path, "r") as file:
+            checkpoint: Checkpoint = _load(file, Checkpoint)
+    except (OSError, KeyError) as error:
+        raise OutputError(
+            str(path), f"no readable checkpoint ({error})", "the state.h5 of an earlier run", "Run without --resume."
+        ) from error
+    return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def _with_shared_cells(state: State) -> State:
+    """A moved mesh has the very cells of its reference: backends know a topology by its array."""
+    if state.mesh is None or state.reference is None:
+        return state
+    return replace(state, mesh=replace(state.reference.mesh, points=state.mesh.points))
+
+
+def _store(group: h5py.Group, record: Any) -> None:
+    names = record if isinstance(record, Mapping) else [field.name for field in fields(record)]
+    for name in names:
+        value = record[name] if isinstance(record, Mapping) else getattr(record, name)
+        if is_dataclass(value) or isinstance(value, Mapping):
+            _store(group.create_group(name), value)
+        elif value is not None:
+            group.create_dataset(name, data=value)
+
+
+def _load(group: h5py.Group, kind: Any) -> Any:
+    hints = typing.get_type_hints(kind)
+    return kind(**{name: _value(group.get(name), hint) for name, hint in hints.items()})
+
+
+def _value(stored: Any, hint: Any) -> Any:
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        if stored is None:
+            return None
+        hint = next(option for option in typing.get_args(hint) if option is not type(None))
+    if is_dataclass(hint):
+        return _load(stored, hint)
+    if typing.get_origin(hint) is not None and issubclass(typing.get_origin(hint), Mapping):
+        inner = typing.get_args(hint)[1]
+        return {name: _value(item, inner) for name, item in stored.items()}
+    if hint is str:
+        return stored.asstr()[()]
+    if typing.get_origin(hint) is tuple:
+        return tuple(stored[()].tolist())
+    return hint(stored[()]) if hint in (int, float) else np.asarray(stored[()])

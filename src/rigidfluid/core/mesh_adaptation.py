@@ -1,0 +1,101 @@
+"""Decides when a mesh that only moves must be made anew, and carries the fluid over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mesh_motion import MeshMotion
+from rigidfluid.core.mesh_quality import cell_quality
+from rigidfluid.core.remesh import initial_mesh, remesh
+from rigidfluid.core.size_field import Sizes
+from rigidfluid.core.state import Reference, State
+from rigidfluid.core.system import System
+from rigidfluid.core.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.errors import StepRejected
+
+TANGLED = 0.02
+"""A mesh with a cell below this quality is not solved on."""
+
+
+class Mover:
+    """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, walls and backend.
+    sizes : Sizes or None
+        Wanted cell sizes; None without a fluid, and then there is no mesh.
+    quality : float
+        A moved mesh whose worst cell falls below this, and below half of what it was when made, is re-made.
+    """
+
+    def __init__(self, system: System, sizes: Sizes | None, quality: float) -> None:
+        self._system = system
+        self._sizes = sizes
+        self._quality = quality
+        self._motion: MeshMotion | None = None
+        self._reference: Reference | None = None
+
+    def first_mesh(self, gaps: FloatArray) -> Reference | None:
+        """The mesh around the bodies' initial pose."""
+        if self._sizes is None:
+            return None
+        s = self._system
+        mesh = initial_mesh(s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes)
+        return _reference(mesh, s.pose, gaps, 0)
+
+    def moved(self, state: State, pose: Pose) -> Mesh | None:
+        """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
+        if state.reference is None:
+            return None
+        points = self._map(state.reference).move(pose)
+        worst = float(cell_quality(points, state.reference.mesh.cells).min())
+        if worst < TANGLED:
+            raise StepRejected("mesh", f"a cell of quality {worst:.3f}", f"at least {TANGLED}", "Shorten time.step.")
+        return replace(state.reference.mesh, points=points)
+
+    def adapted(self, state: State, pose: Pose) -> State:
+        """The same state, on a new mesh if a step to ``pose`` asks for one."""
+        if state.reference is None or state.reference.tick == state.tick or not self._asks(state, pose):
+            return state
+        assert self._sizes is not None
+        assert state.mesh is not None
+        s = self._system
+        mesh = remesh(state.mesh, s.bodies, state.pose, s.walls, self._sizes)
+        fluid, loss = s.backend.transfer(state.fluid, state.mesh, mesh)
+        return replace(
+            state,
+            mesh=mesh,
+            reference=_reference(mesh, state.pose, state.gaps, state.tick),
+            fluid=fluid,
+            ledger=state.ledger.after_transfer(loss),
+        )
+
+    def _asks(self, state: State, pose: Pose) -> bool:
+        assert state.reference is not None
+        if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
+            return True
+        points = self._map(state.reference).move(pose)
+        worst = float(cell_quality(points, state.reference.mesh.cells).min())
+        return worst < min(self._quality, 0.5 * state.reference.quality)
+
+    def _map(self, reference: Reference) -> MeshMotion:
+        if self._motion is None or self._reference is not reference:
+            self._motion = MeshMotion(reference.mesh, self._system.bodies, reference.pose)
+            self._reference = reference
+        return self._motion
+
+
+def _reference(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
+    return Reference(mesh, pose, gaps, float(cell_quality(mesh.points, mesh.cells).min()), tick)
+
+
+def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:
+    """Where a gap that the mesh must resolve has halved, or has opened to four times, since the mesh was made."""
+    assert sizes is not None
+    finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
+    ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
+    return (ratio < 0.5) | (ratio > 4.0)

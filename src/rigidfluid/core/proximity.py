@@ -1,0 +1,36 @@
+"""How near the bodies are to anything: contacts of one pose, and each body's nearest gap."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.system import System
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
+
+_MOST_PAIRS = 1000
+
+
+def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
+    """The contacts within the law's range, and each body's nearest gap (n,).
+
+    Among few bodies every gap is measured; among many those within twice the largest body's size, and the rest is
+    infinite, so that the work grows with the number of neighbours and not of pairs.
+    """
+    count = len(system.bodies)
+    few = count * (count + len(system.walls)) <= _MOST_PAIRS
+    law_range = system.law.range if system.law else 0.0
+    reach = math.inf if few else law_range + 2.0 * max(body.bounding_radius for body in system.bodies)
+    near = system.detector.detect(pose, mesh, reach)
+    gaps = np.full(count, np.inf)
+    np.minimum.at(gaps, near.body_a, near.gap)
+    paired = near.body_b < count
+    np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
+    return select(near, near.gap <= law_range), gaps
+
+
+def select(contacts: Contacts, chosen: FloatArray) -> Contacts:
+    """The contacts where ``chosen`` (m,) is true."""
+    return replace(contacts, **{name: getattr(contacts, name)[chosen] for name in Contacts.__slots__})

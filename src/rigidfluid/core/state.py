@@ -1,0 +1,50 @@
+"""All that a run remembers between two steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rigidfluid.core.energy import Ledger
+from rigidfluid.core.types import Contacts, FloatArray, FluidState, Mesh, Pose, Twist, Wrench
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The mesh that the last re-meshing made: the domain of the mesh map, with the ``pose`` and nearest ``gaps`` (n,)
+    of the bodies there, its worst cell's ``quality``, and the ``tick`` when it was made."""
+
+    mesh: Mesh
+    pose: Pose
+    gaps: FloatArray
+    quality: float
+    tick: int
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """One step earlier: what second order in time needs."""
+
+    pose: Pose
+    twist: Twist
+    step: float
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """An accepted state. ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh
+    is now (None without a fluid); the wrenches are those that led to the present twist."""
+
+    tick: int
+    count: int
+    level: int | None
+    pose: Pose
+    twist: Twist
+    past: Past | None
+    mesh: Mesh | None
+    reference: Reference | None
+    fluid: FluidState
+    contacts: Contacts
+    gaps: FloatArray
+    hydrodynamic_wrench: Wrench
+    contact_wrench: Wrench
+    ledger: Ledger

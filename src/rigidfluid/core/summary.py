@@ -1,0 +1,88 @@
+"""The summary of a run: the figures that matter, and what they cost."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rigidfluid.core.history import History
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.system import System
+from rigidfluid.core.types import FloatArray
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run import Simulation
+
+_PACKAGES = ("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py")
+
+
+def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
+    """All of summary.json but the list of files."""
+    state, system, history = simulation.state, simulation.system, simulation.history
+    bodies = history.bodies
+    return {
+        "status": status,
+        "scene": simulation.scene.to_dict(),
+        "seed": simulation.scene.scene.seed,
+        "versions": versions(),
+        "time": simulation.clock.time(state.tick),
+        "unknowns": system.backend.unknowns(state.mesh),
+        "cells": 0 if state.mesh is None else len(state.mesh.cells),
+        "steps": state.count,
+        "rejected_steps": simulation.rejected,
+        "remeshes": simulation.remeshes,
+        "wall_time": simulation.elapsed,
+        "wall_time_per_stage": simulation.watch.seconds,
+        **reynolds_numbers(simulation.scene, system, history),
+        "smallest_gap": float(np.min(bodies["gap"])),
+        "rest_position": {
+            system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())
+        },
+        "energy": energy_balance(history),
+    }
+
+
+def reynolds_numbers(scene: Scene, system: System, history: History) -> dict[str, float | None]:
+    """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
+
+    R is the radius of a ball, of other shapes that of the smallest ball around them. None without a fluid.
+    """
+    if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
+        return {"reynolds_solid_density": None, "reynolds": None}
+    speeds = _highest_speeds(system, history)
+    per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
+    solid = np.array([body.density for body in scene.body])
+    return {
+        "reynolds_solid_density": float(np.max(per_density * solid)),
+        "reynolds": float(np.max(per_density) * scene.fluid.density),
+    }
+
+
+def _highest_speeds(system: System, history: History) -> FloatArray:
+    bodies = history.bodies
+    components = [bodies["v" + axis] for axis in "xyz"[: system.dimension]]
+    speed = np.sqrt(np.sum(np.square(components), axis=0)).reshape(-1, len(system.bodies))
+    return np.asarray(speed.max(axis=0))
+
+
+def energy_balance(history: History) -> dict[str, float]:
+    """The last row of the energy table, and its residual over the energy that passed through."""
+    energy = history.energy
+    last = {name: float(values[-1]) for name, values in energy.items() if name not in ("time", "step")}
+    initial = float(energy["kinetic"][0] + energy["contact"][0])
+    passed = max(abs(last["gravity"]) + abs(last["boundary"]) + abs(last["control"]), last["kinetic"], initial)
+    return {**last, "relative_residual": last["residual"] / passed if passed > 0 else 0.0}
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that decide the results, where installed."""
+    found = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
