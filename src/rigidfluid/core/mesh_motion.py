@@ -1,4 +1,4 @@
-"""Moves a mesh with its bodies by the paper's harmonic map: one factorisation for a reference mesh, one solve a step."""
+"""Moves a mesh with its bodies by the paper's harmonic map: factorised once for a reference mesh, one solve a step."""
 
 from __future__ import annotations
 
@@ -67,10 +67,11 @@ class MeshMotion:
     def _rigid_displacement(self, i: int, body: Body, pose: Pose) -> FloatArray:
         """x - X on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
         if body.radius is not None:
-            shift: FloatArray = pose.position[i] - self._pose.position[i]
+            shift = pose.position[i] - self._pose.position[i]
             return np.broadcast_to(shift, (len(self._surfaces[i]), len(shift)))
         reference = self._points[self._surfaces[i]]
-        return to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
+        turned: FloatArray = to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
+        return turned
 
 
 class Extension:

@@ -116,7 +116,11 @@ def netgen_mesh(
         raise MeshError("mesh", found, "bodies that neither overlap nor leave the box", REMEDY) from error
     finally:
         meshing.SetMessageImportance(verbosity)
-    return orient(from_netgen(netgen, len(lower)))
+    mesh = orient(from_netgen(netgen, len(lower)))
+    for face in range(2 * len(lower)):
+        on_face = mesh.facets[mesh.markers == len(bodies) + face]
+        mesh.points[on_face, face // 2] = (lower, upper)[face % 2][face // 2]
+    return mesh
 
 
 def fluid_shape(bodies: Sequence[Body], pose: Pose, lower: FloatArray, upper: FloatArray, size_body: FloatArray) -> Any:

@@ -19,7 +19,7 @@ LONGEST = 1.5
 def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
     """Bisect body edges, longest first, until none is longer than LONGEST times the wanted size at its middle.
 
-    Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay as they are.
+    Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay.
     Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the polygon's
     error stays far below the gap.
 

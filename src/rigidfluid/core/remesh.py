@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from rigidfluid.core.interfaces import Body
-from rigidfluid.core.mesh_quality import cell_volumes
+from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.refine_surface import refine_surface
 from rigidfluid.core.size_field import Sizes, wanted_size
@@ -18,10 +20,37 @@ from rigidfluid.core.types import FloatArray, IntArray, Mesh, Pose, Wall
 from rigidfluid.errors import MeshError
 
 GRADATIONS = (1.3, 1.4, 1.2)
-"""Ratio of neighbouring edges that MMG may use: the first one, then the others where it fails."""
+"""Ratio of neighbouring edges that MMG may use: the first one, then the others where its mesh is not good."""
 
-MINIMUM_QUALITY = 0.1
+GOOD_QUALITY = 0.3
+"""A re-made mesh is good when all its cells are above this quality; a moved mesh is due again when one falls below."""
+
+WORST_QUALITY = 0.02
 """A re-made mesh with a cell at or below this quality is refused."""
+
+LONGEST_EDGE = 2.5
+"""A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
+
+
+def is_due(quality: float, fresh_quality: float, gap: float, fresh_gap: float, sizes: Sizes) -> bool:
+    """Whether a moved mesh should be re-made: q < min(0.3, 0.6 q₀), or gap < gap₀/2 where the gap decides the size.
+
+    Parameters
+    ----------
+    quality, fresh_quality : float
+        Lowest cell quality now, and just after the last re-meshing [1].
+    gap, fresh_gap : float
+        Smallest gap now, and at the last re-meshing [length].
+    sizes : Sizes
+        The wanted size.
+
+    Returns
+    -------
+    bool
+        True if it is due.
+    """
+    resolved = np.clip([gap, fresh_gap], sizes.cells_per_gap * sizes.smallest, sizes.cells_per_gap * sizes.size_body)
+    return bool(quality < min(GOOD_QUALITY, 0.6 * fresh_quality) or resolved[0] < 0.5 * resolved[1])
 
 
 def initial_mesh(
@@ -86,23 +115,47 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall]
     """
     refined = refine_surface(mesh, bodies, pose, walls, sizes)
     check_mesh(refined, quality=0.0)
-    metric = wanted_size(refined.points, bodies, pose, walls, sizes)
+    size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
+    made: list[Mesh] = []
+    failures: list[MeshError] = []
     for gradation in GRADATIONS:
         try:
-            return remeshed_once(refined, len(bodies), metric, gradation)
+            made.append(remeshed_once(refined, len(bodies), size_at, gradation))
         except MeshError as error:
-            failure = error
-    raise failure
+            failures.append(error)
+        else:
+            if lowest_quality(made[-1]) > GOOD_QUALITY:
+                break
+    if not made:
+        raise failures[0]
+    return max(made, key=lowest_quality)
 
 
-def remeshed_once(mesh: Mesh, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
-    """One call of MMG with the wanted sizes at the vertices (N,), its result repaired by round-off and checked."""
-    new = orient(with_kept_facets(run_mmg(mesh, bodies, metric, gradation), mesh, bodies))
-    check_mesh(new, quality=MINIMUM_QUALITY)
-    before, after = (np.sum(cell_volumes(m.points, m.cells)) for m in (mesh, new))
+def remeshed_once(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], FloatArray], gradation: float) -> Mesh:
+    """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
+    new = orient(with_kept_facets(run_mmg(mesh, bodies, size_at(mesh.points), gradation), mesh, bodies))
+    check_mesh(new, quality=WORST_QUALITY)
+    before, after = (float(np.sum(cell_volumes(m.points, m.cells))) for m in (mesh, new))
     if abs(after - before) > 1e-12 * before:
         raise MeshError("mesh", f"a volume of {after!r} after re-meshing", f"{before!r} as before", REMEDY)
+    excess = longest_relative_edge(new, size_at)
+    if excess > LONGEST_EDGE:
+        found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
+        raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
     return new
+
+
+def lowest_quality(mesh: Mesh) -> float:
+    """Quality of the worst cell [1]."""
+    return float(cell_quality(mesh.points, mesh.cells).min())
+
+
+def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
+    """Longest edge over the size wanted at its middle, max |x_b - x_a| / h [1]."""
+    pairs = np.array(list(combinations(range(mesh.cells.shape[1]), 2)))
+    edges = np.unique(np.sort(mesh.cells[:, pairs].reshape(-1, 2), axis=1), axis=0)
+    start, end = mesh.points[edges[:, 0]], mesh.points[edges[:, 1]]
+    return float(np.max(np.linalg.norm(end - start, axis=1) / size_at(0.5 * (start + end))))
 
 
 def run_mmg(mesh: Mesh, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
@@ -154,7 +207,7 @@ def with_kept_facets(new: Mesh, old: Mesh, bodies: int) -> Mesh:
     """
     kept = old.markers < bodies
     old_vertices = np.unique(old.facets[kept])
-    distance, place = cKDTree(new.points).query(old.points[old_vertices])
+    distance, place = map(np.atleast_1d, cKDTree(new.points).query(old.points[old_vertices]))
     shortest = 1e-9 * np.ptp(old.points, axis=0).max()
     if len(np.unique(place)) < len(place) or np.any(distance > shortest):
         raise MeshError("mesh", "a body vertex lost by MMG", "every body vertex kept", REMEDY)

@@ -14,8 +14,19 @@ from rigidfluid.core.types import FloatArray, Pose, Wall
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What decides the cell size: ``size`` far away and ``size_body`` on a body [length], ``growth`` of the size with
-    the distance [1], ``cells_per_gap`` across a gap, and ``refinements``, how often size_body may be halved for that."""
+    """What decides the cell size.
+
+    Parameters
+    ----------
+    size, size_body : float
+        Edge length far from the bodies, and on a body [length].
+    growth : float
+        Growth of the size with the distance to a body [1].
+    cells_per_gap : float
+        How many cells lie across a gap.
+    refinements : int
+        How often size_body may be halved for that.
+    """
 
     size: float
     size_body: float

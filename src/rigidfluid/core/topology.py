@@ -27,7 +27,8 @@ def boundary_facets(cells: IntArray) -> IntArray:
         Vertex numbers of each boundary facet.
     """
     corners = np.sort(cells, axis=1)
-    facets = np.concatenate([corners[:, pick] for pick in map(list, combinations(range(cells.shape[1]), cells.shape[1] - 1))])
+    picks = np.array(list(combinations(range(cells.shape[1]), cells.shape[1] - 1)))
+    facets = corners[:, picks].reshape(-1, cells.shape[1] - 1)
     unique, count = np.unique(facets, axis=0, return_counts=True)
     boundary: IntArray = unique[count == 1]
     return boundary
