@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf, sqrt
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import DETECTOR, Registry
 
 if TYPE_CHECKING:
+    from rigidfluid.core.interfaces import Body
     from rigidfluid.core.parts import Parts
     from rigidfluid.core.scene import MeshTable, Scene
 
@@ -35,20 +37,20 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     SceneError
         If bodies overlap each other or a face of the domain, or if the mesh is too coarse for a gap.
     """
-    contacts = initial_contacts(scene, parts, pose)
+    contacts = initial_contacts(scene, parts.bodies, pose)
     _check_overlap(scene, contacts)
     if parts.backend.part.needs_mesh and scene.mesh is not None:
         _check_resolution(scene, scene.mesh, parts, contacts)
 
 
-def initial_contacts(scene: Scene, parts: Parts, pose: Pose) -> Contacts:
+def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose) -> Contacts:
     """Every pair of surfaces at the start, with faces that do not repel among them.
 
     Parameters
     ----------
     scene : Scene
         The scene, for its box.
-    parts : Parts
+    bodies : sequence of Body
         Its bodies.
     pose : Pose
         Where they are.
@@ -58,8 +60,8 @@ def initial_contacts(scene: Scene, parts: Parts, pose: Pose) -> Contacts:
     Contacts
         At any distance, from the exact detector that suits the bodies best.
     """
-    detector = Registry.load().get(DETECTOR, default_detector(parts.bodies))
-    return detector(detector.Options(), parts.bodies, face_planes(scene)).detect(pose, None, inf)
+    detector = Registry.load().get(DETECTOR, default_detector(bodies))
+    return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, inf)
 
 
 def _check_overlap(scene: Scene, contacts: Contacts) -> None:

@@ -105,7 +105,7 @@ def _remedy(model: type[BaseModel], location: Location) -> str:
     names = [part for part in location if isinstance(part, str)]
     parent = _model_at(model, names[:-1])
     meaning = parent.model_fields[names[-1]].description if names and names[-1] in parent.model_fields else None
-    return f"It stands for: {meaning}." if meaning else "Correct the value."
+    return f"Correct it; it means: {meaning}." if meaning else "Correct the value."
 
 
 def _model_at(model: type[BaseModel], location: Iterable[int | str]) -> type[BaseModel]:

@@ -1,0 +1,39 @@
+# Everything needs only make and python3.11+ with venv; a stamp file per set of packages avoids installing twice.
+
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: run test install lint validate bench clean
+
+run: install
+	$(BIN)/rigidfluid run scenes/falling_disk.toml
+
+install: .venv/.installed
+
+test: .venv/.installed-test
+	$(BIN)/pytest
+
+validate: .venv/.installed-test
+	$(BIN)/pytest -m validation
+
+lint: .venv/.installed-dev
+	$(BIN)/ruff check
+	$(BIN)/mypy
+
+bench: .venv/.installed-bench
+	$(BIN)/python benchmarks/step.py
+
+clean:
+	rm -rf .venv
+
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rigidfluid needs Python 3.11 or newer")'
+	$(PYTHON) -m venv .venv
+
+.venv/.installed: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+.venv/.installed-%: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable '.[$*]'
+	touch $@

@@ -1,0 +1,190 @@
+"""The command line; the only place that prints and exits."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rigidfluid import __version__
+from rigidfluid.errors import RigidfluidError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run import Progress
+    from rigidfluid.core.scene import Scene
+    from rigidfluid.core.system import System
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
+Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
+Assignments = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a value, as contact.range=0.02 or body.0.density=1.5."),
+]
+OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
+Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+@app.callback(invoke_without_command=True)
+def main(context: typer.Context, version: Version = False) -> None:
+    """Rigid bodies that move and collide in a Newtonian fluid."""
+    if version:
+        _print(f"rigidfluid {__version__}")
+    elif context.invoked_subcommand is None:
+        _print(context.get_help())
+
+
+@app.command()
+def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None, resume: Resume = False) -> None:
+    """Simulate a scene and write the results."""
+    with _reported("The same command with --resume goes on from the last checkpoint."):
+        from rigidfluid.core.run import run as simulate
+        from rigidfluid.core.scene import load_scene
+
+        loaded = load_scene(scene, assignments or ())
+        folder = out or Path("out") / loaded.name
+        with _progress_bar(loaded) as show:
+            history = simulate(loaded, folder, resume=resume, progress=show)
+        _print_end(history.summary, folder)
+
+
+@app.command()
+def check(scene: SceneFile, assignments: Assignments = None) -> None:
+    """Validate a scene, and say what it switches on and off, and why."""
+    with _reported():
+        from rigidfluid.core.scene import load_scene
+        from rigidfluid.core.system import build_system
+
+        loaded = load_scene(scene, assignments or ())
+        system = build_system(loaded)
+        _print_features(system)
+        _print_bodies(loaded, system)
+
+
+@app.command()
+def plugins() -> None:
+    """List the fluid backends, detectors, force laws and body types that are installed."""
+    with _reported():
+        from rigidfluid.registry import Registry
+
+        registry = Registry.load()
+        table = Table("kind", "name", "origin", "available")
+        for entry in registry.entries:
+            table.add_row(entry.kind.title, entry.name, entry.origin, "yes" if entry.available else f"no: {entry.hint}")
+        for plugin in registry.unloaded:
+            table.add_row("plug-in", plugin.name, plugin.origin, f"no: {plugin.reason}")
+        Console().print(table)
+
+
+@app.command()
+def report(folder: Folder) -> None:
+    """Make plots and a page from the results in a folder."""
+    with _reported():
+        from rigidfluid.reports import report as make_report
+
+        for path in make_report(folder):
+            _print(f"wrote {path}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of scene files, with the keys of every installed part."""
+    with _reported():
+        from rigidfluid.core.schema import json_schema
+
+        _print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+
+
+@contextmanager
+def _reported(on_interrupt: str = "") -> Iterator[None]:
+    """Turn an expected error into one paragraph on stderr and an exit code."""
+    try:
+        yield
+    except RigidfluidError as error:
+        _complain(f"Error: {error}")
+        raise typer.Exit(BAD_INPUT) from None
+    except KeyboardInterrupt:
+        _complain(f"Interrupted. {on_interrupt}")
+        raise typer.Exit(INTERRUPTED) from None
+
+
+@contextmanager
+def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn(scene.name),
+        BarColumn(),
+        TextColumn(
+            "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
+        ),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    with Bar(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
+        yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
+
+
+def _print_end(summary: dict[str, Any], folder: Path) -> None:
+    solid, fluid = _figure(summary["reynolds_solid_density"]), _figure(summary["reynolds"])
+    _print(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
+    _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
+    _print(f"rest position: {_figure(summary['rest_position'])}")
+    _print(f"wrote to {folder}: {', '.join(map(str, summary['files']))}")
+
+
+def _print_features(system: System) -> None:
+    from rigidfluid.core.features import features
+
+    table = Table("part", "", "why")
+    for feature in features(system):
+        table.add_row(feature.name, "on" if feature.on else "off", feature.why)
+    Console().print(table)
+
+
+def _print_bodies(scene: Scene, system: System) -> None:
+    from rigidfluid.core.geometry_checks import initial_contacts
+
+    contacts = initial_contacts(scene, system.bodies, system.pose)
+    table = Table("body", "type", "mass", "submerged weight", "smallest gap", "to")
+    for number, body in enumerate(scene.body):
+        rows = (contacts.body_a == number) | (contacts.body_b == number)
+        nearest = int(contacts.gap[rows].argmin())
+        pair = contacts.body_a[rows][nearest], contacts.body_b[rows][nearest]
+        other = system.surfaces[pair[1] if pair[0] == number else pair[0]]
+        figures = system.mass[number], system.weight[number], contacts.gap[rows][nearest]
+        table.add_row(body.name, body.type, *map(_figure, figures), other)
+    Console().print(table)
+
+
+def _figure(value: Any) -> str:
+    """A number, or a list or table of them, to four digits."""
+    if value is None:
+        return "none"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_figure(part)}" for key, part in value.items())
+    if hasattr(value, "__iter__"):
+        return f"({', '.join(map(_figure, value))})"
+    return f"{value:.4g}"
+
+
+def _print(text: str) -> None:
+    Console().print(Text(text), soft_wrap=True)
+
+
+def _complain(text: str) -> None:
+    Console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
