@@ -26,14 +26,16 @@ bench: .venv/.installed-bench
 clean:
 	rm -rf .venv
 
-$(BIN)/python:
+# A stamp, since a venv that could not be finished leaves its python behind.
+.venv/.created:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rigidfluid needs Python 3.11 or newer")'
 	$(PYTHON) -m venv .venv
+	touch $@
 
-.venv/.installed: pyproject.toml | $(BIN)/python
+.venv/.installed: pyproject.toml | .venv/.created
 	$(BIN)/python -m pip install --quiet --editable .
 	touch $@
 
-.venv/.installed-%: pyproject.toml | $(BIN)/python
+.venv/.installed-%: pyproject.toml | .venv/.created
 	$(BIN)/python -m pip install --quiet --editable '.[$*]'
 	touch $@

@@ -1,0 +1,371 @@
+"""What a scene may say, and what it is told when it says something else."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+from rigidfluid import Scene, load_scene
+from rigidfluid.core.boundary import conditions
+from rigidfluid.core.overrides import override
+from rigidfluid.core.schema import json_schema
+from rigidfluid.core.system import build_system
+from rigidfluid.errors import PluginError, SceneError
+
+SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*.toml"))
+
+DISK = {
+    "scene": {"name": "disk", "dimension": 2},
+    "fluid": {"backend": "scikit-fem", "density": 1, "viscosity": 0.1, "gravity": [0.0, -981.0]},
+    "domain": {"lower": [0.0, 0.0], "upper": [2.0, 6.0]},
+    "body": [{"type": "sphere", "radius": 0.125, "density": 1.25, "position": [1.0, 4.0]}],
+    "contact": {"law": "centre", "range": 0.015, "epsilon": 7e-5},
+    "mesh": {"size": 0.15, "size_body": 0.01},
+    "time": {"end": 1.0, "step": 0.001},
+    "output": {"every": 0.02},
+}
+SECOND = {"type": "sphere", "radius": 0.125, "density": 1.0, "position": [1.0, 2.0]}
+DELETE = object()
+
+
+def changed(changes: dict[str, Any], base: dict[str, Any] = DISK) -> dict[str, Any]:
+    """The tables of a falling disk, with values set or deleted at dotted paths."""
+    data = copy.deepcopy(base)
+    for path, value in changes.items():
+        *parents, key = path.split(".")
+        table: Any = data
+        for parent in parents:
+            table = table[int(parent)] if isinstance(table, list) else table.setdefault(parent, {})
+        if value is DELETE:
+            del table[key]
+        elif isinstance(table, list):
+            table.insert(int(key), value)
+        else:
+            table[key] = value
+    return data
+
+
+def in_3d(**changes: Any) -> dict[str, Any]:
+    """A falling ball."""
+    base = {"scene.dimension": 3, "fluid.gravity": [0, -981, 0], "domain.lower": [0, 0, 0], "domain.upper": [2, 6, 2]}
+    return changed(changes, changed(base | {"body.0.position": [1, 4, 1]}))
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_our_scenes_load_build_and_fit_the_schema(path: Path) -> None:
+    scene = load_scene(path)
+    build_system(scene)
+    assert Scene.from_dict(scene.to_dict()) == scene
+    jsonschema.validate(tomllib.loads(path.read_text()), json_schema())
+    jsonschema.validate(scene.to_dict(), json_schema())
+
+
+def test_schema_is_valid_and_refuses_what_the_loader_refuses() -> None:
+    jsonschema.Draft202012Validator.check_schema(json_schema())
+    for changes in ({"body.0.raduis": 1.0}, {"body.0.density": -1.0}, {"contact.epsilon": "much"}, {"fluid.x": 1}):
+        assert not jsonschema.Draft202012Validator(json_schema()).is_valid(changed(changes))
+
+
+BAD = {
+    "unknown key": ({"mesh.sise": 1.0}, "mesh.sise", "size_body", "Did you mean 'size'?"),
+    "unknown key of a part": ({"body.0.raduis": 0.1}, "body.0.raduis", "radius", "Did you mean 'radius'?"),
+    "misspelt needed key": (
+        {"body.0.density": DELETE, "body.0.densty": 1.0},
+        "body.0.densty",
+        "density",
+        "Did you mean 'density'?",
+    ),
+    "unknown nested key": (
+        {"body.0.prescribed": {"frequncy": 1.0}},
+        "body.0.prescribed.frequncy",
+        "frequency",
+        "Did you mean 'frequency'?",
+    ),
+    "unknown contact key": ({"contact.epsilonn": 1.0}, "contact.epsilonn", "epsilon_wall", "Did you mean 'epsilon'?"),
+    "missing key": ({"body.0.density": DELETE}, "body.0.density: found nothing", "Density", "Add the key 'density'"),
+    "missing option": ({"body.0.radius": DELETE}, "body.0.radius: found nothing", "a value", "Add the key 'radius'"),
+    "wrong type": ({"time.end": "soon"}, "time.end: found 'soon'", "a valid number", "ends"),
+    "a truth value is no number": ({"time.end": True}, "time.end: found True", "a valid number", "ends"),
+    "text is no number": ({"time.end": "1.0"}, "time.end: found '1.0'", "a valid number", "ends"),
+    "infinite": ({"time.end": float("inf")}, "time.end: found inf", "finite", "ends"),
+    "negative density": ({"body.0.density": -1.0}, "body.0.density: found -1", "greater than 0", "Density of the body"),
+    "negative radius": ({"body.0.radius": -1.0}, "body.0.radius: found -1", "greater than 0", "Correct"),
+    "not a choice": (
+        {"fluid.model": "euler"},
+        "fluid.model: found 'euler'",
+        "'navier-stokes' or 'stokes'",
+        "Equations",
+    ),
+    "wrong length": ({"fluid.gravity": [0.0, 0.0, -981.0]}, "fluid.gravity", "2 numbers", "2 dimensions"),
+    "no body": ({"body": []}, "body: found []", "at least 1", "Correct"),
+    "empty box": ({"domain.upper": [2.0, 0.0]}, "domain.upper: found [2.0, 0.0]", "above domain.lower", "Swap"),
+    "probe outside": ({"output.probes": [[3.0, 0.0]]}, "output.probes.0: found [3.0, 0.0]", "domain", "Move"),
+    "3D face": ({"boundary": [{"on": "front", "type": "wall"}]}, "boundary.0.on: found 'front'", "left", "Name a face"),
+    "velocity missing": ({"boundary": [{"on": "left", "type": "velocity"}]}, "boundary.0.velocity", "value", "Add"),
+    "pressure of a wall": (
+        {"boundary": [{"on": "left", "type": "wall", "pressure": 0.0}]},
+        "boundary.0.pressure",
+        "type = 'pressure'",
+        "Keep one",
+    ),
+    "inflow without outlet": (
+        {"boundary": [{"on": "left", "type": "velocity", "velocity": [1.0, 0.0]}]},
+        "boundary: found a net inflow of 6",
+        "as much outflow",
+        "type = 'pressure'",
+    ),
+    "quaternion in 2D": ({"body.0.orientation": [1, 0, 0, 0]}, "body.0.orientation", "no quaternion", "`angle`"),
+    "fixed and moving": ({"body.0.fixed": True, "body.0.velocity": [1, 0]}, "body.0.fixed", "one of them", "Remove"),
+    "prescribed and moving": (
+        {"body.0.prescribed": {"velocity": [1, 0]}, "body.0.velocity": [1, 0]},
+        "body.0.velocity",
+        "inside",
+        "Move it",
+    ),
+    "amplitude alone": (
+        {"body.0.prescribed": {"amplitude": [1, 0]}},
+        "body.0.prescribed.frequency",
+        "together",
+        "Add 'frequency'",
+    ),
+    "doubled name": (
+        {"body.0.name": "a", "body.1": {**SECOND, "name": "a"}},
+        "body.1.name: found 'a'",
+        "no other body",
+        "Rename",
+    ),
+    "name of a face": ({"body.0.name": "top"}, "body.0.name: found 'top'", "face", "Rename"),
+    "law without range": ({"contact.range": DELETE}, "contact.range: found nothing", "above 0", "Add"),
+    "range without law": (
+        {"contact": {"range": 1.0}},
+        "contact.range: found 1.0 without a law",
+        "`law`",
+        "Name the law",
+    ),
+    "option without law": ({"contact": {"epsilon": 1.0}}, "contact.epsilon", "law", "Name the law"),
+    "rare output": ({"output.every": 1e-4}, "output.every: found 0.0001", "time.step = 0.001", "Write less"),
+    "long step": ({"time.step": 2.0, "output.every": 3.0}, "time.step: found 2", "time.end = 1", "Shorten"),
+    "shortest too long": ({"time.shortest": 0.1}, "time.shortest: found 0.1", "time.step = 0.001", "Shorten"),
+    "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
+    "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),
+    "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
+    "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "match pattern", "Name of the scene"),
+}
+
+
+@pytest.mark.parametrize(("changes", "field", "allowed", "remedy"), BAD.values(), ids=BAD)
+def test_bad_value_is_refused(changes: dict[str, Any], field: str, allowed: str, remedy: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        Scene.from_dict(changed(changes))
+    message = str(caught.value)
+    assert message.startswith(field)
+    assert allowed in message
+    assert remedy in message
+    assert "\n" not in message
+
+
+BAD_GEOMETRY = {
+    "outside": ({"body.0.position": [1.0, 7.0]}, "body.0.position", "overlaps face 'top' of the domain by 1.125"),
+    "through a wall": (
+        {"body.0.position": [0.1, 3.0]},
+        "body.0.position",
+        "overlaps face 'left' of the domain by 0.025",
+    ),
+    "in another": (
+        {"body.1": {**SECOND, "position": [1.0, 3.8]}},
+        "body.0.position",
+        "body 'body0' overlaps body 'body1' by 0.05",
+    ),
+    "through an outlet": (
+        {"boundary": [{"on": "right", "type": "pressure", "pressure": 0.0}], "body.0.position": [2.0, 3.0]},
+        "body.0.position",
+        "overlaps face 'right'",
+    ),
+    "mesh too coarse": (
+        {"body.0.position": [1.0, 0.1251], "mesh.size_body": 0.1, "mesh.refinements": 1},
+        "mesh.size_body",
+        "less than 0.0141",
+    ),
+}
+
+
+@pytest.mark.parametrize(("changes", "field", "text"), BAD_GEOMETRY.values(), ids=BAD_GEOMETRY)
+def test_bad_geometry_is_refused(changes: dict[str, Any], field: str, text: str) -> None:
+    scene = Scene.from_dict(changed(changes))
+    with pytest.raises(SceneError) as caught:
+        build_system(scene)
+    assert caught.value.subject == field
+    assert text in str(caught.value)
+
+
+def test_the_advised_size_is_accepted() -> None:
+    build_system(
+        Scene.from_dict(changed({"body.0.position": [1.0, 0.1251], "mesh.size_body": 0.0141, "mesh.refinements": 1}))
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "subject"),
+    [
+        ({"fluid.backend": "scikit-fen"}, "fluid.backend"),
+        ({"body.0.type": "sphare"}, "body.0.type"),
+        ({"contact.law": "center"}, "contact.law"),
+        ({"contact.detector": "spheer"}, "contact.detector"),
+    ],
+)
+def test_unknown_part_is_refused(changes: dict[str, Any], subject: str) -> None:
+    with pytest.raises(PluginError, match="allowed is one of .* Did you mean") as caught:
+        Scene.from_dict(changed(changes))
+    assert caught.value.subject == subject
+
+
+def test_error_of_a_body_names_its_number() -> None:
+    second = {"type": "ellipsoid", "semi_axes": [0.1, 0.1, 0.1], "density": 1.0, "position": [1.0, 1.0]}
+    with pytest.raises(SceneError) as caught:
+        Scene.from_dict(changed({"body.1": second}))
+    assert caught.value.subject == "body.1.semi_axes"
+
+
+@pytest.mark.parametrize(
+    ("content", "text"), [(None, "No such file"), (b"[scene", "invalid TOML"), (b"a = \xff", "invalid TOML")]
+)
+def test_unreadable_file_is_refused(tmp_path: Path, content: bytes | None, text: str) -> None:
+    path = tmp_path / "scene.toml"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(SceneError, match=text) as caught:
+        load_scene(path)
+    assert caught.value.subject == str(path)
+
+
+def test_folder_is_no_scene(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="directory"):
+        load_scene(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("assignment", "path", "value"),
+    [
+        ("contact.range=0.02", ("contact", "range"), 0.02),
+        ("body.0.density = 1.5", ("body", 0, "density"), 1.5),
+        ("fluid.model=stokes", ("fluid", "model"), "stokes"),
+        ('scene.name="a b"', ("scene", "name"), "a b"),
+        ("fluid.gravity=[0, 1]", ("fluid", "gravity"), [0, 1]),
+        ("body.0.fixed=true", ("body", 0, "fixed"), True),
+        ("new.key=1", ("new", "key"), 1),
+    ],
+)
+def test_override(assignment: str, path: tuple[Any, ...], value: object) -> None:
+    data: Any = copy.deepcopy(DISK)
+    override(data, [assignment])
+    for key in path:
+        data = data[key]
+    assert data == value
+
+
+@pytest.mark.parametrize(
+    ("assignment", "text"),
+    [
+        ("time.end", "key=value"),
+        ("time.end=a=b", "a TOML value, or one word"),
+        ("time.end=1\ntime.step=1", "a TOML value, or one word"),
+        ("body.3.density=1", "a number from 0 to 0"),
+        ("body.x=1", "a number from 0 to 0"),
+        ("time.end.x=1", "a key of a table"),
+    ],
+)
+def test_bad_override_is_refused(assignment: str, text: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        override(copy.deepcopy(DISK), [assignment])
+    assert text in str(caught.value)
+
+
+def test_defaults() -> None:
+    scene = Scene.from_dict(changed({"body.1": {**SECOND, "position": [1, 2]}, "contact": {}}))
+    assert [body.name for body in scene.body] == ["body0", "body1"]
+    assert scene.time.shortest == 0.001 / 1024
+    system = build_system(scene)
+    assert system.law is None
+    assert system.detector.name == "sphere"
+    assert [wall.name for wall in system.walls] == ["left", "right", "bottom", "top"]
+
+
+def test_detector_for_other_shapes() -> None:
+    ellipse = {"type": "ellipsoid", "semi_axes": [0.1, 0.2], "density": 1.0, "position": [1.0, 1.0]}
+    assert build_system(Scene.from_dict(changed({"body.1": ellipse}))).detector.name == "brute_force"
+
+
+def test_numpy_values_are_accepted() -> None:
+    assert Scene.from_dict(changed({"body.0.position": np.array([1.0, 4.0])})) == Scene.from_dict(DISK)
+
+
+def test_system_in_2d() -> None:
+    system = build_system(Scene.from_dict(changed({"body.0.angle": 0.3, "body.0.angular_velocity": 2.0})))
+    area = np.pi * 0.125**2
+    np.testing.assert_allclose(system.mass, [1.25 * area])
+    np.testing.assert_allclose(system.inertia, [[[1.25 * area * 0.125**2 / 2]]])
+    np.testing.assert_allclose(system.weight, [[0.0, -981 * 0.25 * area]])
+    np.testing.assert_array_equal(system.pose.orientation, [[0.3]])
+    np.testing.assert_array_equal(system.twist.angular_velocity, [[2.0]])
+    assert not system.controlled.any()
+
+
+def test_system_in_3d() -> None:
+    system = build_system(Scene.from_dict(in_3d(**{"body.0.orientation": [0, 0, 2, 0], "body.0.velocity": [1, 2, 3]})))
+    np.testing.assert_allclose(system.mass, [1.25 * 4 / 3 * np.pi * 0.125**3])
+    np.testing.assert_array_equal(system.pose.orientation, [[0, 0, 1, 0]])
+    np.testing.assert_array_equal(system.twist.velocity, [[1, 2, 3]])
+    assert system.inertia.shape == (1, 3, 3)
+    assert system.surfaces == ("body0", "left", "right", "bottom", "top", "back", "front")
+    np.testing.assert_array_equal(system.walls[5].normal, [0, 0, -1])
+    np.testing.assert_array_equal(system.walls[5].point[2], 2.0)
+
+
+def test_angle_in_3d_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"body\.0\.angle.*quaternion"):
+        Scene.from_dict(in_3d(**{"body.0.angle": 1.0}))
+
+
+def test_prescribed_motion_is_the_derivative_of_the_displacement() -> None:
+    motion = {"velocity": [1.0, 0.0], "angular_velocity": 0.5, "amplitude": [0.0, 0.2], "frequency": 3.0}
+    system = build_system(Scene.from_dict(changed({"body.0.prescribed": motion, "body.1": {**SECOND, "fixed": True}})))
+    assert system.controlled.all()
+    np.testing.assert_allclose(system.twist.velocity[0], [1.0, 0.2 * 6 * np.pi])
+    step = 1e-6
+    displacement = [0.2 * np.sin(6 * np.pi * t) for t in (0.4 - step, 0.4 + step)]
+    expected = [[1.0, np.diff(displacement)[0] / (2 * step), 0.5], [0.0, 0.0, 0.0]]
+    np.testing.assert_allclose(system.controlled_twist(0.4), expected, rtol=1e-8)
+
+
+def test_later_boundaries_override_earlier_ones() -> None:
+    boundary = [
+        {"on": "all", "type": "symmetry"},
+        {"on": "left", "type": "velocity", "velocity": [0.3, 0.0], "profile": "parabolic"},
+        {"on": "right", "type": "pressure", "pressure": 2.0},
+        {"on": "top", "type": "wall"},
+    ]
+    scene = Scene.from_dict(changed({"boundary": boundary}))
+    left, right, bottom, top = conditions(scene)
+    assert [c.type for c in (left, right, bottom, top)] == ["velocity", "pressure", "slip", "wall"]
+    assert [c.surface for c in (left, right, bottom, top)] == [1, 2, 3, 4]
+    points = np.array([[0.0, 0.0], [0.0, 1.5], [0.0, 3.0]])
+    np.testing.assert_allclose(left.value(0.0, points), [[0, 0], [0.225, 0], [0.3, 0]])
+    np.testing.assert_array_equal(right.value(0.0, points), [2, 2, 2])
+    assert [wall.name for wall in build_system(scene).walls] == ["top"]
+
+
+def test_balanced_inflow_needs_no_outlet() -> None:
+    through = [{"on": face, "type": "velocity", "velocity": [1.0, 0.0]} for face in ("left", "right")]
+    Scene.from_dict(changed({"boundary": through}))
+
+
+def test_mean_of_a_parabolic_profile_in_3d() -> None:
+    inlet = [{"on": "left", "type": "velocity", "velocity": [1, 0, 0], "profile": "parabolic"}]
+    outlet = [{"on": "right", "type": "velocity", "velocity": [4 / 9, 0, 0]}]
+    Scene.from_dict(in_3d(boundary=inlet + outlet))
