@@ -218,7 +218,7 @@ def _derives(part: Any, parent: type[Any]) -> bool:
 def _missing(part: type[Part]) -> str:
     """How to get the packages that a part needs and this machine lacks; empty where it lacks none."""
     missing = [package for package in part.requires if find_spec(package.partition(".")[0]) is None]
-    return " ".join(f"Package {package} is missing: {part.requires[package]}." for package in missing)
+    return " ".join(f"Package {package} is missing: install {part.requires[package]}." for package in missing)
 
 
 def _refuse_doubles(entries: tuple[Entry, ...]) -> None:

@@ -220,7 +220,7 @@ def test_the_advised_size_is_accepted() -> None:
     ],
 )
 def test_unknown_part_is_refused(changes: dict[str, Any], subject: str) -> None:
-    with pytest.raises(PluginError, match="allowed is one of .* Did you mean") as caught:
+    with pytest.raises(PluginError, match=r"allowed is one of .* Did you mean") as caught:
         Scene.from_dict(changed(changes))
     assert caught.value.subject == subject
 
