@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigidfluid.core.rigid import cross, lab_inertia, moment, rotate, rotation_matrices
+
+RANDOM = np.random.default_rng(0)
+QUATERNIONS = Rotation.random(20, rng=RANDOM).as_quat(scalar_first=True)
+VECTORS = RANDOM.normal(size=(20, 3))
+
+
+def test_quaternions_turn_vectors_as_scipy_does() -> None:
+    expected = Rotation.from_quat(QUATERNIONS, scalar_first=True).as_matrix()
+    np.testing.assert_allclose(rotation_matrices(QUATERNIONS), expected, rtol=0, atol=1e-14)
+
+
+def test_an_angle_turns_counter_clockwise() -> None:
+    turned = rotation_matrices(np.array([[np.pi / 2]]))[0] @ [1.0, 0.0]
+    np.testing.assert_allclose(turned, [0.0, 1.0], rtol=0, atol=1e-15)
+
+
+def test_rotate_composes_in_the_lab_frame() -> None:
+    expected = Rotation.from_rotvec(VECTORS) * Rotation.from_quat(QUATERNIONS, scalar_first=True)
+    found = rotation_matrices(rotate(QUATERNIONS, VECTORS))
+    np.testing.assert_allclose(found, expected.as_matrix(), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-300, 1e-12])
+def test_rotate_by_almost_nothing(size: float) -> None:
+    np.testing.assert_allclose(rotate(QUATERNIONS, size * VECTORS), QUATERNIONS, rtol=0, atol=1e-11)
+
+
+def test_quaternions_stay_normalised() -> None:
+    orientation = 1.001 * QUATERNIONS
+    for _ in range(100):
+        orientation = rotate(orientation, 0.1 * VECTORS)
+    np.testing.assert_allclose(np.linalg.norm(orientation, axis=1), 1.0, rtol=0, atol=1e-15)
+
+
+def test_whole_turns_are_kept_in_the_plane() -> None:
+    np.testing.assert_allclose(rotate(np.array([[3.0]]), np.array([[10.0]])), [[13.0]])
+
+
+def test_cross_and_moment_in_the_plane_are_those_of_space() -> None:
+    spin, arm, force = RANDOM.normal(size=(5, 1)), RANDOM.normal(size=(5, 2)), RANDOM.normal(size=(5, 2))
+    lifted = np.hstack([np.zeros((5, 2)), spin])
+    flat = np.zeros((5, 1))
+    arm_3d, force_3d = np.hstack([arm, flat]), np.hstack([force, flat])
+    np.testing.assert_allclose(cross(spin, arm), cross(lifted, arm_3d)[:, :2])
+    np.testing.assert_allclose(moment(arm, force)[:, 0], moment(arm_3d, force_3d)[:, 2])
+
+
+def test_cross_and_moment_in_space_are_right_handed() -> None:
+    x, y, z = np.eye(3)
+    np.testing.assert_array_equal(cross(z, x), y)
+    np.testing.assert_array_equal(moment(x, y), z)
+
+
+@pytest.mark.parametrize("shape", [(4, 7), (1, 1), (0,)])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_cross_and_moment_keep_leading_axes(shape: tuple[int, ...], dimension: int) -> None:
+    freedoms = 1 if dimension == 2 else 3
+    assert cross(np.ones((*shape, freedoms)), np.ones((*shape, dimension))).shape == (*shape, dimension)
+    assert moment(np.ones((*shape, dimension)), np.ones((*shape, dimension))).shape == (*shape, freedoms)
+
+
+def test_lab_inertia_is_that_of_turned_point_masses() -> None:
+    points = RANDOM.normal(size=(6, 3))
+
+    def inertia(positions: np.ndarray) -> np.ndarray:
+        return np.sum(positions**2) * np.eye(3) - positions.T @ positions
+
+    turned = [inertia(points @ rotation.T) for rotation in rotation_matrices(QUATERNIONS)]
+    own = np.tile(inertia(points), (len(QUATERNIONS), 1, 1))
+    np.testing.assert_allclose(lab_inertia(own, QUATERNIONS), turned, rtol=1e-13, atol=1e-13)
+
+
+def test_inertia_in_the_plane_does_not_turn() -> None:
+    np.testing.assert_array_equal(lab_inertia(np.array([[[2.0]]]), np.array([[0.7]])), [[[2.0]]])
+
+
+@pytest.mark.parametrize("components", [1, 4])
+def test_no_bodies_at_all(components: int) -> None:
+    nothing = np.zeros((0, components))
+    dimension, freedoms = (2, 1) if components == 1 else (3, 3)
+    assert rotation_matrices(nothing).shape == (0, dimension, dimension)
+    assert rotate(nothing, np.zeros((0, freedoms))).shape == (0, components)
+    assert lab_inertia(np.zeros((0, freedoms, freedoms)), nothing).shape == (0, freedoms, freedoms)

@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+
+from rigidfluid.core.rigid import moment
+from rigidfluid.core.types import Contacts, Pose
+from rigidfluid.core.wrenches import contact_wrench
+
+WALL = 3
+
+
+def contacts_of(body_a: list[int], body_b: list[int], dimension: int) -> Contacts:
+    random = np.random.default_rng(0)
+    count = len(body_a)
+    normal = random.normal(size=(count, dimension))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    gap, point_b = random.uniform(0.1, 1, count), random.normal(size=(count, dimension))
+    unknown = np.full(count, np.nan)
+    point_a = point_b + gap[:, None] * normal
+    return Contacts(
+        np.array(body_a, dtype=np.int64),
+        np.array(body_b, dtype=np.int64),
+        point_a,
+        point_b,
+        normal,
+        gap,
+        unknown,
+        unknown,
+    )
+
+
+def pose_of(dimension: int) -> Pose:
+    position = np.random.default_rng(1).normal(size=(3, dimension))
+    return Pose(position, np.tile(np.eye(1, 1 if dimension == 2 else 4), (3, 1)))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_bodies_among_themselves_gain_no_momentum(dimension: int) -> None:
+    contacts, pose = contacts_of([0, 0, 1], [1, 2, 2], dimension), pose_of(dimension)
+    wrench = contact_wrench(contacts, contacts.normal * np.array([[1.0], [2.0], [3.0]]), pose)
+    np.testing.assert_allclose(wrench.force.sum(axis=0), 0.0, rtol=0, atol=1e-14)
+    about_origin = moment(pose.position, wrench.force) + wrench.torque
+    np.testing.assert_allclose(about_origin.sum(axis=0), 0.0, rtol=0, atol=1e-14)
+    assert np.linalg.norm(wrench.torque, axis=1).min() > 0.1
+
+
+def test_each_side_takes_force_and_moment_at_its_own_point() -> None:
+    here = np.array([[1.0, 0.0]])
+    there = np.array([[2.0, 0.0]])
+    one = np.array([1.0])
+    contacts = Contacts(np.array([0]), np.array([1]), here, there, here, -one, one, one)
+    pose = Pose(np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 1)))
+    wrench = contact_wrench(contacts, np.array([[0.0, 10.0]]), pose)
+    np.testing.assert_allclose(wrench.force, [[0.0, 10.0], [0.0, -10.0]])
+    np.testing.assert_allclose(wrench.torque, [[10.0], [30.0]])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_wall_takes_its_share_away(dimension: int) -> None:
+    contacts, pose = contacts_of([0, 2], [WALL, WALL + 1], dimension), pose_of(dimension)
+    wrench = contact_wrench(contacts, contacts.normal, pose)
+    np.testing.assert_array_equal(wrench.force, [contacts.normal[0], np.zeros(dimension), contacts.normal[1]])
+    assert wrench.force.shape == (3, dimension)
+
+
+def test_many_contacts_on_one_body_add_up() -> None:
+    contacts = contacts_of([0, 0, 0], [WALL, WALL, WALL], 2)
+    wrench = contact_wrench(contacts, np.ones((3, 2)), pose_of(2))
+    np.testing.assert_allclose(wrench.force, [[3.0, 3.0], [0.0, 0.0], [0.0, 0.0]])
+
+
+def test_no_contacts_no_wrench() -> None:
+    wrench = contact_wrench(contacts_of([], [], 3), np.zeros((0, 3)), pose_of(3))
+    assert not wrench.force.any()
+    assert wrench.torque.shape == (3, 3)
