@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
+import functools
 import importlib.util
 import weakref
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from rigidfluid.core.types import FloatArray
@@ -15,20 +18,41 @@ from rigidfluid.errors import StepRejected
 _ANALYSE_AND_FACTORISE, _SOLVE = 12, 33
 
 
+def _pardiso_settings() -> NDArray[np.int32]:
+    """PARDISO's iparm; no iterative refinement, which the Krylov iteration around the factors does better."""
+    given, nested_dissection, pivots, scaling, matching = 1, 2, 13, 1, 1
+    iparm = np.zeros(64, dtype=np.int32)
+    iparm[[0, 1, 9, 10, 12]] = given, nested_dissection, pivots, scaling, matching
+    return iparm
+
+
+_SETTINGS = _pardiso_settings()
+
+
 class Factors(Protocol):
     """Something that solves A x = b for the matrix that it was made from."""
 
     def solve(self, right_side: FloatArray) -> FloatArray: ...
 
 
+@functools.cache
+def _library() -> Any:
+    """The loaded MKL; pypardiso searches the disk for it each time a solver is made, which takes .3 s."""
+    from pypardiso.pardiso_wrapper import PyPardisoSolver
+
+    return PyPardisoSolver()
+
+
 class _Pardiso:
     """pypardiso's solve() compares the whole matrix at every call; the solve phase alone is what we call here."""
 
     def __init__(self, matrix: sparse.csr_array) -> None:
-        from pypardiso.pardiso_wrapper import PyPardisoError, PyPardisoSolver
+        from pypardiso.pardiso_wrapper import PyPardisoError
 
         self._matrix = matrix
-        self._solver = PyPardisoSolver()
+        self._solver = copy.copy(_library())
+        self._solver.pt = np.zeros_like(self._solver.pt)
+        self._solver.iparm = _SETTINGS.copy()
         self._solver.set_phase(_ANALYSE_AND_FACTORISE)
         try:
             self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
