@@ -134,7 +134,8 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    with Bar(*columns, console=Console(stderr=True)) as bar:
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
         yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
 
@@ -144,7 +145,7 @@ def _print_end(summary: dict[str, Any], folder: Path) -> None:
     _print(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
     _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
     _print(f"rest position: {_figure(summary['rest_position'])}")
-    _print(f"wrote to {folder}: {', '.join(map(str, summary['files']))}")
+    _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 
 
 def _print_features(system: System) -> None:

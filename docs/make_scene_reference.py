@@ -1,0 +1,94 @@
+"""Writes docs/scene.md from the models of a scene and the options of the built-in parts."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rigidfluid.core.scene import Scene
+from rigidfluid.registry import Entry, Registry
+
+PATH = Path(__file__).with_name("scene.md")
+HEAD = """# What a scene may say
+
+Made from the models by `python docs/make_scene_reference.py`; a test fails where it is out of date.
+
+Units are free but must be consistent: all in cm, g and s, or all in m, kg and s. `d` is the dimension; in 2D all is per
+unit depth, so that a density is in mass/length². Keys that nothing reads are refused. On the command line,
+`--set table.key=value` overrides a key; entries of lists are counted from 0, as in `body.0.density`.
+"""
+Schema = dict[str, Any]
+
+
+def reference() -> str:
+    """The whole page, in Markdown."""
+    return "\n".join([HEAD, *_sections(), *_parts()])
+
+
+def _sections() -> Iterator[str]:
+    schema = Scene.model_json_schema()
+    for key, place in schema["properties"].items():
+        listed = place.get("type") == "array"
+        yield from _section(f"[[{key}]]" if listed else f"[{key}]", key, _target(place), schema["$defs"])
+
+
+def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -> Iterator[str]:
+    schema = definitions[name]
+    yield f"## `{title}`\n\n{schema['description']}\n\n{_table(schema)}"
+    for key, place in schema["properties"].items():
+        if target := _target(place):
+            yield from _section(f"[{path}.{key}]", f"{path}.{key}", target, definitions)
+
+
+def _parts() -> Iterator[str]:
+    for entry in Registry.load().entries:
+        schema = entry.part.Options.model_json_schema()
+        if entry.origin.startswith("rigidfluid ") and schema["properties"]:
+            meaning = " ".join(schema["description"].replace("``", "`").split())
+            yield f"## `{_named(entry)}`\n\n{meaning}\n\n{_table(schema)}"
+
+
+def _named(entry: Entry) -> str:
+    table, _, key = entry.kind.field.partition(".")
+    return f'[{table}] {key} = "{entry.name}"'.replace("[body]", "[[body]]")
+
+
+def _table(schema: Schema) -> str:
+    rows = ["| key | type | unit | default | meaning |", "|---|---|---|---|---|"]
+    for key, field in schema["properties"].items():
+        meaning, unit = re.fullmatch(r"(.*?)(?: \[([^]]*)\])?", field.get("description", "")).groups()
+        default = "required" if key in schema.get("required", ()) else _default(field)
+        rows.append(f"| `{key}` | {_type(field)} | {unit or ''} | {default} | {meaning} |")
+    return "\n".join(rows) + "\n"
+
+
+def _default(field: Schema) -> str:
+    return "" if field.get("default") in (None, "") else f"`{json.dumps(field['default'])}`"
+
+
+def _type(field: Schema) -> str:
+    if "const" in field:
+        return f"`{json.dumps(field['const'])}`"
+    if "enum" in field:
+        return ", ".join(f"`{json.dumps(value)}`" for value in field["enum"])
+    if "anyOf" in field:
+        return " or ".join(_type(one) for one in field["anyOf"] if one.get("type") != "null")
+    if field.get("type") == "array":
+        entry = _type(field.get("items") or field["prefixItems"][0])
+        return f"list of {entry.replace('list', 'lists')}" + ("" if entry.endswith("s") else "s")
+    return "table" if "$ref" in field else str(field["type"])
+
+
+def _target(field: Schema) -> str:
+    """Name of the model that a field, or a list's entry, refers to; empty for a plain value."""
+    for one in (field, field.get("items", {}), *field.get("anyOf", ()), *field.get("allOf", ())):
+        if "$ref" in one:
+            return str(one["$ref"]).rpartition("/")[2]
+    return ""
+
+
+if __name__ == "__main__":
+    PATH.write_text(reference(), encoding="utf-8")

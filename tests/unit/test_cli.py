@@ -1,0 +1,180 @@
+"""The command line: what it prints, and how it fails."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+from typer.testing import CliRunner, Result
+
+import rigidfluid.core.run
+from rigidfluid import __version__
+from rigidfluid.cli import app
+
+SCENE = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
+Install = Callable[..., Path]
+
+
+def rigidfluid_command(*arguments: object) -> Result:
+    return CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200"})
+
+
+def rigidfluid_process(*arguments: object, path: Path) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own, with a folder of plug-ins on its path."""
+    command = [sys.executable, "-m", "rigidfluid", *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": str(path), "COLUMNS": "200"}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+
+
+def assert_one_paragraph(stderr: str, *texts: str) -> None:
+    assert stderr.startswith("Error: ")
+    assert stderr.count("\n") == 1
+    assert "Traceback" not in stderr
+    for text in texts:
+        assert text in stderr
+
+
+def test_version() -> None:
+    assert rigidfluid_command("--version").stdout == f"rigidfluid {__version__}\n"
+
+
+def test_no_arguments_shows_help() -> None:
+    result = rigidfluid_command()
+    assert result.exit_code == 0
+    assert "check" in result.stdout
+
+
+def test_nothing_heavy_is_imported_for_help() -> None:
+    code = "import sys, rigidfluid.cli; print(*sys.modules)"
+    modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert not {"numpy", "scipy", "numba", "skfem", "netgen", "mmgpy", "pydantic", "matplotlib", "h5py"} & set(modules)
+
+
+def test_check_says_what_is_on_and_why() -> None:
+    result = rigidfluid_command("check", SCENE)
+    assert result.exit_code == 0
+    lines = [[cell.strip() for cell in line.split("│")[1:-1]] for line in result.stdout.splitlines() if "│" in line]
+    assert ["fluid", "off", "backend 'dry' has no viscosity to work with"] in lines
+    assert ["contact forces", "on", "law 'centre' below a gap of 0.02"] in lines
+    assert ["left_disk", "sphere", "0.03142", "(0, -30.82)", "0.2", "left"] in lines
+
+
+def test_set_changes_the_scene() -> None:
+    result = rigidfluid_command("check", SCENE, "--set", "contact.range=0.03", "--set", "body.1.name=other")
+    assert "below a gap of 0.03" in result.stdout
+    assert "other" in result.stdout
+
+
+def test_schema_is_json_and_fits_the_scene() -> None:
+    schema = json.loads(rigidfluid_command("schema").stdout)
+    jsonschema.validate(tomllib.loads(SCENE.read_text()), schema)
+
+
+def test_plugins_lists_the_four_kinds() -> None:
+    text = rigidfluid_command("plugins").stdout
+    for name in ("fluid backend", "detector", "force law", "body", "scikit-fem", f"rigidfluid {__version__}", "yes"):
+        assert name in text
+
+
+@pytest.mark.parametrize(
+    ("assignment", "texts"),
+    [
+        ("body.0.raduis=1", ("body.0.raduis", "radius", "Did you mean 'radius'?")),
+        ("body.0.density=heavy", ("body.0.density", "'heavy'", "a valid number", "Density of the body")),
+        ("body.0.density=-1", ("body.0.density", "-1", "greater than 0", "Density of the body")),
+        ("body.0.position=[0, 9]", ("body.0.position", "overlaps", "inside the domain", "Move it")),
+        ("body.0.position=[0.7, 0.5]", ("'left_disk' overlaps body 'right_disk'", "clear of all", "Move it")),
+        ("fluid.backend=scikit-fen", ("fluid.backend", "'scikit-fen'", "one of dry", "Did you mean 'scikit-fem'?")),
+        ("fluid", ("--set", "'fluid'", "key=value", "For instance")),
+    ],
+)
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_bad_input(command: str, assignment: str, texts: tuple[str, ...], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.json").write_text("earlier")
+    where = ("--out", out) if command == "run" else ()
+    result = rigidfluid_command(command, SCENE, "--set", assignment, *where)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert_one_paragraph(result.stderr, *texts)
+    assert [path.name for path in out.iterdir()] == ["summary.json"]
+    assert (out / "summary.json").read_text() == "earlier"
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    result = rigidfluid_command("run", tmp_path / "none.toml")
+    assert result.exit_code == 2
+    assert_one_paragraph(result.stderr, "none.toml", "No such file", "readable", "Check path")
+
+
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    result = rigidfluid_command("run", SCENE, "--out", tmp_path / "file" / "out")
+    assert result.exit_code == 2
+    assert_one_paragraph(result.stderr, str(tmp_path / "file"))
+
+
+def test_interruption_tells_how_to_go_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(rigidfluid.core.run, "run", interrupted)
+    result = rigidfluid_command("run", SCENE, "--out", tmp_path)
+    assert result.exit_code == 130
+    assert "--resume" in result.stderr
+
+
+def test_run_ends_with_figures_and_files(tmp_path: Path) -> None:
+    result = rigidfluid_command("run", SCENE, "--set", "time.end=0.001", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    for text in (
+        "highest Reynolds number",
+        "smallest gap: 0.1",
+        "rest position: left_disk (0.32, 0.4995)",
+        "bodies.csv",
+    ):
+        assert text in result.stdout
+    again = rigidfluid_command("run", SCENE, "--set", "time.end=0.002", "--out", tmp_path / "out", "--resume")
+    assert again.exit_code == 0, again.stderr
+    assert "rest position: left_disk (0.34, 0.498)" in again.stdout
+
+
+def test_third_party_law_is_listed_and_runs(install: Install, law: str, tmp_path: Path) -> None:
+    path = install(law)
+    listed = rigidfluid_process("plugins", path=path)
+    row = next(line for line in listed.stdout.splitlines() if "springy 1.2" in line)
+    assert [cell.strip() for cell in row.split("│")[1:-1]] == ["force law", "springy", "springy 1.2", "yes"]
+    contact = 'contact={law="springy", range=0.3}'
+    ran = rigidfluid_process(
+        "run", SCENE, "--set", contact, "--set", "time.end=0.001", "--out", tmp_path / "out", path=path
+    )
+    assert ran.returncode == 0, ran.stderr
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["scene"]["contact"]["law"] == "springy"
+    assert summary["energy"]["contact"] > 0
+
+
+def test_missing_package_is_listed_with_its_hint(install: Install, law: str) -> None:
+    path = install(law.replace('name = "springy"', 'name = "springy"; requires = {"no_such": "no-such of version 3"}'))
+    listed = rigidfluid_process("plugins", path=path)
+    assert "no: Package no_such is missing: install no-such of version 3." in listed.stdout
+    refused = rigidfluid_process("check", SCENE, "--set", "contact.law=springy", path=path)
+    assert refused.returncode == 2
+    assert_one_paragraph(refused.stderr, "contact.law", "springy", "one of centre", "install no-such of version 3")
+    assert rigidfluid_process("check", SCENE, path=path).returncode == 0
+
+
+def test_misspelt_hook_fails_at_start(install: Install, law: str) -> None:
+    result = rigidfluid_process("plugins", path=install(law.replace("rigidfluid_force_laws", "rigidfluid_force_law")))
+    assert result.returncode == 2
+    assert_one_paragraph(
+        result.stderr, "springy 1.2", "'rigidfluid_force_law'", "Did you mean 'rigidfluid_force_laws'?"
+    )
