@@ -24,6 +24,7 @@ from rigidfluid.core.step import CLOSEST_APPROACH, attempt, contact_energy, pred
 from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.summary import summarise
 from rigidfluid.core.system import System, build_system
+from rigidfluid.core.threads import one_openblas_thread
 from rigidfluid.core.types import Wrench
 from rigidfluid.core.writer import Writer, earlier_run
 from rigidfluid.errors import OutputError, RigidfluidError, StepError, StepRejected
@@ -74,13 +75,14 @@ def run(
     StepError
         Where even the shortest step fails; what was computed stays, and can be resumed.
     """
-    simulation = Simulation(scene, None if out is None else Path(out), resume)
-    try:
-        simulation.go(progress)
-    except (RigidfluidError, KeyboardInterrupt) as error:
-        simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
-        raise
-    simulation.finish(status="complete")
+    with one_openblas_thread():
+        simulation = Simulation(scene, None if out is None else Path(out), resume)
+        try:
+            simulation.go(progress)
+        except (RigidfluidError, KeyboardInterrupt) as error:
+            simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+            raise
+        simulation.finish(status="complete")
     return simulation.history
 
 

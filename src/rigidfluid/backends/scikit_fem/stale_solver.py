@@ -12,23 +12,24 @@ from rigidfluid.backends.scikit_fem.factorization import Factors, factorise
 from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
 
-# One factorisation costs about as much as this many iterations (PARDISO, 15,000 to 150,000 unknowns).
+# One factorisation costs about as much as this many iterations (PARDISO, 15,000 to 150,000 unknowns),
 _ITERATIONS_PER_FACTORISATION = 30
+# and with fresh factors, once the step has settled, a solve takes about this many.
+_ITERATIONS_WHEN_FRESH = 4
 _MOST_ITERATIONS = 60
 
 
 class StaleSolver:
     """Solves A x = b for a matrix that changes little from step to step.
 
-    The factors are renewed when the latest solve took more iterations than a step has cost on average since they
-    were made: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
+    The factors are renewed when the iterations beyond those that fresh factors would have taken add up to the price of
+    new ones: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
     """
 
     def __init__(self) -> None:
         self._factors: Factors | None = None
         self._solves = 0
-        self._iterations = 0
-        self._latest = 0
+        self._wasted = 0
 
     def forget(self) -> None:
         """Drop the factors."""
@@ -47,7 +48,7 @@ class StaleSolver:
         """
         if np.linalg.norm(residual) <= tolerance:
             return np.zeros_like(residual), 0
-        if self._factors is None or self._pays_to_renew():
+        if self._factors is None or self._wasted > _ITERATIONS_PER_FACTORISATION:
             self._renew(matrix)
         correction, iterations, converged = self._iterate(apply, residual, tolerance)
         if not converged and self._solves > 0:
@@ -61,17 +62,13 @@ class StaleSolver:
                 "Shorten time.step or loosen fluid.tolerance.",
             )
         self._solves += 1
-        self._iterations += iterations
-        self._latest = iterations
+        self._wasted += max(0, iterations - _ITERATIONS_WHEN_FRESH)
         return correction, iterations
-
-    def _pays_to_renew(self) -> bool:
-        return self._latest * self._solves > _ITERATIONS_PER_FACTORISATION + self._iterations
 
     def _renew(self, matrix: Callable[[], sparse.csr_array]) -> None:
         self._factors = None  # frees the old factors before the new ones need memory
         self._factors = factorise(matrix())
-        self._solves = self._iterations = self._latest = 0
+        self._solves = self._wasted = 0
 
     def _iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
