@@ -202,7 +202,7 @@ def contact_time() -> float:
 
 def test_dry_bounce_gives_all_speed_back() -> None:
     defects = [abs(bounce(count).speeds[-1] / SPEED - 1) for count in (100, 200, 400)]
-    assert defects[-1] < 1e-4
+    assert defects[-1] < 1e-7
     assert np.log2(defects[0] / defects[-1]) / 2 > 1.8
 
 

@@ -7,7 +7,6 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 from pydantic import Field
-from scipy.optimize import minimize
 
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.rigid import rotation_matrices
@@ -117,6 +116,8 @@ def _nearest(body: _Placed, distance: Distance, samples: int) -> tuple[FloatArra
 
 
 def _descend(body: _Placed, distance: Distance, start: FloatArray) -> FloatArray:
+    from scipy.optimize import minimize
+
     size = body.shape.bounding_radius
     tangents = _tangents(body, start)
 

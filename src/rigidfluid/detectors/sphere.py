@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
 
 
@@ -102,6 +101,8 @@ def _near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[
     if len(radii) < 2 or not np.isfinite(reach):
         first, second = np.triu_indices(len(radii), k=1)
         return first.astype(np.int64), second.astype(np.int64)
+    from scipy.spatial import cKDTree
+
     span = max(reach + 2 * float(radii.max()), 0.0)
     # a little more than needed, so that rounding loses no pair that is just at reach
     pairs = cKDTree(position).query_pairs(span * (1 + 1e-12), output_type="ndarray")
@@ -114,7 +115,7 @@ def _unit(line: FloatArray, distance: FloatArray) -> FloatArray:
     return np.where(together, np.eye(1, line.shape[1]), line / np.where(together, 1.0, distance[:, None]))
 
 
-def _take(contacts: Contacts, chosen: IntArray | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Contacts:
+def _take(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
     return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,13 +17,16 @@ from rigidfluid.core.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wa
 class Arrangement:
     """Balls and walls for one test.
 
-    ``radii`` (n,) and ``centres`` (n, d) of the balls [length]; ``wall_points`` and unit ``wall_normals`` (w, d).
+    ``radii`` (n,) and ``centres`` (n, d) of the balls [length]; ``wall_points`` and unit ``wall_normals`` (w, d);
+    ``corners`` (2, d), opposite corners of a box that holds them [length]. Surfaces are numbered: the balls, the walls,
+    then any further faces of the box.
     """
 
     radii: FloatArray
     centres: FloatArray
     wall_points: FloatArray
     wall_normals: FloatArray
+    corners: FloatArray
 
     @property
     def dimension(self) -> int:
@@ -55,6 +58,7 @@ class Arrangement:
             scale * self.centres @ rotation.T + shift,
             scale * self.wall_points @ rotation.T + shift,
             self.wall_normals @ rotation.T,
+            scale * self.corners @ rotation.T + shift,
         )
 
 
@@ -65,7 +69,7 @@ class DetectorContract:
     """
 
     gap_tolerance: ClassVar[float] = 1e-10
-    """Accuracy of gaps, relative to the arrangement of size 1."""
+    """Accuracy of gaps, relative to balls of radius 0.25 to 0.4 [length]."""
     point_tolerance: ClassVar[float] = 1e-6
     """Accuracy of contact points and normals."""
     detects_overlap: ClassVar[bool] = True
@@ -133,7 +137,7 @@ class DetectorContract:
     def test_swapping_two_bodies_flips_the_normal(self, dimension: int) -> None:
         """The same gap, with a and b exchanged."""
         pair = _pair(dimension)
-        swapped = Arrangement(pair.radii[::-1], pair.centres[::-1], pair.wall_points, pair.wall_normals)
+        swapped = replace(pair, radii=pair.radii[::-1], centres=pair.centres[::-1])
         one, other = self.detect(pair, self.reach), self.detect(swapped, self.reach)
         np.testing.assert_allclose(one.gap, other.gap, rtol=0, atol=self.gap_tolerance)
         np.testing.assert_allclose(one.normal, -other.normal, rtol=0, atol=self.point_tolerance)
@@ -189,21 +193,22 @@ class DetectorContract:
 def _apart(dimension: int) -> Arrangement:
     """Four balls of different size in the corner of two walls, most of them within reach of another."""
     centres = np.array([[0.62, 0.51, 0.5], [1.45, 0.63, 0.55], [1.1, 1.35, 0.45], [2.9, 2.7, 0.5]])
-    walls = np.eye(3)[:2]
-    return Arrangement(
-        np.array([0.4, 0.3, 0.35, 0.25]), centres[:, :dimension], np.zeros((2, dimension)), walls[:, :dimension]
-    )
+    return _arrangement([0.4, 0.3, 0.35, 0.25], centres, np.eye(3)[:2], dimension)
 
 
 def _overlapping(dimension: int) -> Arrangement:
-    centres = np.array([[1.0, 0.35, 0.1], [1.5, 0.75, 0.2]])
-    walls = np.eye(3)[1:2]
-    return Arrangement(np.array([0.4, 0.3]), centres[:, :dimension], np.zeros((1, dimension)), walls[:, :dimension])
+    return _arrangement([0.4, 0.3], np.array([[1.0, 0.35, 0.1], [1.5, 0.75, 0.2]]), np.eye(3)[1:2], dimension)
 
 
 def _pair(dimension: int) -> Arrangement:
-    centres = np.array([[0.7, 0.6, 0.5], [1.3, 1.1, 0.8]])
-    return Arrangement(np.array([0.4, 0.3]), centres[:, :dimension], np.zeros((0, dimension)), np.zeros((0, dimension)))
+    return _arrangement([0.4, 0.3], np.array([[0.7, 0.6, 0.5], [1.3, 1.1, 0.8]]), np.zeros((0, 3)), dimension)
+
+
+def _arrangement(radii: list[float], centres: FloatArray, normals: FloatArray, dimension: int) -> Arrangement:
+    """Balls in a box from (0, 0, -1) to (4, 4, 2), all walls through the origin."""
+    corners = np.array([[0.0, 0.0, -1.0], [4.0, 4.0, 2.0]])
+    rows = (centres, np.zeros_like(normals), normals, corners)
+    return Arrangement(np.array(radii), *(row[:, :dimension] for row in rows))
 
 
 def _expected_gaps(arrangement: Arrangement, reach: float) -> dict[tuple[int, int], float]:
