@@ -110,7 +110,7 @@ def netgen_mesh(
     verbosity = meshing.SetMessageImportance(0)
     try:
         geometry = occ.OCCGeometry(fluid_shape(bodies, pose, lower, upper, size_body), dim=len(lower))
-        netgen = geometry.GenerateMesh(maxh=size, grading=growth)
+        netgen = geometry.GenerateMesh(maxh=size, grading=growth, parallel_meshing=False)
     except (occ.OCCException, meshing.NgException, RuntimeError) as error:
         found = f"Netgen failed ({str(error).strip()})"
         raise MeshError("mesh", found, "bodies that neither overlap nor leave the box", REMEDY) from error

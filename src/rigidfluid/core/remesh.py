@@ -23,34 +23,13 @@ GRADATIONS = (1.3, 1.4, 1.2)
 """Ratio of neighbouring edges that MMG may use: the first one, then the others where its mesh is not good."""
 
 GOOD_QUALITY = 0.3
-"""A re-made mesh is good when all its cells are above this quality; a moved mesh is due again when one falls below."""
+"""A re-made mesh is good, and the first one that is good is taken, when all its cells are above this quality."""
 
 WORST_QUALITY = 0.02
 """A re-made mesh with a cell at or below this quality is refused."""
 
 LONGEST_EDGE = 2.5
 """A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
-
-
-def is_due(quality: float, fresh_quality: float, gap: float, fresh_gap: float, sizes: Sizes) -> bool:
-    """Whether a moved mesh should be re-made: q < min(0.3, 0.6 q₀), or gap < gap₀/2 where the gap decides the size.
-
-    Parameters
-    ----------
-    quality, fresh_quality : float
-        Lowest cell quality now, and just after the last re-meshing [1].
-    gap, fresh_gap : float
-        Smallest gap now, and at the last re-meshing [length].
-    sizes : Sizes
-        The wanted size.
-
-    Returns
-    -------
-    bool
-        True if it is due.
-    """
-    resolved = np.clip([gap, fresh_gap], sizes.cells_per_gap * sizes.smallest, sizes.cells_per_gap * sizes.size_body)
-    return bool(quality < min(GOOD_QUALITY, 0.6 * fresh_quality) or resolved[0] < 0.5 * resolved[1])
 
 
 def initial_mesh(
@@ -207,7 +186,8 @@ def with_kept_facets(new: Mesh, old: Mesh, bodies: int) -> Mesh:
     """
     kept = old.markers < bodies
     old_vertices = np.unique(old.facets[kept])
-    distance, place = map(np.atleast_1d, cKDTree(new.points).query(old.points[old_vertices]))
+    found = cKDTree(new.points).query(old.points[old_vertices])
+    distance, place = np.asarray(found[0]), np.asarray(found[1])
     shortest = 1e-9 * np.ptp(old.points, axis=0).max()
     if len(np.unique(place)) < len(place) or np.any(distance > shortest):
         raise MeshError("mesh", "a body vertex lost by MMG", "every body vertex kept", REMEDY)

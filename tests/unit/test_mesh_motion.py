@@ -1,0 +1,110 @@
+"""The harmonic map that moves the mesh."""
+
+import numpy as np
+import pytest
+from mesh_tools import ball, edges_of, ellipsoid, nobody, upright
+
+from rigidfluid.core.frames import to_body_frame
+from rigidfluid.core.mesh_motion import MeshMotion, stiffness
+from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.meshing import generate_mesh
+from rigidfluid.core.types import Pose
+
+LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
+LOW, HIGH = np.full(3, -1.0), np.ones(3)
+
+
+@pytest.fixture(scope="module")
+def disk():
+    pose = upright([1, 2])
+    return [ball(0.125)], pose, generate_mesh([ball(0.125)], pose, LOWER, UPPER, 0.2, 0.02, 0.2)
+
+
+@pytest.fixture(scope="module")
+def ellipse():
+    pose, body = Pose(np.array([[0.9, 1.2]]), np.array([[0.7]])), ellipsoid(0.3, 0.1)
+    return [body], pose, generate_mesh([body], pose, LOWER, UPPER, 0.2, 0.02, 0.2)
+
+
+@pytest.fixture(scope="module")
+def solid():
+    pose, body = upright([0, 0, 0]), ellipsoid(0.5, 0.25, 0.3)
+    return [body], pose, generate_mesh([body], pose, LOW, HIGH, 0.6, 0.2, 0.4)
+
+
+def test_the_reference_pose_gives_the_reference_mesh(ellipse):
+    bodies, pose, mesh = ellipse
+    np.testing.assert_allclose(MeshMotion(mesh, bodies, pose).move(pose), mesh.points, atol=1e-15)
+
+
+def test_a_disk_s_mesh_translates_and_does_not_turn(disk):
+    bodies, pose, mesh = disk
+    moved = MeshMotion(mesh, bodies, pose).move(Pose(pose.position + [0.01, -0.05], np.array([[2.0]])))
+    surface = np.unique(mesh.facets[mesh.markers == 0])
+    np.testing.assert_allclose(moved[surface], mesh.points[surface] + [0.01, -0.05], atol=1e-15)
+
+
+def test_an_ellipse_s_vertices_turn_with_it(ellipse):
+    bodies, pose, mesh = ellipse
+    new = Pose(pose.position + [0.02, 0.03], pose.orientation + 0.2)
+    moved = MeshMotion(mesh, bodies, pose).move(new)
+    surface = np.unique(mesh.facets[mesh.markers == 0])
+    local = to_body_frame(new, 0, moved[surface])
+    np.testing.assert_allclose(local, to_body_frame(pose, 0, mesh.points[surface]), atol=1e-15)
+    assert np.abs(bodies[0].signed_distance(local)).max() < 1e-12
+    assert cell_quality(moved, mesh.cells).min() > 0.2
+
+
+def test_an_ellipsoid_s_vertices_turn_with_it_in_space(solid):
+    bodies, pose, mesh = solid
+    new = Pose(pose.position + [0.05, 0, -0.02], np.array([[np.cos(0.1), 0, np.sin(0.1), 0]]))
+    moved = MeshMotion(mesh, bodies, pose).move(new)
+    surface = np.unique(mesh.facets[mesh.markers == 0])
+    turned = np.array([[np.cos(0.2), 0, np.sin(0.2)], [0, 1, 0], [-np.sin(0.2), 0, np.cos(0.2)]])
+    expected = mesh.points[surface] @ turned.T + [0.05, 0, -0.02]
+    np.testing.assert_allclose(moved[surface], expected, atol=1e-14)
+    assert np.all(cell_volumes(moved, mesh.cells) > 0)
+
+
+@pytest.mark.parametrize("case", ["disk", "solid"])
+def test_vertices_on_the_box_slide_on_their_faces_and_corners_stay(case, request):
+    bodies, pose, mesh = request.getfixturevalue(case)
+    moved = MeshMotion(mesh, bodies, pose).move(Pose(pose.position + 0.04, pose.orientation))
+    on_faces = np.zeros(mesh.points.shape, dtype=bool)
+    for face in range(2 * bodies[0].dimension):
+        on_faces[np.unique(mesh.facets[mesh.markers == 1 + face]), face // 2] = True
+    assert np.array_equal(moved[on_faces], mesh.points[on_faces])
+    assert np.sum(np.all(on_faces, axis=1)) == 2 ** bodies[0].dimension
+    assert np.abs(moved[on_faces.any(axis=1)] - mesh.points[on_faces.any(axis=1)]).max() > 1e-3
+
+
+def test_free_vertices_are_in_balance(ellipse):
+    bodies, pose, mesh = ellipse
+    moved = MeshMotion(mesh, bodies, pose).move(Pose(pose.position + [0.05, 0.1], pose.orientation + 0.1))
+    free = np.setdiff1d(np.arange(len(mesh.points)), mesh.facets)
+    matrix = stiffness(mesh)
+    residual = (matrix @ (moved - mesh.points))[free]
+    assert np.abs(residual).max() < 1e-11 * np.abs(matrix.diagonal()).max()
+
+
+def test_the_stiffness_weighs_each_cell_by_the_papers_tau():
+    mesh = generate_mesh([ball(0.125)], upright([1, 2]), LOWER, UPPER, 0.4, 0.1, 0.5)
+    field = mesh.points @ [0.3, -0.7]
+    volume = cell_volumes(mesh.points, mesh.cells)
+    weight = 1 + (1 - volume.min() / volume.max()) / (volume / volume.max())
+    energy = field @ (stiffness(mesh) @ field)
+    assert energy == pytest.approx(0.58 * np.sum(weight * volume), rel=1e-12)
+
+
+def test_small_cells_keep_their_shape_better_than_large_ones(disk):
+    bodies, pose, mesh = disk
+    moved = MeshMotion(mesh, bodies, pose).move(Pose(pose.position - [0, 0.3], pose.orientation))
+    edges = edges_of(mesh.cells)
+    before, after = (np.linalg.norm(np.diff(p[edges], axis=1)[:, 0], axis=1) for p in (mesh.points, moved))
+    strain = np.abs(after / before - 1)
+    assert strain[before < 0.025].mean() < 0.3 * strain[before > 0.1].mean()
+
+
+def test_a_box_without_bodies_stands_still():
+    mesh = generate_mesh([], nobody(2), LOWER, UPPER, 0.4, 0.1, 0.5)
+    assert np.array_equal(MeshMotion(mesh, [], nobody(2)).move(nobody(2)), mesh.points)

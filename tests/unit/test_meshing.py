@@ -1,0 +1,78 @@
+"""The first mesh, from Netgen."""
+
+import numpy as np
+import pytest
+from mesh_tools import assert_valid, ball, body_facets, edge_lengths, edges_of, ellipsoid, nobody, upright
+
+from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.meshing import generate_mesh
+from rigidfluid.core.types import Pose
+from rigidfluid.errors import MeshError
+
+LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
+LOW, HIGH = np.full(3, -1.0), np.array([1.0, 2.0, 1.0])
+DISK = ball(0.125)
+TILTED = Pose(np.array([[0.9, 1.2]]), np.array([[0.7]]))
+HALF_TURN = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
+
+CASES_2D = [
+    pytest.param([], nobody(2), id="box"),
+    pytest.param([DISK], upright([1, 2]), id="disk"),
+    pytest.param([ellipsoid(0.3, 0.1)], TILTED, id="ellipse"),
+    pytest.param([DISK], upright([1, 0.125 * (1 + 1e-3)]), id="near-wall"),
+    pytest.param([DISK] * 3, upright([1, 2], [1.25 * (1 + 1e-4), 2], [0.5, 0.5]), id="near-each-other"),
+]
+CASES_3D = [
+    pytest.param([], nobody(3), id="box"),
+    pytest.param([ball(0.4, 3)], upright([0, 0, 0.1]), id="sphere"),
+    pytest.param([ellipsoid(0.5, 0.25, 0.3)], Pose(np.array([[0.0, 0.5, 0.0]]), HALF_TURN), id="ellipsoid"),
+    pytest.param([ball(0.4, 3)], upright([0, 0.2, -0.599]), id="near-wall"),
+]
+
+
+@pytest.mark.parametrize(("bodies", "pose"), CASES_2D)
+def test_a_plane_mesh_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
+    mesh = generate_mesh(bodies, pose, LOWER, UPPER, 0.2, 0.02, 0.2)
+    assert capfd.readouterr() == ("", "")
+    assert_valid(mesh, bodies, pose, LOWER, UPPER)
+    edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
+    assert np.all(edge_lengths(mesh.points, edges) <= 0.02)
+    area = np.prod(UPPER - LOWER) - sum(body.volume for body in bodies)
+    assert cell_volumes(mesh.points, mesh.cells).sum() == pytest.approx(area, rel=1e-3)
+
+
+@pytest.mark.parametrize(("bodies", "pose"), CASES_3D)
+def test_a_mesh_in_space_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
+    mesh = generate_mesh(bodies, pose, LOW, HIGH, 0.6, 0.15, 0.4)
+    assert capfd.readouterr() == ("", "")
+    assert_valid(mesh, bodies, pose, LOW, HIGH)
+    edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
+    assert np.all(edge_lengths(mesh.points, edges) <= 0.15)
+    volume = np.prod(HIGH - LOW) - sum(body.volume for body in bodies)
+    assert cell_volumes(mesh.points, mesh.cells).sum() == pytest.approx(volume, rel=5e-3)
+
+
+def test_a_mesh_away_from_everything_has_good_cells():
+    mesh = generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.02, 0.2)
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.5
+
+
+def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
+    first, second = (generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.02, 0.2) for _ in range(2))
+    assert np.array_equal(first.points, second.points)
+    assert np.array_equal(first.cells, second.cells)
+    assert body_facets(first, 1) == body_facets(second, 1)
+
+
+@pytest.mark.parametrize(
+    ("positions", "body"),
+    [
+        pytest.param([[1, 2], [1.1, 2]], 0, id="overlap"),
+        pytest.param([[1, 2], [1, 2]], 1, id="one-inside-another"),
+        pytest.param([[1, 2], [0.1, 2]], 1, id="through-a-wall"),
+        pytest.param([[1, 2], [1, 3.5]], 1, id="outside"),
+    ],
+)
+def test_an_impossible_geometry_is_refused_by_the_body_s_name(positions, body):
+    with pytest.raises(MeshError, match=f"^body.{body}.position"):
+        generate_mesh([DISK, DISK], upright(*positions), LOWER, UPPER, 0.2, 0.02, 0.2)

@@ -1,0 +1,228 @@
+"""Re-meshing around bodies that move towards walls and each other, and away again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mesh_tools import (
+    assert_valid,
+    ball,
+    body_facets,
+    box_walls,
+    edge_lengths,
+    edges_of,
+    ellipsoid,
+    nobody,
+    upright,
+)
+
+from rigidfluid.core import remesh as module
+from rigidfluid.core.mesh_motion import MeshMotion
+from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.meshing import generate_mesh
+from rigidfluid.core.refine_surface import refine_surface
+from rigidfluid.core.remesh import initial_mesh, remesh
+from rigidfluid.core.size_field import Sizes, wanted_size
+from rigidfluid.core.types import Mesh, Pose
+from rigidfluid.errors import MeshError
+
+LOWER, UPPER = np.zeros(2), np.array([2.0, 6.0])
+RADIUS, DISK = 0.125, ball(0.125)
+FINE, COARSE = Sizes(size=0.15, size_body=0.01), Sizes(size=0.15, size_body=0.025)
+APPROACH = np.geomspace(0.2, 5e-4, 60)
+THERE_AND_BACK = np.concatenate([APPROACH, APPROACH[::-1]])
+
+
+def bridges(mesh, bodies, first, others):
+    """How many edges join one body directly to other surfaces, where both are closer than its facets are long."""
+    edges = edges_of(mesh.cells)
+    mine, theirs = (np.isin(edges, mesh.facets[np.isin(mesh.markers, which)]) for which in ([first], others))
+    joins = (mine & theirs[:, ::-1]).any(axis=1)
+    return int(np.sum(edge_lengths(mesh.points, edges[joins]) < 2e-2))
+
+
+def drive(bodies, poses, gap, sizes, upper=UPPER):
+    """Move along poses, re-mesh when a cell gets bad or the gap has halved; meshes made, with their pose and gap."""
+    walls = box_walls(LOWER, upper, len(bodies))
+    mesh, start = initial_mesh(bodies, poses[0], LOWER, upper, walls, sizes), poses[0]
+    motion, made = MeshMotion(mesh, bodies, start), [(mesh, start, gap(start))]
+    for pose in poses[1:]:
+        points = motion.move(pose)
+        quality = cell_quality(points, mesh.cells).min()
+        assert quality > 0.05
+        if quality < 0.3 or (gap(pose) < 0.5 * made[-1][2] and gap(pose) < sizes.cells_per_gap * sizes.size_body):
+            moved = Mesh(points, mesh.cells, mesh.facets, mesh.markers)
+            mesh = remesh(moved, bodies, pose, walls, sizes)
+            assert_valid(mesh, bodies, pose, LOWER, upper)
+            unsplit = refine_surface(moved, bodies, pose, walls, sizes)
+            assert body_facets(mesh, len(bodies)) == body_facets(unsplit, len(bodies))
+            motion = MeshMotion(mesh, bodies, pose)
+            made.append((mesh, pose, gap(pose)))
+    return made
+
+
+def assert_good_and_bounded(made, most_cells):
+    assert min(cell_quality(mesh.points, mesh.cells).min() for mesh, _, _ in made) > 0.3
+    assert max(len(mesh.cells) for mesh, _, _ in made) < most_cells
+
+
+@pytest.mark.parametrize(("sizes", "most_cells"), [(FINE, 3600), (COARSE, 2700)])
+def test_a_disk_falls_to_the_wall_and_leaves_it(sizes, most_cells):
+    poses = [upright([1, RADIUS + gap]) for gap in THERE_AND_BACK]
+    made = drive([DISK], poses, lambda pose: pose.position[0, 1] - RADIUS, sizes)
+    assert_good_and_bounded(made, most_cells)
+    assert min(gap for _, _, gap in made) < 1.2e-3
+    assert all(bridges(mesh, 1, 0, [3]) == 0 for mesh, _, _ in made)
+    assert len(made) < 20
+
+
+def test_two_disks_meet_and_part():
+    poses = [upright([1 - RADIUS - gap / 2, 3], [1 + RADIUS + gap / 2, 3]) for gap in THERE_AND_BACK]
+    made = drive([DISK, DISK], poses, lambda pose: np.diff(pose.position[:, 0])[0] - 2 * RADIUS, FINE)
+    assert_good_and_bounded(made, 5600)
+    assert min(gap for _, _, gap in made) < 1.2e-3
+    assert all(bridges(mesh, 2, 0, [1]) == 0 for mesh, _, _ in made)
+
+
+def test_an_ellipse_turns_near_a_wall():
+    def lowest(pose):
+        return pose.position[0, 1] - np.hypot(
+            0.1 * np.sin(pose.orientation[0, 0]), 0.05 * np.cos(pose.orientation[0, 0])
+        )
+
+    poses = [Pose(np.array([[1.0, 0.102]]), np.array([[angle]])) for angle in np.linspace(0, 2 * np.pi, 160)]
+    made = drive([ellipsoid(0.1, 0.05)], poses, lowest, FINE, np.array([2.0, 2.0]))
+    assert_good_and_bounded(made, 2200)
+    assert min(gap for _, _, gap in made) < 4.2e-3
+    assert all(bridges(mesh, 1, 0, [3]) == 0 for mesh, _, _ in made)
+
+
+def test_the_cells_grow_again_after_the_wall_is_left_but_the_kept_facets_stay():
+    poses = [upright([1, RADIUS + gap]) for gap in THERE_AND_BACK]
+    made = drive([DISK], poses, lambda pose: pose.position[0, 1] - RADIUS, FINE)
+    facets = [np.sum(mesh.markers == 0) for mesh, _, _ in made]
+    wall = [np.sum(mesh.markers == 3) for mesh, _, _ in made]
+    assert np.all(np.diff(facets) >= 0)
+    assert wall[-1] < 0.5 * max(wall)
+
+
+def test_a_sphere_moves_towards_a_wall_in_space():
+    lower, upper, body, sizes = np.full(3, -1.0), np.ones(3), ball(0.4, 3), Sizes(0.6, 0.2, growth=0.4)
+    walls = box_walls(lower, upper, 1)
+    mesh = initial_mesh([body], upright([0, 0, 0]), lower, upper, walls, sizes)
+    assert_valid(mesh, [body], upright([0, 0, 0]), lower, upper)
+    pose = upright([0, 0, -0.3])
+    moved = replace(mesh, points=MeshMotion(mesh, [body], upright([0, 0, 0])).move(pose))
+    halfway = remesh(moved, [body], pose, walls, sizes)
+    assert_valid(halfway, [body], pose, lower, upper)
+    assert body_facets(halfway, 1) == body_facets(moved, 1)
+    near = upright([0, 0, -0.45])
+    moved = replace(halfway, points=MeshMotion(halfway, [body], pose).move(near))
+    split = remesh(moved, [body], near, walls, sizes)
+    assert_valid(split, [body], near, lower, upper)
+    assert np.sum(split.markers == 0) > np.sum(moved.markers == 0)
+    assert cell_quality(split.points, split.cells).min() > 0.15
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_box_without_bodies_is_meshed(dimension):
+    lower, upper = np.zeros(dimension), np.ones(dimension)
+    walls = box_walls(lower, upper, 0)
+    mesh = initial_mesh([], nobody(dimension), lower, upper, walls, Sizes(0.3, 0.1))
+    assert_valid(mesh, [], nobody(dimension), lower, upper)
+
+
+def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
+    pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.01, 0.2)
+    split = refine_surface(mesh, [DISK], pose, walls, FINE)
+    assert np.array_equal(split.points[: len(mesh.points)], mesh.points)
+    edges = np.sort(split.facets[split.markers == 0], axis=1)
+    wanted = wanted_size(split.points[edges].mean(axis=1), [DISK], pose, walls, FINE)
+    assert np.all(edge_lengths(split.points, edges) <= 1.5 * wanted)
+    upper_half = {facet for facet in body_facets(mesh, 1) if min(point[1] for point in facet[1]) > RADIUS}
+    assert upper_half <= body_facets(split, 1)
+    assert np.all(cell_volumes(split.points, split.cells) > 0)
+
+
+def test_the_wanted_size_follows_its_formula():
+    pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
+    points = np.array([[1.0, 2 * RADIUS + 2e-3], [1.0, 0.9], [1.0, 5.9], [1.0, 1e-3], [1.1, 0.0]])
+    beside = np.hypot(0.1, RADIUS + 2e-3) - RADIUS
+    expected = [0.01, 0.01 + 0.2 * (0.9 - 2 * RADIUS - 2e-3), 0.15, 1e-3, 0.01 + 0.2 * beside]
+    np.testing.assert_allclose(wanted_size(points, [DISK], pose, walls, FINE), expected, rtol=1e-12)
+    closest = wanted_size(np.array([[1.0, 0.0]]), [DISK], upright([1, RADIUS + 1e-6]), walls, FINE)
+    assert closest == 0.01 / 64
+
+
+def test_two_bodies_make_a_gap_and_walls_that_do_not_repel_make_none():
+    pair, between = upright([1, 3], [1.251, 3]), np.array([[1.1255, 3.0]])
+    assert wanted_size(between, [DISK] * 2, pair, [], FINE) == pytest.approx(5e-4, rel=1e-9)
+    near_wall = upright([1, RADIUS + 2e-3])
+    assert wanted_size(np.array([[1.0, 1e-3]]), [DISK], near_wall, [], FINE) > 0.01
+
+
+def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
+    pose, walls = upright([1, RADIUS + 0.01]), box_walls(LOWER, UPPER, 1)
+    first, second = (initial_mesh([DISK], pose, LOWER, UPPER, walls, FINE) for _ in range(2))
+    assert np.array_equal(first.points, second.points)
+    assert np.array_equal(first.cells, second.cells)
+
+
+def spoil_lose_a_facet(mesh):
+    return replace(mesh, cells=mesh.cells[np.sum(np.isin(mesh.cells, mesh.facets[0]), axis=1) < 2])
+
+
+def spoil_move_a_body_vertex(mesh):
+    points = mesh.points.copy()
+    points[mesh.facets[mesh.markers == 0][0, 0]] += 1e-5
+    return replace(mesh, points=points)
+
+
+def spoil_invert_a_cell(mesh):
+    inside = np.setdiff1d(mesh.cells, mesh.facets)[0]
+    points = mesh.points.copy()
+    points[inside] += 1.0
+    return replace(mesh, points=points)
+
+
+def spoil_take_a_wall_for_another(mesh):
+    markers = mesh.markers.copy()
+    markers[np.flatnonzero(markers == 3)[5]] = 1
+    return replace(mesh, markers=markers)
+
+
+SPOILERS = [spoil_lose_a_facet, spoil_move_a_body_vertex, spoil_invert_a_cell, spoil_take_a_wall_for_another]
+
+
+@pytest.mark.parametrize("spoil", SPOILERS)
+def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
+    pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    good = module.run_mmg
+    monkeypatch.setattr(module, "run_mmg", lambda *arguments: spoil(good(*arguments)))
+    with pytest.raises(MeshError):
+        remesh(mesh, [DISK], pose, walls, COARSE)
+
+
+def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
+    pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    monkeypatch.setattr(module, "run_mmg", lambda mesh, *_: mesh)
+    with pytest.raises(MeshError):
+        remesh(mesh, [DISK], pose, walls, COARSE)
+
+
+def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
+    pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    good, gradations = module.run_mmg, []
+
+    def fails_once(mesh, bodies, metric, gradation):
+        gradations.append(gradation)
+        made = good(mesh, bodies, metric, gradation)
+        return spoil_lose_a_facet(made) if len(gradations) == 1 else made
+
+    monkeypatch.setattr(module, "run_mmg", fails_once)
+    assert_valid(remesh(mesh, [DISK], pose, walls, COARSE), [DISK], pose, LOWER, UPPER)
+    assert len(set(gradations)) == 2
