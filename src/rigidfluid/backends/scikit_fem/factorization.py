@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import ctypes
 import functools
 import importlib.util
 import weakref
@@ -16,6 +17,7 @@ from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
 
 _ANALYSE_AND_FACTORISE, _SOLVE = 12, 33
+_SAME_BITS = 2  # MKL_CBWR_AUTO
 
 
 def _pardiso_settings() -> NDArray[np.int32]:
@@ -37,10 +39,15 @@ class Factors(Protocol):
 
 @functools.cache
 def _library() -> Any:
-    """The loaded MKL; pypardiso searches the disk for it each time a solver is made, which takes .3 s."""
+    """The loaded MKL, told to give the same bits each time it is asked the same (conditional numerical reproducibility).
+
+    Kept, because pypardiso searches the disk for it each time a solver is made, which takes .3 s.
+    """
     from pypardiso.pardiso_wrapper import PyPardisoSolver
 
-    return PyPardisoSolver()
+    solver = PyPardisoSolver()
+    solver.libmkl.MKL_CBWR_Set(ctypes.c_int(_SAME_BITS))
+    return solver
 
 
 class _Pardiso:
