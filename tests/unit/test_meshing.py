@@ -1,12 +1,15 @@
 """The first mesh, from Netgen."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mesh_tools import assert_valid, ball, body_facets, edge_lengths, edges_of, ellipsoid, nobody, upright
 
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.types import Pose
+from rigidfluid.core.topology import check_mesh
+from rigidfluid.core.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
@@ -76,3 +79,21 @@ def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
 def test_an_impossible_geometry_is_refused_by_the_body_s_name(positions, body):
     with pytest.raises(MeshError, match=f"^body.{body}.position"):
         generate_mesh([DISK, DISK], upright(*positions), LOWER, UPPER, 0.2, 0.02, 0.2)
+
+
+def test_a_mesh_with_an_unlisted_facet_is_refused():
+    mesh = generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.05, 0.2)
+    with pytest.raises(MeshError, match="marked facets"):
+        check_mesh(replace(mesh, facets=mesh.facets[1:], markers=mesh.markers[1:]), quality=0.0)
+    inside = np.array([mesh.cells[0, :2]])
+    with pytest.raises(MeshError, match="marked facets"):
+        check_mesh(replace(mesh, facets=np.concatenate([mesh.facets[1:], inside])), quality=0.0)
+
+
+def test_a_mesh_with_a_bad_cell_is_refused_and_the_place_named():
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.01]])
+    edges = np.array([[0, 1], [0, 2], [1, 2]])
+    sliver = Mesh(points, np.array([[0, 1, 2]]), edges, np.zeros(3, dtype=np.int64))
+    check_mesh(sliver, quality=0.01)
+    with pytest.raises(MeshError, match=r"^mesh near \[0.6667 0.0033\]: found a cell of quality 0.0173"):
+        check_mesh(sliver, quality=0.02)

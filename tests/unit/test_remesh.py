@@ -205,6 +205,22 @@ def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
         remesh(mesh, [DISK], pose, walls, COARSE)
 
 
+def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
+    pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    good = module.run_mmg
+
+    def without_corner(*arguments):
+        made = good(*arguments)
+        made.points[np.argmin(np.linalg.norm(made.points, axis=1))] += [0.0, 1e-6]
+        return made
+
+    monkeypatch.setattr(module, "run_mmg", without_corner)
+    monkeypatch.setattr(module, "on_box_faces", lambda new, *_: new.points.copy())
+    with pytest.raises(MeshError, match="volume"):
+        remesh(mesh, [DISK], pose, walls, COARSE)
+
+
 def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
     mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
