@@ -275,7 +275,7 @@ def test_override(assignment: str, path: tuple[Any, ...], value: object) -> None
         ("time.end", "key=value"),
         ("time.end=a=b", "a TOML value, or one word"),
         ("time.end=1\ntime.step=1", "a TOML value, or one word"),
-        ("body.3.density=1", "a number from 0 to 0"),
+        ("body.1.density=1", "a number from 0 to 0"),
         ("body.x=1", "a number from 0 to 0"),
         ("time.end.x=1", "a key of a table"),
     ],
