@@ -122,6 +122,12 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
     assert_one_paragraph(result.stderr, str(tmp_path / "file"))
 
 
+def test_nothing_to_resume(tmp_path: Path) -> None:
+    result = rigidfluid_command("run", SCENE, "--out", tmp_path, "--resume")
+    assert result.exit_code == 2
+    assert_one_paragraph(result.stderr, str(tmp_path))
+
+
 def test_interruption_tells_how_to_go_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
