@@ -9,6 +9,7 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import jsonschema
 import pytest
@@ -148,9 +149,24 @@ def test_run_ends_with_figures_and_files(tmp_path: Path) -> None:
         "bodies.csv",
     ):
         assert text in result.stdout
+    assert "Reynolds" not in result.stdout
     again = rigidfluid_command("run", SCENE, "--set", "time.end=0.002", "--out", tmp_path / "out", "--resume")
     assert again.exit_code == 0, again.stderr
     assert "rest position: left_disk (0.34, 0.498)" in again.stdout
+
+
+def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    figures = {
+        "reynolds_solid_density": 17.4567,
+        "reynolds": 13.9654,
+        "smallest_gap": None,
+        "rest_position": [1.0, 2.0],
+    }
+    history = SimpleNamespace(summary=figures | {"files": [tmp_path / "bodies.csv"]})
+    monkeypatch.setattr(rigidfluid.core.run, "run", lambda *_, **__: history)
+    text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
+    assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
+    assert "rest position: (1, 2)" in text
 
 
 def test_third_party_law_is_listed_and_runs(install: Install, law: str, tmp_path: Path) -> None:
