@@ -143,7 +143,6 @@ def test_run_ends_with_figures_and_files(tmp_path: Path) -> None:
     result = rigidfluid_command("run", SCENE, "--set", "time.end=0.001", "--out", tmp_path / "out")
     assert result.exit_code == 0, result.stderr
     for text in (
-        "highest Reynolds number",
         "smallest gap: 0.1",
         "rest position: left_disk (0.32, 0.4995)",
         "bodies.csv",
