@@ -1,4 +1,4 @@
-"""On a moving mesh, with flows that P2–P1 represents exactly, only time is left to err: order 2, and 0 for uniform flow."""
+"""On a moving mesh, with flows that P2–P1 represents exactly, only time errs: order 2, and 0 for uniform flow."""
 
 import numpy as np
 import pytest

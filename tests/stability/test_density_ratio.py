@@ -41,7 +41,7 @@ def test_added_mass_is_a_little_more_than_that_of_an_unbounded_fluid():
 
 @pytest.mark.parametrize("density", [1e-3, 0.1, 0.5, 1.25, 10.0, 1e3])
 def test_first_acceleration(density):
-    """Within the first 10⁻⁵ s no boundary layer has grown yet; the mesh must be fine, or the no-slip cells drag fluid along."""
+    """Before a boundary layer grows; the mesh is fine there, or its no-slip cells would drag fluid along."""
     bodies = fall(density, steps=2, step=5e-6, size_body=0.005, growth=0.4).bodies
     acceleration = (bodies["vy"][2] - bodies["vy"][0]) / 1e-5
     expected = -(density - 1.0) * AREA * GRAVITY / (density * AREA + added_mass())

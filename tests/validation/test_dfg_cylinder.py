@@ -1,4 +1,4 @@
-"""Steady flow past a cylinder in a channel, Re 20: Schäfer & Turek's benchmark 2D-1 (doi:10.1007/978-3-322-89849-4_39)."""
+"""Steady flow past a cylinder at Re 20: Schäfer & Turek, benchmark 2D-1 (doi:10.1007/978-3-322-89849-4_39)."""
 
 import pytest
 from falling import SCENES

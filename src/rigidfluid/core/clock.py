@@ -29,22 +29,22 @@ class Clock:
 
     def tick_at(self, time: float) -> int:
         """The tick nearest to a time."""
-        return round(time / self.step * 2**self.levels)
+        return round(time / self.step * (1 << self.levels))
 
     def time(self, tick: int) -> float:
         """The time of a tick."""
-        return self.step * (tick / 2**self.levels)
+        return self.step * (tick / (1 << self.levels))
 
     def ticks(self, level: int) -> int:
         """Length of a step of this level."""
-        return int(2 ** (self.levels - level))
+        return 1 << (self.levels - level)
 
     def size(self, level: int) -> float:
         """Size of a step of this level [time]."""
-        return self.step / 2**level
+        return self.step / (1 << level)
 
     def longest_level(self, tick: int, previous: int | None) -> int:
-        """The longest step that may start at ``tick``: on its own grid, not past the end, at most twice the last one."""
+        """The longest step that may start at ``tick``: on its grid, not past the end, at most twice the last one."""
         level = 0 if previous is None else max(0, previous - 1)
         while level < self.levels and (tick % self.ticks(level) or tick + self.ticks(level) > self.last_tick):
             level += 1

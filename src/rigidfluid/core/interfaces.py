@@ -175,7 +175,7 @@ class FluidBackend(Part):
 
     @abstractmethod
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Velocity (N, d) and pressure (N,) at ``points`` (N, d); a point just outside takes the nearest cell's value."""
+        """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
     @abstractmethod
     def unknowns(self, mesh: Mesh | None) -> int:

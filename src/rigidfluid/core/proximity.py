@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.system import System
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 
 _MOST_PAIRS = 1000
 
@@ -31,6 +31,6 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     return select(near, near.gap <= law_range), gaps
 
 
-def select(contacts: Contacts, chosen: FloatArray) -> Contacts:
+def select(contacts: Contacts, chosen: BoolArray) -> Contacts:
     """The contacts where ``chosen`` (m,) is true."""
     return replace(contacts, **{name: getattr(contacts, name)[chosen] for name in Contacts.__slots__})

@@ -141,7 +141,8 @@ class Simulation:
             self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before, self.rejected, self.remeshes, self._times = 0.0, 0, 0, ()
+        self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
+        self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover)
         self._writer = None if out is None else Writer(out, self.scene.dimension, None)
@@ -205,7 +206,7 @@ class Simulation:
         return self.state.tick >= min(due, self.clock.last_tick)
 
     def _output(self) -> None:
-        """Write fields and a checkpoint; backends drop their caches, written or not, so that results never depend on it."""
+        """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
         self._times = (*self._times, self.clock.time(self.state.tick))
         self.system.backend.forget()
         if self._writer is None:

@@ -31,8 +31,11 @@ class Past:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """An accepted state. ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh
-    is now (None without a fluid); the wrenches are those that led to the present twist."""
+    """An accepted state.
+
+    ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
+    a fluid); the wrenches are those that led to the present twist.
+    """
 
     tick: int
     count: int
@@ -48,3 +51,13 @@ class State:
     hydrodynamic_wrench: Wrench
     contact_wrench: Wrench
     ledger: Ledger
+
+    @property
+    def past_twist(self) -> Twist | None:
+        """Twist one step earlier, None at the start."""
+        return None if self.past is None else self.past.twist
+
+    @property
+    def past_step(self) -> float | None:
+        """Size of the latest step [time], None at the start."""
+        return None if self.past is None else self.past.step

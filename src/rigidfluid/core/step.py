@@ -22,8 +22,7 @@ CLOSEST_APPROACH = 0.5
 
 def predicted(state: State, size: float) -> Pose:
     """Where the bodies are after a step of this size [time]."""
-    past = state.past
-    return predict_pose(state.pose, state.twist, past and past.twist, size, past and past.step)
+    return predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
 
 
 def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int) -> State:
@@ -84,19 +83,18 @@ def _contact_wrench(system: System, contacts: Contacts, pose: Pose) -> Wrench:
 def _step(
     system: System, state: State, time: float, size: float, pose: Pose, mesh: Mesh | None, pushed: Wrench
 ) -> Step:
-    past = state.past
-    derivative = derivative_weights(size, past and past.step)
+    derivative = derivative_weights(size, state.past_step)
     poses, twists = [state.pose], [state.twist]
-    if past is not None:
-        poses.append(past.pose)
-        twists.append(past.twist)
+    if state.past is not None:
+        poses.append(state.past.pose)
+        twists.append(state.past.twist)
     wrench = Wrench(pushed.force + system.weight, pushed.torque)
     mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     return Step(
         time=time,
         size=size,
         derivative=derivative,
-        extrapolation=extrapolation_weights(size, past and past.step),
+        extrapolation=extrapolation_weights(size, state.past_step),
         pose=pose,
         points=None if mesh is None else mesh.points,
         mass_matrix=mass_matrix,

@@ -38,9 +38,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "wall_time_per_stage": simulation.watch.seconds,
         **reynolds_numbers(simulation.scene, system, history),
         "smallest_gap": float(np.min(bodies["gap"])),
-        "rest_position": {
-            system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())
-        },
+        "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         "energy": energy_balance(history),
     }
 

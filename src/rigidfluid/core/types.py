@@ -48,7 +48,7 @@ class Wrench:
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """Pairs of surfaces that are near each other; ``normal`` points from b to a, so ``point_a = point_b + gap * normal``.
+    """Pairs of surfaces near each other; ``normal`` points from b to a, so ``point_a = point_b + gap * normal``.
 
     ``body_a`` (m,) is always a body, ``body_b`` (m,) a body or a wall (its surface number);
     ``point_a``, ``point_b``, ``normal`` (m, d); ``gap`` (m,) [length], negative where they overlap;

@@ -19,7 +19,9 @@ _TYPES = {"f4": "Float32", "f8": "Float64", "i8": "Int64", "u1": "UInt8"}
 def write_vtu(path: Path, fields: Fields) -> None:
     """Write quadratic cells with ``velocity`` (3 components) and ``pressure`` at their nodes."""
     nodes, cells = len(fields.points), len(fields.cells)
-    root = ET.Element("VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64")
+    root = ET.Element(
+        "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
+    )
     piece = ET.SubElement(
         ET.SubElement(root, "UnstructuredGrid"), "Piece", NumberOfPoints=str(nodes), NumberOfCells=str(cells)
     )
@@ -45,9 +47,10 @@ def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
 
 
 def _array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
-    components = {} if values.ndim == 1 else {"NumberOfComponents": str(values.shape[1])}
     kind = _TYPES[values.dtype.str[1:]]
-    element = ET.SubElement(parent, "DataArray", type=kind, Name=name, format="binary", **components)
+    element = ET.SubElement(parent, "DataArray", type=kind, Name=name, format="binary")
+    if values.ndim == 2:
+        element.set("NumberOfComponents", str(values.shape[1]))
     raw = np.ascontiguousarray(values).tobytes()
     element.text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
 

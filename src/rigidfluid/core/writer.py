@@ -43,7 +43,7 @@ class Writer:
             if resumed is None:
                 _clear(out)
             self._tables = {
-                name: Table(out / f"{name}.csv", names, resumed and resumed.lengths[name])
+                name: Table(out / f"{name}.csv", names, None if resumed is None else resumed.lengths[name])
                 for name, names in columns(dimension).items()
             }
 

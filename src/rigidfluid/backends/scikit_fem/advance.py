@@ -113,18 +113,15 @@ def _solve(
         return result
 
     def matrix() -> sparse.csr_array:
-        embedding = sparse.csr_array((constraint.unknowns,) * 2)
-        coupled = constraint.transposed @ assembled.matrix @ constraint.operator
-        if inertia.nnz:
-            entries = inertia.tocoo()
-            place = (entries.row + twists.start, entries.col + twists.start)
-            embedding = sparse.coo_array((entries.data, place), shape=embedding.shape).tocsr()
-        return coupled + embedding
+        entries = inertia.tocoo()
+        place = (entries.row + twists.start, entries.col + twists.start)
+        embedded = sparse.coo_array((entries.data, place), shape=(constraint.unknowns,) * 2)
+        return sparse.csr_array(constraint.transposed @ assembled.matrix @ constraint.operator + embedded)
 
     right_side = constraint.transposed @ (assembled.load - assembled.matrix @ given)
     right_side[twists] += step.load[~step.controlled].ravel()
     guess = _guess(discretisation, assembled, fluid, step, twists)
-    scale = np.linalg.norm(right_side)
+    scale = float(np.linalg.norm(right_side))
     correction, iterations = solver.solve(apply, matrix, right_side - apply(guess), tolerance * scale)
     return guess + correction, iterations
 

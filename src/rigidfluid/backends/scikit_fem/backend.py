@@ -18,7 +18,6 @@ from rigidfluid.core.types import (
     Pose,
     Step,
     Twist,
-    Wrench,
 )
 
 
@@ -86,7 +85,8 @@ class ScikitFem(FluidBackend):
         return velocity, np.einsum("ni,ni->n", coordinates, fluid["pressure"][space.cell_vertices[cell]])
 
     def unknowns(self, mesh: Mesh | None) -> int:
-        return self._discretisations.on(_given(mesh), np.zeros(self.problem.bodies, dtype=bool)).constraint.unknowns
+        everyone_free = np.zeros(self.problem.bodies, dtype=bool)
+        return int(self._discretisations.on(_given(mesh), everyone_free).constraint.unknowns)
 
     def forget(self) -> None:
         self._solver.forget()

@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 _WEIGHTS = {2: np.array([1.0, 1.0, 4.0]) / 6.0, 3: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 3.0}
 
 
-def pressure_load(
-    discretisation: Discretisation, mesh: Mesh, node_points: FloatArray, time: float
-) -> FloatArray:
+def pressure_load(discretisation: Discretisation, mesh: Mesh, node_points: FloatArray, time: float) -> FloatArray:
     """-∫ p n·v over the pressure faces (n out of the fluid), (nodes, d)."""
     load = np.zeros_like(node_points)
     for condition, nodes, weight in _faces(discretisation, mesh, node_points, "pressure"):
@@ -62,10 +60,14 @@ def _faces(
     for condition in discretisation.problem.conditions:
         facets = mesh.facets[mesh.markers == condition.surface]
         if condition.type == kind and len(facets):
-            yield condition, space.facet_nodes(facets), np.outer(_measure(node_points, facets), _WEIGHTS[space.dimension])
+            yield (
+                condition,
+                space.facet_nodes(facets),
+                np.outer(_measure(node_points, facets), _WEIGHTS[space.dimension]),
+            )
 
 
 def _measure(points: FloatArray, facets: IntArray) -> FloatArray:
     edges = points[facets[:, 1:]] - points[facets[:, :1]]
     gram = edges @ np.swapaxes(edges, 1, 2)
-    return np.sqrt(np.linalg.det(gram)) / (1.0 if facets.shape[1] == 2 else 2.0)
+    return np.asarray(np.sqrt(np.linalg.det(gram)) / (1.0 if facets.shape[1] == 2 else 2.0))

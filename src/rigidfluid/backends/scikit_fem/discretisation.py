@@ -20,9 +20,7 @@ class Discretisation:
     space: TaylorHood
     constraint: Constraint
 
-    def matrix_data(
-        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray
-    ) -> FloatArray:
+    def matrix_data(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> FloatArray:
         """Entries of the P2–P1 matrix K on vertices at ``points``; see :func:`kernels.assemble`."""
         space, t = self.space, self.space.tables
         data: FloatArray = kernels.assemble(
@@ -34,9 +32,7 @@ class Discretisation:
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function, (nodes, d)."""
         space = self.space
-        load: FloatArray = kernels.apply_mass(
-            points, space.cell_vertices, space.cell_nodes, space.tables.mass, field
-        )
+        load: FloatArray = kernels.apply_mass(points, space.cell_vertices, space.cell_nodes, space.tables.mass, field)
         return load
 
     def kinetic_energy(self, points: FloatArray, velocity: FloatArray) -> float:

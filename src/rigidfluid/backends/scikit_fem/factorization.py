@@ -39,7 +39,7 @@ class Factors(Protocol):
 
 @functools.cache
 def _library() -> Any:
-    """The loaded MKL, told to give the same bits each time it is asked the same (conditional numerical reproducibility).
+    """The loaded MKL, told to answer the same question with the same bits (conditional numerical reproducibility).
 
     Kept, because pypardiso searches the disk for it each time a solver is made, which takes .3 s.
     """

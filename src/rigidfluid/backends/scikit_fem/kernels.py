@@ -3,6 +3,9 @@
 ``points`` (N, d) vertices, ``cell_vertices`` (M, d+1), ``cell_nodes`` (M, b); fields on nodes are (nodes, d).
 """
 
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
 from __future__ import annotations
 
 import numpy as np
@@ -10,7 +13,7 @@ from numba import njit
 
 
 @njit(cache=True)
-def slots(indptr, indices, unknowns):  # type: ignore[no-untyped-def]
+def slots(indptr, indices, unknowns):
     """Position in a sorted CSR matrix of each entry of each cell's matrix, (M, width, width)."""
     cells, width = unknowns.shape
     result = np.empty((cells, width, width), np.int32)
@@ -24,7 +27,7 @@ def slots(indptr, indices, unknowns):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def inverse_jacobian(points, vertices, inverse):  # type: ignore[no-untyped-def]
+def inverse_jacobian(points, vertices, inverse):
     """Write the inverse of ∂x/∂X of one cell into ``inverse`` (d, d) and return |det ∂x/∂X|."""
     d = points.shape[1]
     a = np.empty((d, d))
@@ -48,7 +51,7 @@ def inverse_jacobian(points, vertices, inverse):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def physical_gradients(reference, inverse, gradient):  # type: ignore[no-untyped-def]
+def physical_gradients(reference, inverse, gradient):
     """Write ∂φ/∂x = J⁻ᵀ ∂φ/∂X at one quadrature point into ``gradient`` (b, d)."""
     count, d = reference.shape
     for i in range(count):
@@ -61,7 +64,7 @@ def physical_gradients(reference, inverse, gradient):  # type: ignore[no-untyped
 
 @njit(cache=True)
 def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity, advection,
-             value, reference_gradient, weight, flat_gradient, flat_linear, flat_weight, mass):  # type: ignore[no-untyped-def]  # fmt: skip
+             value, reference_gradient, weight, flat_gradient, flat_linear, flat_weight, mass):  # fmt: skip
     """Entries (size,) of the matrix of: inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
 
     ``advection`` a (nodes, d) already holds the density.
@@ -120,7 +123,7 @@ def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity,
 
 
 @njit(cache=True)
-def apply_mass(points, cell_vertices, cell_nodes, mass, field):  # type: ignore[no-untyped-def]
+def apply_mass(points, cell_vertices, cell_nodes, mass, field):
     """(field, v) for every nodal test function v, (nodes, d)."""
     d = points.shape[1]
     inverse = np.empty((d, d))
@@ -135,7 +138,7 @@ def apply_mass(points, cell_vertices, cell_nodes, mass, field):  # type: ignore[
 
 
 @njit(cache=True)
-def strain_square(points, cell_vertices, cell_nodes, flat_gradient, flat_weight, velocity):  # type: ignore[no-untyped-def]
+def strain_square(points, cell_vertices, cell_nodes, flat_gradient, flat_weight, velocity):
     """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over the mesh; times the viscosity it is the dissipation."""
     d = points.shape[1]
     b = cell_nodes.shape[1]

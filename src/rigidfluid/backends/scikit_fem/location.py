@@ -11,9 +11,7 @@ _CANDIDATES = (8, 64, 512)
 _INSIDE = -1e-10
 
 
-def locate(
-    points: FloatArray, cells: IntArray, targets: FloatArray
-) -> tuple[IntArray, FloatArray]:
+def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
     """The cell of each target (N,) and its barycentric coordinates there (N, d+1).
 
     A target outside the mesh takes the cell that it is least outside of, with its coordinates moved inside.

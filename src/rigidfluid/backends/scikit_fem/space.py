@@ -80,7 +80,7 @@ class TaylorHood:
     @property
     def unknowns(self) -> int:
         """Velocity and pressure unknowns before any constraint."""
-        return self.nodes * self.dimension + self.vertices
+        return int(self.nodes * self.dimension + self.vertices)
 
     def _build_sparsity(self) -> None:
         d = self.dimension

@@ -28,10 +28,10 @@ def transfer(
     vertex_cells = source.cell_vertices[cell[: space.vertices]]
 
     def on_nodes(field: FloatArray) -> FloatArray:
-        return np.einsum("ni,nid->nd", quadratic, field[source.cell_nodes[cell]])
+        return np.asarray(np.einsum("ni,nid->nd", quadratic, field[source.cell_nodes[cell]]))
 
     def on_vertices(field: FloatArray) -> FloatArray:
-        return np.einsum("ni,ni...->n...", linear, field[vertex_cells])
+        return np.asarray(np.einsum("ni,ni...->n...", linear, field[vertex_cells]))
 
     moved = dict(fluid)
     moved["points_previous"] = new.points - on_vertices(old.points - fluid["points_previous"])
