@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.types import Advance, Fields, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.types import Advance, BoolArray, Fields, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
 
 
 class Dry(FluidBackend):
@@ -57,8 +57,8 @@ class Dry(FluidBackend):
         """Zero velocity (N, d) and zero pressure (N,) at ``points`` (N, d)."""
         return np.zeros_like(points), np.zeros(len(points))
 
-    def unknowns(self, mesh: Mesh | None) -> int:
-        """None of the fluid."""
+    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+        """None: each body's equation stands alone."""
         return 0
 
     def forget(self) -> None:

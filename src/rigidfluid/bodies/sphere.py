@@ -16,7 +16,7 @@ from rigidfluid.core.types import FloatArray
 class SphereOptions(PartOptions):
     """Keys of a ``[[body]]`` table of type ``sphere``: ``radius`` [length]."""
 
-    radius: float = Field(gt=0, allow_inf_nan=False)
+    radius: float = Field(gt=0, description="Radius of the ball [length]")
 
 
 class Sphere(Body):

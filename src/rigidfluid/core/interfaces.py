@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict
 
 from rigidfluid.core.types import (
     Advance,
+    BoolArray,
     Contacts,
     Fields,
     FloatArray,
@@ -30,7 +31,7 @@ from rigidfluid.core.types import (
 class PartOptions(BaseModel):
     """The keys that an implementation reads from its table of the scene file; this one reads none."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Part(ABC):
@@ -178,8 +179,8 @@ class FluidBackend(Part):
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
     @abstractmethod
-    def unknowns(self, mesh: Mesh | None) -> int:
-        """How many unknowns one step solves for on this mesh."""
+    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+        """How many unknowns one step solves for on this mesh, with these bodies' twists given."""
 
     @abstractmethod
     def forget(self) -> None:

@@ -24,6 +24,7 @@ def generate_mesh(
     size: float,
     size_body: float,
     growth: float,
+    finer: Sequence[tuple[FloatArray, float]] = (),
 ) -> Mesh:
     """Mesh of the box minus the bodies, {x : lower < x < upper} \\ ∪ B_i, vertices of a body's facets on its surface.
 
@@ -41,6 +42,8 @@ def generate_mesh(
         Longest edge allowed on a body [length].
     growth : float
         How fast the cell size grows with the distance to a body [1].
+    finer : sequence of ((d,) array, float)
+        Points where the edges must be shorter, and how long they may be [length].
 
     Returns
     -------
@@ -55,7 +58,7 @@ def generate_mesh(
     refuse_bodies_outside(bodies, pose, lower, upper)
     asked = np.full(len(bodies), size_body)
     for _ in range(ATTEMPTS):
-        mesh = netgen_mesh(bodies, pose, lower, upper, size, asked, growth)
+        mesh = netgen_mesh(bodies, pose, lower, upper, size, asked, growth, finer)
         refuse_touching_bodies(mesh, len(bodies))
         check_mesh(mesh, quality=0.0)
         excess = longest_edges(mesh, len(bodies)) / size_body
@@ -103,6 +106,7 @@ def netgen_mesh(
     size: float,
     size_body: FloatArray,
     growth: float,
+    finer: Sequence[tuple[FloatArray, float]],
 ) -> Mesh:
     """One call of Netgen; ``size_body`` (n,) is the target edge length on each body [length]."""
     from netgen import meshing, occ
@@ -110,7 +114,10 @@ def netgen_mesh(
     verbosity = meshing.SetMessageImportance(0)
     try:
         geometry = occ.OCCGeometry(fluid_shape(bodies, pose, lower, upper, size_body), dim=len(lower))
-        netgen = geometry.GenerateMesh(maxh=size, grading=growth, parallel_meshing=False)
+        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False)
+        for point, length in finer:
+            parameters.RestrictH(*in_space(point), h=float(length))
+        netgen = geometry.GenerateMesh(parameters)
     except (occ.OCCException, meshing.NgException, RuntimeError) as error:
         found = f"Netgen failed ({str(error).strip()})"
         raise MeshError("mesh", found, "bodies that neither overlap nor leave the box", REMEDY) from error

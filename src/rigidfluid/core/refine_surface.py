@@ -42,18 +42,27 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
         The same mesh if no edge is too long.
     """
     while True:
-        edges, owner = body_edges(mesh, len(bodies))
-        middle = mesh.points[edges].mean(axis=1)
-        length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
-        long = length > LONGEST * wanted_size(middle, bodies, pose, walls, sizes)
-        if not np.any(long):
+        edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes)
+        if not len(edges):
             return mesh
-        chosen = one_per_cell(mesh.cells, edges[long], length[long], len(mesh.points))
-        new = middle[long][chosen]
-        for i in np.unique(owner[long][chosen]):
-            mine = owner[long][chosen] == i
-            new[mine] = to_world(pose, i, bodies[i].closest_point(to_body_frame(pose, i, new[mine])))
-        mesh = bisect(mesh, edges[long][chosen], new)
+        length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+        chosen = one_per_cell(mesh.cells, edges, length, len(mesh.points))
+        mesh = bisect(mesh, edges[chosen], middles[chosen])
+
+
+def long_edges(
+    mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Body edges (E, 2) longer than LONGEST times the wanted size, their middles put on the surface (E, d), that size."""
+    edges, owner = body_edges(mesh, len(bodies))
+    middles = mesh.points[edges].mean(axis=1)
+    wanted = wanted_size(middles, bodies, pose, walls, sizes)
+    long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > LONGEST * wanted
+    edges, owner, middles = edges[long], owner[long], middles[long]
+    for i in np.unique(owner):
+        local = to_body_frame(pose, i, middles[owner == i])
+        middles[owner == i] = to_world(pose, i, bodies[i].closest_point(local))
+    return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
 
 
 def body_edges(mesh: Mesh, count: int) -> tuple[IntArray, IntArray]:

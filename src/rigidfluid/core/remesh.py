@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from rigidfluid.core.interfaces import Body
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.refine_surface import refine_surface
+from rigidfluid.core.refine_surface import long_edges, refine_surface
 from rigidfluid.core.size_field import Sizes, wanted_size
 from rigidfluid.core.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.types import FloatArray, IntArray, Mesh, Pose, Wall
@@ -24,6 +24,9 @@ GRADATIONS = (1.3, 1.4, 1.2)
 
 GOOD_QUALITY = 0.3
 """A re-made mesh is good, and the first one that is good is taken, when all its cells are above this quality."""
+
+GENERATIONS = 8
+"""How often the first mesh is generated, each time finer where a body's edges are too long for the gap they face."""
 
 WORST_QUALITY = 0.02
 """A re-made mesh with a cell at or below this quality is refused."""
@@ -60,7 +63,13 @@ def initial_mesh(
     MeshError
         When no valid mesh can be made.
     """
-    mesh = generate_mesh(bodies, pose, lower, upper, sizes.size, sizes.size_body, sizes.growth)
+    finer: list[tuple[FloatArray, float]] = []
+    for _ in range(GENERATIONS):
+        mesh = generate_mesh(bodies, pose, lower, upper, sizes.size, sizes.size_body, sizes.growth, finer)
+        _, points, wanted = long_edges(mesh, bodies, pose, walls, sizes)
+        if not len(points):
+            break
+        finer += zip(points, wanted, strict=True)
     return remesh(mesh, bodies, pose, walls, sizes)
 
 

@@ -29,7 +29,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "seed": simulation.scene.scene.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
-        "unknowns": system.backend.unknowns(state.mesh),
+        "unknowns": system.backend.unknowns(state.mesh, system.controlled),
         "cells": 0 if state.mesh is None else len(state.mesh.cells),
         "steps": state.count,
         "rejected_steps": simulation.rejected,

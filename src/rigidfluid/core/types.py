@@ -95,6 +95,7 @@ class BoundaryCondition:
 
     ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity; ``slip``: no flow through, no
     traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress is -p, no flow along the face.
+    ``normal`` (d,) points into the fluid.
     """
 
     surface: int

@@ -18,7 +18,9 @@ Distance = Callable[[FloatArray], FloatArray]
 class BruteForceOptions(PartOptions):
     """Keys of the ``[contact]`` table with detector ``brute_force``: ``samples``, points on each surface [1]."""
 
-    samples: int = Field(default=1000, ge=10)
+    samples: int = Field(
+        default=1000, ge=10, description="Points tried on each surface before the nearest are refined [1]"
+    )
 
 
 class _Placed(NamedTuple):

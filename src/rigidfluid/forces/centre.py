@@ -19,8 +19,10 @@ class CentreOptions(PartOptions):
     ``epsilon_wall``: the same for walls [length³/force]; ``epsilon`` where it is not given.
     """
 
-    epsilon: float = Field(gt=0, allow_inf_nan=False)
-    epsilon_wall: float | None = Field(default=None, gt=0, allow_inf_nan=False)
+    epsilon: float = Field(gt=0, description="Stiffness parameter ε; smaller is stiffer [length^3/force]")
+    epsilon_wall: float | None = Field(
+        default=None, gt=0, description="The same against walls; epsilon if not given [length^3/force]"
+    )
 
 
 class CentreLaw(ForceLaw):

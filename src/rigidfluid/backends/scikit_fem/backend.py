@@ -10,6 +10,7 @@ from pydantic import Field
 from rigidfluid.core.interfaces import FluidBackend, PartOptions
 from rigidfluid.core.types import (
     Advance,
+    BoolArray,
     Fields,
     FloatArray,
     FluidProblem,
@@ -24,7 +25,7 @@ from rigidfluid.core.types import (
 class ScikitFemOptions(PartOptions):
     """Keys of ``[fluid]`` that this backend reads."""
 
-    tolerance: float = Field(1e-9, gt=0, lt=1, description="relative residual of each step's linear system [1]")
+    tolerance: float = Field(1e-9, gt=0, lt=1, description="Relative residual of each step's linear system [1]")
 
 
 class ScikitFem(FluidBackend):
@@ -84,9 +85,8 @@ class ScikitFem(FluidBackend):
         velocity = np.einsum("ni,nid->nd", quadratic_basis(coordinates), fluid["velocity"][space.cell_nodes[cell]])
         return velocity, np.einsum("ni,ni->n", coordinates, fluid["pressure"][space.cell_vertices[cell]])
 
-    def unknowns(self, mesh: Mesh | None) -> int:
-        everyone_free = np.zeros(self.problem.bodies, dtype=bool)
-        return int(self._discretisations.on(_given(mesh), everyone_free).constraint.unknowns)
+    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+        return int(self._discretisations.on(_given(mesh), controlled).constraint.unknowns)
 
     def forget(self) -> None:
         self._solver.forget()

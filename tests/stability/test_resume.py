@@ -1,0 +1,55 @@
+"""A run that is killed and resumed equals an uninterrupted one to the last bit."""
+
+import random
+import subprocess
+import sys
+import time
+
+import pytest
+from falling import SCENES
+
+COMMAND = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml")]
+SETTINGS = ["mesh.size_body=0.04", "mesh.size=0.3", "time.step=0.004", "time.end=0.2", "body.0.position=[1.0, 0.6]"]
+RESULTS = ["bodies.csv", "contacts.csv", "energy.csv", "fields.pvd"]
+
+
+def command(out, *options):
+    return [*COMMAND, "--out", str(out), *options, *(word for setting in SETTINGS for word in ("--set", setting))]
+
+
+def run_until_killed(out, seconds, *options):
+    """Kill the run ``seconds`` after its first output has appeared; False where it was done before that."""
+    process = subprocess.Popen(command(out, *options), stdout=subprocess.DEVNULL)
+    while not (out / "state.h5").exists() and process.poll() is None:
+        time.sleep(0.05)
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return True
+    return False
+
+
+def contents(out):
+    files = [out / name for name in RESULTS] + sorted((out / "fields").iterdir())
+    return {file.relative_to(out).as_posix(): file.read_bytes() for file in files}
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    out = tmp_path_factory.mktemp("uninterrupted")
+    start = time.monotonic()
+    subprocess.run(command(out), check=True, stdout=subprocess.DEVNULL)
+    return contents(out), time.monotonic() - start
+
+
+def test_killed_twice_and_resumed_twice(uninterrupted, tmp_path):
+    expected, duration = uninterrupted
+    out = tmp_path / "killed"
+    draw = random.Random(0)
+    killed = [run_until_killed(out, draw.uniform(0.0, 0.2) * duration)]
+    killed.append(run_until_killed(out, draw.uniform(0.4, 0.6) * duration, "--resume"))
+    subprocess.run(command(out, "--resume"), check=True, stdout=subprocess.DEVNULL)
+    assert killed[0], "the first run ended before it could be killed"
+    assert contents(out) == expected
