@@ -89,7 +89,7 @@ BAD = {
     ),
     "unknown contact key": ({"contact.epsilonn": 1.0}, "contact.epsilonn", "epsilon_wall", "Did you mean 'epsilon'?"),
     "missing key": ({"body.0.density": DELETE}, "body.0.density: found nothing", "Density", "Add the key 'density'"),
-    "missing option": ({"body.0.radius": DELETE}, "body.0.radius: found nothing", "a value", "Add the key 'radius'"),
+    "missing option": ({"body.0.radius": DELETE}, "body.0.radius: found nothing", "Radius", "Add the key 'radius'"),
     "wrong type": ({"time.end": "soon"}, "time.end: found 'soon'", "a valid number", "ends"),
     "a truth value is no number": ({"time.end": True}, "time.end: found True", "a valid number", "ends"),
     "text is no number": ({"time.end": "1.0"}, "time.end: found '1.0'", "a valid number", "ends"),

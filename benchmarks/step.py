@@ -1,0 +1,123 @@
+"""One accepted step beside the same-size P2–P1 step of NGSolve with UMFPACK, in one run.
+
+Ours: move the mesh, detect, assemble, solve for fluid and body, measure energies; nothing is written; factors are
+renewed as in any run, and their share is in the mean. NGSolve's: assemble the semi-implicit Navier–Stokes matrix on
+the same mesh, factorise, solve, as one does on a mesh that moves at every step.
+
+    python benchmarks/step.py [--steps 40] [--sizes 15 45 150] [--json FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import json
+import pstats
+import time
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from ngsolve_step import time_ngsolve
+
+import rigidfluid
+from rigidfluid.core.run import Simulation
+from rigidfluid.core.threads import one_openblas_thread
+
+SCENE = Path(__file__).parents[1] / "scenes" / "falling_disk.toml"
+# Thousands of unknowns: (size, size_body, growth) of the mesh.
+MESHES = {15: (0.12, 0.0100, 0.150), 45: (0.07, 0.0060, 0.093), 150: (0.038, 0.0033, 0.0513)}
+WARM_UP = 6  # steps: the first ones start the time scheme and compile
+# Function → what it does, for the profile.
+STAGES = {
+    "matrix_data": "assemble matrix",
+    "mass_times": "assemble load, kinetic energy",
+    "dissipation": "dissipation",
+    "place": "fill P",
+    "factorise": "factorise",
+    "matrix": "build the coupled matrix for it",
+    "_iterate": "iterate",
+    "moved": "move mesh",
+    "surroundings": "detect",
+    "adapted": "adapt mesh",
+}
+
+
+def simulation(thousands: int) -> Simulation:
+    """The falling disk at about that many thousand unknowns, under way."""
+    data = tomllib.loads(SCENE.read_text(encoding="utf-8"))
+    size, size_body, growth = MESHES[thousands]
+    data["mesh"].update(size=size, size_body=size_body, growth=growth)
+    data["time"]["step"] = 0.1 * size_body
+    data["output"]["every"] = 10.0
+    run = Simulation(rigidfluid.Scene.from_dict(data), None, False)
+    for _ in range(WARM_UP):
+        run._advance()
+    return run
+
+
+def time_ours(run: Simulation, steps: int) -> tuple[float, dict[str, float]]:
+    """Seconds per step, and of them per stage."""
+    profile = cProfile.Profile()
+    start = time.perf_counter()
+    profile.enable()
+    for _ in range(steps):
+        run._advance()
+    profile.disable()
+    seconds = (time.perf_counter() - start) / steps
+    stages: dict[str, float] = {}
+    for (file, _, name), (_, _, _, cumulative, _) in pstats.Stats(profile).stats.items():  # type: ignore[attr-defined]
+        if name in STAGES and "rigidfluid" in file:
+            stages[STAGES[name]] = stages.get(STAGES[name], 0.0) + cumulative / steps
+    return seconds, stages
+
+
+def compare(thousands: int, steps: int) -> dict[str, Any]:
+    """One row: both on the same mesh, one after the other."""
+    with one_openblas_thread():
+        run = simulation(thousands)
+        seconds, stages = time_ours(run, steps)
+        mesh = run.state.mesh
+        assert mesh is not None
+        unknowns = run.system.backend.unknowns(mesh, run.system.controlled)
+        problem = run.system.backend.problem
+        assert problem is not None
+        theirs, their_unknowns = time_ngsolve(mesh, problem, run.clock.size(0), max(3, steps // 10))
+    return {
+        "unknowns": unknowns,
+        "cells": len(mesh.cells),
+        "seconds": seconds,
+        "stages": stages,
+        "ngsolve_unknowns": their_unknowns,
+        "ngsolve_seconds": sum(theirs.values()),
+        "ngsolve_stages": theirs,
+        "ratio": seconds / sum(theirs.values()),
+    }
+
+
+def show(row: dict[str, Any]) -> None:
+    """Print one row and both profiles."""
+    print(f"\n{row['unknowns']} unknowns, {row['cells']} cells (NGSolve: {row['ngsolve_unknowns']} unknowns)")
+    print(f"  rigidfluid {row['seconds']:.4f} s a step, NGSolve {row['ngsolve_seconds']:.4f} s: {row['ratio']:.2f}")
+    for title in ("stages", "ngsolve_stages"):
+        for stage, seconds in sorted(row[title].items(), key=lambda item: -item[1]):
+            print(f"    {title:15s} {stage:36s} {1000 * seconds:9.2f} ms")
+
+
+def main() -> None:
+    """Read the arguments, measure, print, and write the figures where asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--steps", type=int, default=40)
+    parser.add_argument("--sizes", type=int, nargs="+", default=list(MESHES), choices=list(MESHES))
+    parser.add_argument("--json", type=Path)
+    arguments = parser.parse_args()
+    rows = []
+    for thousands in arguments.sizes:
+        rows.append(compare(thousands, arguments.steps))
+        show(rows[-1])
+    if arguments.json:
+        arguments.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
