@@ -132,6 +132,18 @@ def test_a_box_without_bodies_is_meshed(dimension):
     assert_valid(mesh, [], nobody(dimension), lower, upper)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 1.25e-4])
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("shift", [0.0, 0.003, 0.011])
+def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
+    alone, pair = upright([1 + shift, RADIUS + gap]), upright([1 + shift, 3], [1 + shift + 2 * RADIUS + gap, 3])
+    bodies, pose = [DISK] * count, alone if count == 1 else pair
+    mesh = initial_mesh(bodies, pose, LOWER, UPPER, box_walls(LOWER, UPPER, count), COARSE)
+    assert_valid(mesh, bodies, pose, LOWER, UPPER)
+    assert bridges(mesh, count, 0, [3 if count == 1 else 1]) == 0 or gap < 2 * COARSE.smallest
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.2
+
+
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
     mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.01, 0.2)

@@ -42,7 +42,7 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
         The same mesh if no edge is too long.
     """
     while True:
-        edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes)
+        edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes, LONGEST)
         if not len(edges):
             return mesh
         length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
@@ -51,13 +51,14 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
 
 
 def long_edges(
-    mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
+    mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes, longest: float
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Body edges (E, 2) longer than LONGEST times the wanted size, their middles put on the surface (E, d), that size."""
+    """Body edges (E, 2) longer than ``longest`` times the wanted size; on the surface above their middles (E, d), the
+    points and the size wanted there (E,)."""
     edges, owner = body_edges(mesh, len(bodies))
     middles = mesh.points[edges].mean(axis=1)
     wanted = wanted_size(middles, bodies, pose, walls, sizes)
-    long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > LONGEST * wanted
+    long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
     edges, owner, middles = edges[long], owner[long], middles[long]
     for i in np.unique(owner):
         local = to_body_frame(pose, i, middles[owner == i])

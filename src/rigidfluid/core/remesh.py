@@ -25,6 +25,9 @@ GRADATIONS = (1.3, 1.4, 1.2)
 GOOD_QUALITY = 0.3
 """A re-made mesh is good, and the first one that is good is taken, when all its cells are above this quality."""
 
+BISECTABLE = 4.0
+"""Body edges at most this many times longer than wanted are left to bisection; longer ones may cut through the gap."""
+
 GENERATIONS = 8
 """How often the first mesh is generated, each time finer where a body's edges are too long for the gap they face."""
 
@@ -66,7 +69,7 @@ def initial_mesh(
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
         mesh = generate_mesh(bodies, pose, lower, upper, sizes.size, sizes.size_body, sizes.growth, finer)
-        _, points, wanted = long_edges(mesh, bodies, pose, walls, sizes)
+        _, points, wanted = long_edges(mesh, bodies, pose, walls, sizes, BISECTABLE)
         if not len(points):
             break
         finer += zip(points, wanted, strict=True)
