@@ -111,10 +111,8 @@ def _nearest(body: _Placed, distance: Distance, samples: int) -> tuple[FloatArra
     """The point of the surface where ``distance`` is least, and that least value."""
     surface = body.sample_surface(samples)
     start = surface[np.argmin(distance(surface))]
-    for _ in range(2):
-        # a second search from the end of the first, because a simplex may collapse too early
-        start = _descend(body, distance, start)
-    return start, float(distance(start[None])[0])
+    nearest = _descend(body, distance, start)
+    return nearest, float(distance(nearest[None])[0])
 
 
 def _descend(body: _Placed, distance: Distance, start: FloatArray) -> FloatArray:
