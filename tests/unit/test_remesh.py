@@ -141,7 +141,25 @@ def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
     mesh = initial_mesh(bodies, pose, LOWER, UPPER, box_walls(LOWER, UPPER, count), COARSE)
     assert_valid(mesh, bodies, pose, LOWER, UPPER)
     assert bridges(mesh, count, 0, [3 if count == 1 else 1]) == 0 or gap < 2 * COARSE.smallest
-    assert cell_quality(mesh.points, mesh.cells).min() > 0.2
+    assert cell_quality(mesh.points, mesh.cells).min() > (0.3 if gap > 2 * COARSE.smallest else 0.1)
+
+
+def test_a_tip_that_nears_a_wall_fast_is_refined_after_the_cells_around_it_are_improved():
+    body, upper, sizes = ellipsoid(0.1, 0.05), np.array([2.0, 2.0]), Sizes(0.15, 0.02)
+    walls = box_walls(LOWER, upper, 1)
+
+    def tip_above_wall(angle, gap):
+        return Pose(np.array([[1.0, np.hypot(0.1 * np.sin(angle), 0.05 * np.cos(angle)) + gap]]), np.array([[angle]]))
+
+    start, end = tip_above_wall(1.2, 0.03), tip_above_wall(1.3, 0.0075)
+    mesh = initial_mesh([body], start, LOWER, upper, walls, sizes)
+    moved = replace(mesh, points=MeshMotion(mesh, [body], start).move(end))
+    assert cell_quality(moved.points, moved.cells).min() > 0.1
+    refined = refine_surface(moved, [body], end, walls, sizes)
+    assert cell_volumes(refined.points, refined.cells).min() < 0
+    new = remesh(moved, [body], end, walls, sizes)
+    assert_valid(new, [body], end, LOWER, upper)
+    assert cell_quality(new.points, new.cells).min() > 0.3
 
 
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():

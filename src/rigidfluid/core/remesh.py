@@ -79,7 +79,8 @@ def initial_mesh(
 def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
     """Re-mesh the fluid to the wanted size h(x); body vertices keep their coordinates to the last bit.
 
-    Body facets are kept too, except that those too long for the gap they face are bisected first.
+    Body facets are kept too, except that those too long for the gap they face are bisected first. Where that would
+    invert a cell, the cells are improved around the unbisected facets before.
 
     Parameters
     ----------
@@ -104,14 +105,28 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall]
     MeshError
         When MMG fails, loses a facet or leaves a bad cell, with every gradation tried.
     """
-    refined = refine_surface(mesh, bodies, pose, walls, sizes)
-    check_mesh(refined, quality=0.0)
     size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
+    check_mesh(mesh, quality=0.0)
+    refined = refine_surface(mesh, bodies, pose, walls, sizes)
+    if lowest_quality(refined) == 0.0:
+        improved = best_remeshed(mesh, len(bodies), size_at)
+        refined = refine_surface(improved, bodies, pose, walls, sizes)
+        check_mesh(refined, quality=0.0)
+    new = best_remeshed(refined, len(bodies), size_at)
+    excess = longest_relative_edge(new, size_at)
+    if excess > LONGEST_EDGE:
+        found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
+        raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
+    return new
+
+
+def best_remeshed(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], FloatArray]) -> Mesh:
+    """What MMG makes of a mesh with the first gradation that gives good cells, else the best of all gradations."""
     made: list[Mesh] = []
     failures: list[MeshError] = []
     for gradation in GRADATIONS:
         try:
-            made.append(remeshed_once(refined, len(bodies), size_at, gradation))
+            made.append(remeshed_once(mesh, bodies, size_at, gradation))
         except MeshError as error:
             failures.append(error)
         else:
@@ -129,10 +144,6 @@ def remeshed_once(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], Float
     before, after = (float(np.sum(cell_volumes(m.points, m.cells))) for m in (mesh, new))
     if abs(after - before) > 1e-12 * before:
         raise MeshError("mesh", f"a volume of {after!r} after re-meshing", f"{before!r} as before", REMEDY)
-    excess = longest_relative_edge(new, size_at)
-    if excess > LONGEST_EDGE:
-        found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
-        raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
     return new
 
 
