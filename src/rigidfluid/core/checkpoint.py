@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import types
 import typing
 from collections.abc import Mapping
@@ -32,21 +33,28 @@ class Checkpoint:
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write beside ``path`` first, so that a run killed in the middle leaves the checkpoint before."""
-    part = path.with_name(path.name + ".part")
-    with h5py.File(part, "w") as file:
+    """Write beside ``path`` first, so that a run killed in the middle leaves the checkpoint before.
+
+    The file is made in memory: on a full disk HDF5's own writing does not fail, it crashes.
+    """
+    image = io.BytesIO()
+    with h5py.File(image, "w") as file:
         _store(file, checkpoint)
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(image.getbuffer())
     part.replace(path)
 
 
 def read_checkpoint(path: Path) -> Checkpoint:
     """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
+    if not path.is_file():
+        raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
     try:
         with h5py.File(path, "r") as file:
             checkpoint: Checkpoint = _load(file, Checkpoint)
-    except (OSError, KeyError) as error:
+    except (OSError, AttributeError, TypeError) as error:
         raise OutputError(
-            str(path), f"no readable checkpoint ({error})", "the state.h5 of an earlier run", "Run without --resume."
+            str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
         ) from error
     return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
 

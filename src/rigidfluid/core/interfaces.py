@@ -128,6 +128,8 @@ class ForceLaw(Part):
         The gap above which the law is zero [length].
     """
 
+    balls_only: ClassVar[bool] = False
+
     def __init__(self, options: PartOptions, range: float) -> None:
         self.options = options
         self.range = range

@@ -54,7 +54,12 @@ class Mover:
         points = self._map(state.reference).move(pose)
         worst = float(cell_quality(points, state.reference.mesh.cells).min())
         if worst < TANGLED:
-            raise StepRejected("mesh", f"a cell of quality {worst:.3f}", f"at least {TANGLED}", "Shorten time.step.")
+            raise StepRejected(
+                "mesh",
+                f"a cell of quality {worst:.3f}",
+                f"at least {TANGLED}",
+                "If bodies are about to touch, strengthen the contact force (contact.epsilon); else shorten time.step.",
+            )
         return replace(state.reference.mesh, points=points)
 
     def adapted(self, state: State, pose: Pose) -> State:

@@ -92,6 +92,9 @@ def _contact(
     readers: list[type[Part]] = [detector, law] if law else [detector]
     hint = "" if law else "Name the law that reads it: `law = …`."
     _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
+    if law and law.balls_only and any(body.radius is None for body in bodies):
+        remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
+        raise SceneError("contact.law", f"{law.name!r} with bodies that are no balls", "a law for any shape", remedy)
     return _choose(detector, table), _choose(law, table) if law else None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -80,7 +81,8 @@ def run(
         try:
             simulation.go(progress)
         except (RigidfluidError, KeyboardInterrupt) as error:
-            simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+            with suppress(OutputError):  # a full disk has been reported once
+                simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
             raise
         simulation.finish(status="complete")
     return simulation.history
@@ -136,9 +138,8 @@ class Simulation:
         """Sum up, in memory and on disk."""
         self.history.summary = summarise(self, status)
         if self._writer is not None:
-            self.history.summary["files"] = self._writer.written()
+            self.history.summary["files"] = self._writer.files
             self._writer.summary(self.history.summary)
-            self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
@@ -229,10 +230,11 @@ class Simulation:
         )
 
     def _stuck(self, rejection: StepRejected) -> StepError:
-        shortest = self.clock.size(self.clock.levels)
+        shortest, nearest = self.clock.size(self.clock.levels), int(np.argmin(self.state.gaps))
+        body, gap = self.system.surfaces[nearest], self.state.gaps[nearest]
         return StepError(
             f"{rejection.subject} at time {self.clock.time(self.state.tick):g}",
-            f"{rejection.found}, even with a step of {shortest:g}",
+            f"{rejection.found}, even with a step of {shortest:g}, where body {body} is {gap:.3g} from the nearest surface",
             rejection.allowed,
             f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from rigidfluid.core.records import Row
 
 
 class Table:
-    """One CSV file, open for appending; numbers are written so that reading gives the same bits back.
+    """One CSV file; it is opened for each append and never held, so that nothing is left open or unwritten.
 
     Parameters
     ----------
@@ -23,27 +24,25 @@ class Table:
     """
 
     def __init__(self, path: Path, columns: Sequence[str], length: int | None) -> None:
-        self._file = path.open("w" if length is None else "r+", newline="", encoding="utf-8")
-        self._writer = csv.writer(self._file, lineterminator="\n")
+        self._path = path
         if length is None:
-            self._writer.writerow(columns)
+            self._write("w", [columns])
         else:
-            self._file.truncate(length)
-            self._file.seek(0, 2)
+            os.truncate(path, length)
 
     def extend(self, rows: Sequence[Row]) -> None:
-        """Append rows and hand them to the operating system."""
-        self._writer.writerows(rows)
-        self._file.flush()
+        """Append rows; numbers are written so that reading gives the same bits back."""
+        if rows:
+            self._write("a", rows)
 
     @property
     def length(self) -> int:
         """Bytes written so far."""
-        return self._file.tell()
+        return self._path.stat().st_size
 
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+    def _write(self, mode: str, rows: Sequence[Sequence[object]]) -> None:
+        with self._path.open(mode, newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 def read_rows(path: Path) -> list[Row]:

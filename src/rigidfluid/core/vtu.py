@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import base64
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.types import Fields
+from rigidfluid.errors import OutputError
 
 _QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
+_DIMENSIONS = {6: 2, 10: 3}
 _TYPES = {"f4": "Float32", "f8": "Float64", "i8": "Int64", "u1": "UInt8"}
+_HEADER = 8  # bytes that say how long an array is
 
 
 def write_vtu(path: Path, fields: Fields) -> None:
@@ -46,13 +51,72 @@ def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
+def read_vtu(path: Path) -> Fields:
+    """Read back what `write_vtu` has written; velocity and pressure are as precise as on disk, 7 digits.
+
+    Raises
+    ------
+    OutputError
+        Where the file is missing or is not of that kind.
+    """
+    with _reading(path):
+        arrays = {array.get("Name"): _values(array) for array in ET.parse(path).iter("DataArray")}
+        nodes, cells = len(arrays["points"]), len(arrays["types"])
+        connectivity = arrays["connectivity"].reshape(cells, -1).astype(np.int64)
+        dimension = _DIMENSIONS[connectivity.shape[1]]
+        return Fields(
+            points=arrays["points"][:, :dimension].astype(np.float64),
+            cells=connectivity,
+            velocity=arrays["velocity"].reshape(nodes, 3)[:, :dimension].astype(np.float64),
+            pressure=arrays["pressure"].reshape(nodes).astype(np.float64),
+        )
+
+
+def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
+    """Times and files of a series, in order.
+
+    Raises
+    ------
+    OutputError
+        Where the list is missing or cannot be read.
+    """
+    with _reading(path):
+        sets = list(ET.parse(path).iter("DataSet"))
+        return tuple((float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in sets)
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a file into an OutputError that names it."""
+    try:
+        yield
+    except (OSError, ET.ParseError, KeyError, ValueError) as error:
+        raise OutputError(
+            str(path),
+            f"a file that cannot be read ({type(error).__name__}: {error})",
+            "a file that rigidfluid has written",
+            "Run the scene again, or go on with --resume.",
+        ) from error
+
+
+def _values(element: ET.Element) -> NDArray[Any]:
+    """The numbers of one inline binary array, (N,) or (N, components)."""
+    raw = base64.b64decode(element.text or "", validate=True)
+    if len(raw) < _HEADER or len(raw) != _HEADER + int.from_bytes(raw[:_HEADER], "little"):
+        raise ValueError(f"array {element.get('Name')} is cut off")
+    kind = {vtk: numpy for numpy, vtk in _TYPES.items()}[element.attrib["type"]]
+    values = np.frombuffer(raw, dtype="<" + kind, offset=_HEADER)
+    components = element.get("NumberOfComponents")
+    return values if components is None else values.reshape(-1, int(components))
+
+
 def _array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
     kind = _TYPES[values.dtype.str[1:]]
     element = ET.SubElement(parent, "DataArray", type=kind, Name=name, format="binary")
     if values.ndim == 2:
         element.set("NumberOfComponents", str(values.shape[1]))
     raw = np.ascontiguousarray(values).tobytes()
-    element.text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
+    element.text = base64.b64encode(len(raw).to_bytes(_HEADER, "little") + raw).decode("ascii")
 
 
 def _in_space(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

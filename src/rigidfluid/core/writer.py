@@ -42,10 +42,11 @@ class Writer:
             (out / FIELDS).mkdir(parents=True, exist_ok=True)
             if resumed is None:
                 _clear(out)
-            self._tables = {
-                name: Table(out / f"{name}.csv", names, None if resumed is None else resumed.lengths[name])
-                for name, names in columns(dimension).items()
-            }
+        lengths = {} if resumed is None else resumed.lengths
+        self._tables = {}
+        for name, names in columns(dimension).items():
+            with writing(out / f"{name}.csv"):
+                self._tables[name] = Table(out / f"{name}.csv", names, lengths.get(name))
 
     @property
     def lengths(self) -> dict[str, int]:
@@ -79,15 +80,11 @@ class Writer:
         with writing(self.out / SUMMARY):
             (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
 
-    def written(self) -> list[str]:
-        """The files that hold something, by name."""
-        names = [f"{name}.csv" for name in self._tables] + [SERIES, CHECKPOINT, SUMMARY]
-        return [str(self.out / name) for name in names if (self.out / name).exists()]
-
-    def close(self) -> None:
-        """Close the tables."""
-        for table in self._tables.values():
-            table.close()
+    @property
+    def files(self) -> list[str]:
+        """The files of a finished run; those with fields are listed in the series."""
+        names = [*(f"{name}.csv" for name in self._tables), SERIES, CHECKPOINT]
+        return [str(self.out / name) for name in names if (self.out / name).exists()] + [str(self.out / SUMMARY)]
 
 
 def earlier_run(out: Path) -> Checkpoint:

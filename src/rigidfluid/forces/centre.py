@@ -44,6 +44,7 @@ class CentreLaw(ForceLaw):
     """
 
     name: ClassVar[str] = "centre"
+    balls_only: ClassVar[bool] = True
     Options: ClassVar[type[PartOptions]] = CentreOptions
     options: CentreOptions
 

@@ -1,0 +1,102 @@
+"""What lands on disk: checkpoints to the last bit, tables that can be cut back, and a disk that refuses."""
+
+import json
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from falling import falling_disk
+
+import rigidfluid
+from rigidfluid.core.checkpoint import read_checkpoint
+from rigidfluid.core.run import Simulation
+from rigidfluid.core.tables import Table, read_rows
+from rigidfluid.errors import OutputError
+
+SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
+
+
+@pytest.fixture
+def scene():
+    return falling_disk(**SHORT)
+
+
+def same(left, right):
+    """Equal to the last bit, through all records."""
+    if is_dataclass(left):
+        return all(same(getattr(left, field.name), getattr(right, field.name)) for field in fields(left))
+    if isinstance(left, dict):
+        return left.keys() == right.keys() and all(same(left[key], right[key]) for key in left)
+    if isinstance(left, np.ndarray):
+        return left.dtype == right.dtype and np.array_equal(left, right)
+    return left == right
+
+
+def test_a_checkpoint_comes_back_to_the_last_bit(scene, tmp_path):
+    simulation = Simulation(scene, tmp_path, False)
+    simulation.go(None)
+    assert same(simulation.state, read_checkpoint(tmp_path / "state.h5").state)
+
+
+def test_disk_and_memory_hold_the_same(scene, tmp_path):
+    history = rigidfluid.run(scene, tmp_path)
+    assert json.loads((tmp_path / "summary.json").read_text()) == history.summary
+    for name, rows in history.records.items():
+        assert read_rows(tmp_path / f"{name}.csv") == rows
+    assert all(Path(file).exists() for file in history.summary["files"])
+
+
+def test_numbers_survive_a_table(tmp_path):
+    rows = [(0.1 + 0.2, 3, "disk"), (float("inf"), -1, "left")]
+    table = Table(tmp_path / "t.csv", ("a", "b", "c"), None)
+    table.extend(rows)
+    kept = table.length
+    table.extend(rows)
+    Table(tmp_path / "t.csv", ("a", "b", "c"), kept)
+    assert read_rows(tmp_path / "t.csv") == rows
+
+
+@pytest.mark.parametrize("name", ["bodies.csv", "energy.csv"])
+def test_a_full_disk_is_reported_by_file(scene, tmp_path, name):
+    (tmp_path / name).symlink_to("/dev/full")
+    with pytest.raises(OutputError, match=rf"{name}: found No space left"):
+        rigidfluid.run(scene, tmp_path)
+
+
+def test_a_folder_that_cannot_be_made_is_reported(scene, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match=r"file/out: found Not a directory"):
+        rigidfluid.run(scene, tmp_path / "file" / "out")
+
+
+def test_a_bad_scene_leaves_earlier_output_untouched(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+    with pytest.raises(rigidfluid.errors.RigidfluidError):
+        rigidfluid.run(falling_disk(**SHORT, body={"position": [1.0, 0.1]}), tmp_path)
+    assert before == {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+
+
+def test_resuming_another_scene_is_refused(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    with pytest.raises(OutputError, match="body"):
+        rigidfluid.run(falling_disk(**SHORT, body={"density": 2.0}), tmp_path, resume=True)
+
+
+def test_a_finished_run_can_be_taken_further(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    longer = {**SHORT, "time": {"step": 0.004, "end": 0.024}}
+    resumed = rigidfluid.run(falling_disk(**longer), tmp_path, resume=True)
+    assert resumed.records == rigidfluid.run(falling_disk(**longer)).records
+
+
+def test_a_run_that_gets_stuck_says_where_and_keeps_what_it_has(tmp_path):
+    """A heavy disk whose floor is far too weak to stop it."""
+    heavy = {**SHORT, "time": {"step": 0.004, "end": 0.1}, "body": {"density": 100.0, "position": [1.0, 0.3]}}
+    with pytest.raises(rigidfluid.errors.StepError, match=r"body disk is .* from the nearest surface"):
+        rigidfluid.run(falling_disk(**heavy), tmp_path)
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["status"].startswith("stopped")
+    assert summary["smallest_gap"] > 0
+    assert read_rows(tmp_path / "bodies.csv")[-1][0] == pytest.approx(summary["time"])
