@@ -151,15 +151,17 @@ def test_a_tip_that_nears_a_wall_fast_is_refined_after_the_cells_around_it_are_i
     def tip_above_wall(angle, gap):
         return Pose(np.array([[1.0, np.hypot(0.1 * np.sin(angle), 0.05 * np.cos(angle)) + gap]]), np.array([[angle]]))
 
-    start, end = tip_above_wall(1.2, 0.03), tip_above_wall(1.3, 0.0075)
-    mesh = initial_mesh([body], start, LOWER, upper, walls, sizes)
-    moved = replace(mesh, points=MeshMotion(mesh, [body], start).move(end))
-    assert cell_quality(moved.points, moved.cells).min() > 0.1
-    refined = refine_surface(moved, [body], end, walls, sizes)
-    assert cell_volumes(refined.points, refined.cells).min() < 0
-    new = remesh(moved, [body], end, walls, sizes)
-    assert_valid(new, [body], end, LOWER, upper)
-    assert cell_quality(new.points, new.cells).min() > 0.3
+    inverted = 0
+    for angle in np.linspace(1.1, 1.5, 5):
+        start, end = tip_above_wall(angle, 0.03), tip_above_wall(angle + 0.1, 0.0065)
+        mesh = initial_mesh([body], start, LOWER, upper, walls, sizes)
+        moved = replace(mesh, points=MeshMotion(mesh, [body], start).move(end))
+        refined = refine_surface(moved, [body], end, walls, sizes)
+        inverted += cell_volumes(refined.points, refined.cells).min() < 0
+        new = remesh(moved, [body], end, walls, sizes)
+        assert_valid(new, [body], end, LOWER, upper)
+        assert cell_quality(new.points, new.cells).min() > 0.3
+    assert inverted > 0
 
 
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
