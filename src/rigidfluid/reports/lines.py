@@ -1,0 +1,148 @@
+"""The plots over time: where the bodies are, how fast, how near, what pushes them, and where the energy goes."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from rigidfluid.core.types import FloatArray
+from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies
+from rigidfluid.reports.results import Results
+from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels
+
+
+def position_plot(results: Results) -> Figure:
+    """The paths through the domain, and each coordinate over time."""
+    position, axes_names = results.vectors(""), results.axes
+    figure = new_figure(8.0, 4.8)
+    left, right = figure.subfigures(1, 2, width_ratios=(2, 3), squeeze=False)[0]
+    _draw_paths(left.subplots(), results, position)
+    panels = right.subplots(len(axes_names), 1, sharex=True)
+    for k, axes in enumerate(panels):
+        draw_bodies(axes, results.time, position[..., k], results.names)
+        axes.set_ylabel(f"{axes_names[k]} [length]")
+        _widen(axes, 0.1 * float(results.system.upper[k] - results.system.lower[k]))
+    add_legend(right)
+    panels[-1].set_xlabel("time [time]")
+    return figure
+
+
+def speed_plot(results: Results) -> Figure:
+    """Speed and, in a fluid, the Reynolds number with either density."""
+    speed = np.linalg.norm(results.vectors("v"), axis=2)
+    reynolds = _reynolds_numbers(results, speed)
+    figure, panels = time_panels(1 + len(reynolds))
+    draw_bodies(panels[0], results.time, speed, results.names)
+    panels[0].set_ylabel("speed\n[length/time]")
+    add_legend(figure)
+    for axes, (whose, values) in zip(panels[1:], reynolds.items(), strict=True):
+        draw_bodies(axes, results.time, values, results.names)
+        axes.set_ylabel(f"Reynolds number\ndensity of the {whose}")
+        axes.axhline(values.max(), color=BLACK, linewidth=0.8, linestyle=":")
+        axes.annotate(f"highest {values.max():.4g}", (results.time[-1], values.max()), (0, -4),
+                      textcoords="offset points", ha="right", va="top", fontsize=9)  # fmt: skip
+    return figure
+
+
+def gap_plot(results: Results) -> Figure:
+    """Each body's nearest gap, logarithmic, with the range of the contact law."""
+    figure, (axes,) = time_panels(1, height=3.0)
+    gap = np.where(results.bodies["gap"] > 0.0, results.bodies["gap"], np.nan)
+    draw_bodies(axes, results.time, gap, results.names)
+    axes.set_yscale("log")
+    axes.set_ylabel("nearest gap [length]")
+    if results.system.law is not None:
+        reach = results.system.law.range
+        axes.axhline(
+            reach, color=VERMILLION, linewidth=1.0, linestyle="--", label=f"range of the contact law {reach:g}"
+        )
+    add_legend(figure)
+    return figure
+
+
+def force_plot(results: Results) -> Figure:
+    """The fluid's force and the contact force side by side, all components to the same scale."""
+    figure = new_figure(8.0, 2.3 * len(results.axes) + 0.5)
+    panels = figure.subplots(len(results.axes), 2, sharex=True, sharey=True)
+    fluid, contact = results.vectors("f"), results.vectors("cf")
+    for k, (left, right) in enumerate(panels):
+        draw_bodies(left, results.time, fluid[..., k], results.names)
+        draw_bodies(right, results.time, contact[..., k], results.names)
+        left.set_ylabel(f"{results.axes[k]}-force [force]")
+        _draw_weight(left, right, results, k)
+    for column, title in enumerate(("from the fluid", "from contacts")):
+        panels[0][column].set_title(title)
+        panels[-1][column].set_xlabel("time [time]")
+    add_legend(figure)
+    return figure
+
+
+def energy_plot(results: Results) -> Figure:
+    """What was supplied against where it went, stacked, and what the balance does not account for."""
+    figure, (axes, below) = time_panels(2, height=2.8)
+    energy = results.energy
+    initial = energy["kinetic"][0] + energy["contact"][0]
+    supplied = initial + energy["gravity"] + energy["boundary"] + energy["control"]
+    shares = {
+        "dissipated": (energy["dissipation"], ORANGE),
+        "kinetic": (energy["kinetic"], BLUE),
+        "in contacts": (energy["contact"], GREEN),
+        "lost in transfer": (energy["transfer_loss"], PURPLE),
+    }
+    axes.stackplot(energy["time"], *(values for values, _ in shares.values()), labels=list(shares),
+                   colors=[colour for _, colour in shares.values()], alpha=0.75, linewidth=0)  # fmt: skip
+    axes.plot(energy["time"], supplied, color=BLACK, linestyle="--", label="supplied + initial")
+    axes.set_ylabel("energy [energy]")
+    passed = max(float(np.abs(supplied - initial).max()), float(energy["kinetic"].max()), float(initial))
+    below.plot(energy["time"], 100.0 * energy["residual"] / (passed or 1.0), color=VERMILLION)
+    below.set_ylabel("residual\n[% of the energy supplied]")
+    add_legend(figure)
+    return figure
+
+
+def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArray]:
+    """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R as in the summary."""
+    fluid = results.scene.fluid
+    if not results.system.backend.needs_mesh or fluid.viscosity is None or fluid.density is None:
+        return {}
+    radius = np.array([body.bounding_radius for body in results.system.bodies])
+    solid = np.array([body.density for body in results.scene.body])
+    per_density = 2.0 * radius * speed / fluid.viscosity
+    return {"fluid": per_density * fluid.density, "solid": per_density * solid}
+
+
+def _draw_paths(axes: Axes, results: Results, position: FloatArray) -> None:
+    """The paths seen along the last axis: in 3D their x and y."""
+    lower, upper = results.system.lower[:2], results.system.upper[:2]
+    axes.add_patch(Rectangle((lower[0], lower[1]), *(upper - lower), fill=False, color=BLACK, linewidth=0.8))
+    many = len(results.names) > MOST_LINES
+    for i in range(len(results.names)):
+        colour = BLUE if many else PALETTE[i]
+        path = position[:, i]
+        axes.plot(path[:, 0], path[:, 1], color=colour, linewidth=0.5 if many else 1.4, alpha=0.3 if many else 1.0)
+        axes.plot(*path[0, :2], "o", color=colour, markersize=2 if many else 5, fillstyle="none")
+        axes.plot(*path[-1, :2], "o", color=colour, markersize=2 if many else 5)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel("x [length]")
+    axes.set_ylabel("y [length]")
+    axes.set_title("path (ring: start, dot: end)")
+
+
+def _draw_weight(left: Axes, right: Axes, results: Results, k: int) -> None:
+    """The force that holds a body at rest, where it is the same for all and not zero."""
+    weight = results.system.weight[:, k]
+    if np.ptp(weight) > 0.0 or weight[0] == 0.0:
+        return
+    for axes in (left, right):
+        axes.axhline(-weight[0], color=BLACK, linewidth=0.8, linestyle=":", label="opposite of the submerged weight")
+
+
+def _widen(axes: Axes, least: float) -> None:
+    """Show at least this span, so that a drift of nothing looks like nothing."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)

@@ -1,0 +1,131 @@
+"""One HTML page that needs no other file: the figures that matter, the pictures, what it cost, and the scene."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+h1, h2 { line-height: 1.2; } h2 { margin-top: 2.2rem; }
+table { border-collapse: collapse; } th, td { text-align: left; padding: .2rem 1.2rem .2rem 0; }
+tr { border-bottom: 1px solid #ddd; } td.n { text-align: right; font-variant-numeric: tabular-nums; }
+img { max-width: 100%; height: auto; } figure { margin: 1rem 0; } figcaption { color: #555; }
+pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; } .note { color: #8a3c00; }
+"""
+_MOST_BODIES = 8
+_ENERGIES = {
+    "gravity": "supplied by gravity",
+    "boundary": "supplied through the faces",
+    "control": "supplied by what drives controlled bodies",
+    "dissipation": "dissipated by viscosity",
+    "transfer_loss": "lost in transfers between meshes",
+    "kinetic": "kinetic, at the end",
+    "contact": "stored in contacts, at the end",
+    "residual": "not accounted for",
+}
+
+
+def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes: Iterable[str]) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    summary : mapping
+        As in summary.json.
+    pictures : sequence of (Path, str)
+        PNG files and their captions.
+    notes : iterable of str
+        What the page leaves out, and why.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    name = escape(summary["scene"]["scene"]["name"])
+    parts = [
+        f"<h1>{name}</h1>",
+        f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
+        *(f'<p class="note">{escape(note)}</p>' for note in notes),
+        _table(_figures(summary)),
+        *(_picture(path, caption) for path, caption in pictures),
+        "<h2>Energy balance</h2>",
+        _table(_energy(summary["energy"])),
+        "<h2>Cost</h2>",
+        _table(_cost(summary)),
+        "<h2>Scene</h2>",
+        f"<details open><summary>With all defaults</summary><pre>{escape(_toml(summary['scene']))}</pre></details>",
+        "<h2>Versions</h2>",
+        _table(summary["versions"].items()),
+    ]
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{name}</title>'
+        f"<style>{_STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body>\n</html>\n"
+    )
+
+
+def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
+    if summary["reynolds"] is not None:
+        yield "highest Reynolds number, density of the solid", summary["reynolds_solid_density"]
+        yield "highest Reynolds number, density of the fluid", summary["reynolds"]
+    yield "smallest gap [length]", summary["smallest_gap"]
+    places = list(summary["rest_position"].items())
+    for body, place in places[:_MOST_BODIES]:
+        yield f"last position of {body} [length]", ", ".join(f"{value:.5g}" for value in place)
+    if len(places) > _MOST_BODIES:
+        yield "", f"and of {len(places) - _MOST_BODIES} more bodies, in bodies.csv"
+
+
+def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:
+    for key, meaning in _ENERGIES.items():
+        yield f"{meaning} [energy]", energy[key]
+    yield "not accounted for, over what was supplied", f"{100 * energy['relative_residual']:.3g} %"
+
+
+def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
+    yield "time reached [time]", summary["time"]
+    for key in ("steps", "rejected_steps", "remeshes", "cells", "unknowns"):
+        yield key.replace("_", " "), summary[key]
+    yield "wall time [s]", summary["wall_time"]
+    for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
+        yield f"of it: {stage} [s]", seconds
+
+
+def _table(rows: Iterable[tuple[str, object]]) -> str:
+    lines = (f'<tr><th scope="row">{escape(name)}</th><td class="n">{_text(value)}</td></tr>' for name, value in rows)
+    return "<table>\n" + "\n".join(lines) + "\n</table>"
+
+
+def _text(value: object) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else escape(str(value))
+
+
+def _picture(path: Path, caption: str) -> str:
+    data = base64.b64encode(path.read_bytes()).decode("ascii")
+    words = escape(caption)
+    return f'<figure><img alt="{words}" src="data:image/png;base64,{data}"><figcaption>{words}</figcaption></figure>'
+
+
+def _toml(scene: Mapping[str, Any]) -> str:
+    """The scene's tables as in a scene file; JSON's numbers, strings and lists are TOML's too."""
+    return "\n\n".join(text for name, table in scene.items() for text in _tables(name, table))
+
+
+def _tables(name: str, table: Any) -> Iterable[str]:
+    if isinstance(table, list):
+        for entry in table:
+            yield from _one_table(f"[[{name}]]", name, entry)
+    else:
+        yield from _one_table(f"[{name}]", name, table)
+
+
+def _one_table(title: str, name: str, table: Mapping[str, Any]) -> Iterable[str]:
+    plain = {key: value for key, value in table.items() if not isinstance(value, Mapping)}
+    yield "\n".join([title, *(f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in plain.items())])
+    for key in table.keys() - plain.keys():
+        yield from _one_table(f"[{name}.{key}]", f"{name}.{key}", table[key])

@@ -1,0 +1,79 @@
+"""From a run's folder to pictures and a page beside its results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from rigidfluid.core.writer import writing
+from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, position_plot, speed_plot
+from rigidfluid.reports.page import page
+from rigidfluid.reports.pictures import gap_picture, mesh_picture, moments, narrowest_moment, speed_picture
+from rigidfluid.reports.results import Results, read_results
+from rigidfluid.reports.style import STYLE, save
+
+FOLDER, PAGE = "report", "report.html"
+
+
+def report(out: Path) -> list[Path]:
+    """Make plots and one page from the results in a folder.
+
+    Parameters
+    ----------
+    out : Path
+        Folder that a run has written.
+
+    Returns
+    -------
+    list of Path
+        What was written: PNG files, SVG files for the plots over time, and last ``report.html``, which holds them all.
+
+    Raises
+    ------
+    OutputError
+        Where a result is missing or cannot be read, or the disk refuses.
+    SceneError, PluginError
+        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    """
+    out = Path(out)
+    results = read_results(out)
+    written: list[Path] = []
+    shown: list[tuple[Path, str]] = []
+    with matplotlib.rc_context(STYLE), writing(out / FOLDER):
+        (out / FOLDER).mkdir(exist_ok=True)
+        for name, caption, figure, kinds in _pictures(results):
+            paths = save(figure, out / FOLDER, name, kinds)
+            written += paths
+            shown.append((paths[0], caption))
+        (out / PAGE).write_text(page(results.summary, shown, _notes(results)), encoding="utf-8")
+    return [*written, out / PAGE]
+
+
+def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, ...]]]:
+    """Name, caption, figure and file formats of each picture; each is made when it is asked for."""
+    raster, both = ("png",), ("png", "svg")
+    if _has_pictures(results):
+        shown = moments(results)
+        yield "speed_field", "Speed of the fluid. Solids are grey.", speed_picture(shown), raster
+        yield "mesh", "Mesh about the body that came nearest to another surface.", mesh_picture(shown), raster
+        caption = "The smallest gap among the output times."
+        yield "smallest_gap", caption, gap_picture(narrowest_moment(results)), raster
+    yield "position", "Where the bodies are.", position_plot(results), both
+    yield "speed", "How fast the bodies are.", speed_plot(results), both
+    yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both
+    yield "force", "What the fluid and what contacts do to each body.", force_plot(results), both
+    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
+
+
+def _has_pictures(results: Results) -> bool:
+    return bool(results.series) and results.system.dimension == 2
+
+
+def _notes(results: Results) -> Iterator[str]:
+    if not results.series:
+        yield "This run has no fluid, and so no pictures of the flow."
+    elif not _has_pictures(results):
+        yield "Pictures of the flow are made of 2D runs alone; ParaView opens fields.pvd."

@@ -1,0 +1,148 @@
+"""The files of a run's folder as arrays, checked as they are read."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidfluid.core.history import History
+from rigidfluid.core.records import Row, columns
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.system import System, build_system
+from rigidfluid.core.tables import read_rows
+from rigidfluid.core.types import FloatArray
+from rigidfluid.core.vtu import read_pvd
+from rigidfluid.core.writer import SERIES, SUMMARY
+from rigidfluid.errors import OutputError
+
+REMEDY = "Run the scene again, or go on with --resume; then make the report."
+
+
+@dataclass(frozen=True)
+class Results:
+    """A run read back: s states of n bodies.
+
+    ``summary`` as in summary.json, ``scene`` and ``system`` as the run built them; ``time`` (s,) [time]; ``bodies`` by
+    column (s, n); ``energy`` by column (s,); ``series`` the times and files of the fields, empty without a fluid.
+    """
+
+    summary: dict[str, Any]
+    scene: Scene
+    system: System
+    time: FloatArray
+    bodies: dict[str, FloatArray]
+    energy: dict[str, FloatArray]
+    series: tuple[tuple[float, Path], ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the bodies."""
+        return self.system.surfaces[: len(self.system.bodies)]
+
+    @property
+    def axes(self) -> str:
+        """The coordinates' names, ``xy`` or ``xyz``."""
+        return "xyz"[: self.system.dimension]
+
+    def vectors(self, prefix: str) -> FloatArray:
+        """A vector of the table of bodies, (s, n, d): ``""`` position, ``v`` velocity, ``f`` fluid, ``cf`` contact."""
+        return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)
+
+
+def read_results(folder: Path) -> Results:
+    """Read a run's folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Where a run has written.
+
+    Returns
+    -------
+    Results
+        All but the fields themselves, which are read one by one.
+
+    Raises
+    ------
+    OutputError
+        Where a file is missing or cannot be read, naming it.
+    SceneError, PluginError
+        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    """
+    summary = _summary(folder / SUMMARY)
+    scene = Scene.from_dict(summary["scene"])
+    system = build_system(scene)
+    bodies = _table(folder, "bodies", scene.dimension)
+    energy = _table(folder, "energy", scene.dimension)
+    by_state = {name: _by_state(folder, values, len(system.bodies)) for name, values in bodies.items()}
+    return Results(
+        summary=summary,
+        scene=scene,
+        system=system,
+        time=by_state["time"][:, 0],
+        bodies=by_state,
+        energy=energy,
+        series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
+    )
+
+
+def _summary(path: Path) -> dict[str, Any]:
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise _unreadable(path, "no file") from None
+    except OSError as error:
+        raise _unreadable(path, error.strerror) from error
+    except ValueError as error:
+        raise _unreadable(path, f"no JSON ({error})") from error
+    if not isinstance(summary, dict) or "scene" not in summary:
+        raise _unreadable(path, "no scene in it")
+    return summary
+
+
+def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
+    """A table by column; every row must be whole, and every column but the names a number."""
+    path, names = folder / f"{name}.csv", columns(dimension)[name]
+    rows = _rows(path, names)
+    history = History(dimension, {name: rows})
+    numbers = {key: values for key, values in history.table(name).items() if key != "body"}
+    for key, values in numbers.items():
+        if values.dtype.kind not in "if":
+            raise _unreadable(path, f"a value that is no number in column {key}")
+    return {key: values.astype(np.float64) for key, values in numbers.items()}
+
+
+def _rows(path: Path, names: Sequence[str]) -> list[Row]:
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header = next(csv.reader(file), [])
+        rows = read_rows(path)
+    except FileNotFoundError:
+        raise _unreadable(path, "no file") from None
+    except OSError as error:
+        raise _unreadable(path, error.strerror) from error
+    except ValueError as error:
+        raise _unreadable(path, f"no text ({error})") from error
+    if tuple(header) != tuple(names):
+        raise _unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
+    torn = next((number for number, row in enumerate(rows, start=2) if len(row) != len(names)), None)
+    if torn is not None or not rows:
+        raise _unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
+    return rows
+
+
+def _by_state(folder: Path, values: FloatArray, count: int) -> FloatArray:
+    if len(values) % count:
+        raise _unreadable(folder / "bodies.csv", f"{len(values)} rows, no multiple of {count} bodies")
+    return values.reshape(-1, count)
+
+
+def _unreadable(path: Path, found: object) -> OutputError:
+    return OutputError(str(path), found, "a file that a run of rigidfluid has written", REMEDY)
