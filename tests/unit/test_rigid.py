@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.rigid import cross, lab_inertia, moment, rotate, rotation_matrices
+from rigidfluid.core.rigid import angle_between, cross, lab_inertia, moment, rotate, rotation_matrices
 
 RANDOM = np.random.default_rng(0)
 QUATERNIONS = Rotation.random(20, rng=RANDOM).as_quat(scalar_first=True)
@@ -86,3 +86,14 @@ def test_no_bodies_at_all(components: int) -> None:
     assert rotation_matrices(nothing).shape == (0, dimension, dimension)
     assert rotate(nothing, np.zeros((0, freedoms))).shape == (0, components)
     assert lab_inertia(np.zeros((0, freedoms, freedoms)), nothing).shape == (0, freedoms, freedoms)
+
+
+def test_angle_between_is_that_of_the_rotation() -> None:
+    turned = rotate(QUATERNIONS, VECTORS)
+    expected = Rotation.from_rotvec(VECTORS).magnitude()
+    np.testing.assert_allclose(angle_between(QUATERNIONS, turned), expected, rtol=1e-12)
+    np.testing.assert_allclose(angle_between(QUATERNIONS, -turned), expected, rtol=1e-12)
+
+
+def test_angle_between_counts_whole_turns_in_the_plane() -> None:
+    np.testing.assert_array_equal(angle_between(np.array([[1.0], [0.0]]), np.array([[-1.0], [7.0]])), [2.0, 7.0])

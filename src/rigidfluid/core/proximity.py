@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 
@@ -29,6 +30,13 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
     return select(near, near.gap <= law_range), gaps
+
+
+def travel(system: System, start: Pose, end: Pose) -> FloatArray:
+    """How far any surface point of each body can move from one pose to another, |Δx| + R Δθ (n,) [length]."""
+    moved = np.linalg.norm(end.position - start.position, axis=1)
+    reach = np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])
+    return np.asarray(moved + reach * angle_between(start.orientation, end.orientation))
 
 
 def select(contacts: Contacts, chosen: BoolArray) -> Contacts:

@@ -52,6 +52,25 @@ def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
     return np.asarray(product / np.linalg.norm(product, axis=-1, keepdims=True))
 
 
+def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Angle of the rotation that leads from one orientation to another.
+
+    Parameters
+    ----------
+    start, end : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n,) array
+        Angle, in 2D whole turns included [rad].
+    """
+    if start.shape[-1] == 1:
+        return np.abs(end - start)[:, 0]
+    opposite = np.minimum(np.linalg.norm(end - start, axis=1), np.linalg.norm(end + start, axis=1))
+    return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * opposite, 1.0)))
+
+
 def cross(angular_velocity: FloatArray, arm: FloatArray) -> FloatArray:
     """Velocity that a rotation gives to a point, ω × r.
 

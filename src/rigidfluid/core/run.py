@@ -16,7 +16,7 @@ from rigidfluid.core.clock import Clock
 from rigidfluid.core.energy import Ledger, kinetic_energy
 from rigidfluid.core.history import History
 from rigidfluid.core.mesh_adaptation import Mover
-from rigidfluid.core.proximity import surroundings
+from rigidfluid.core.proximity import surroundings, travel
 from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
@@ -189,6 +189,9 @@ class Simulation:
 
     def _closes_too_fast(self, level: int) -> bool:
         pose = predicted(self.state, self.clock.size(level))
+        moved = travel(self.system, self.state.pose, pose)
+        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * self.state.gaps):
+            return False  # too far away for that: no need to measure
         _, gaps = surroundings(self.system, pose, None)
         return bool((gaps < CLOSEST_APPROACH * self.state.gaps).any())
 
@@ -234,7 +237,7 @@ class Simulation:
         body, gap = self.system.surfaces[nearest], self.state.gaps[nearest]
         return StepError(
             f"{rejection.subject} at time {self.clock.time(self.state.tick):g}",
-            f"{rejection.found}, even with a step of {shortest:g}, where body {body} is {gap:.3g} from the nearest surface",
+            f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from the nearest surface",
             rejection.allowed,
             f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
         )
