@@ -144,26 +144,6 @@ def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
     assert cell_quality(mesh.points, mesh.cells).min() > (0.3 if gap > 2 * COARSE.smallest else 0.1)
 
 
-def test_a_tip_that_nears_a_wall_fast_is_refined_after_the_cells_around_it_are_improved():
-    body, upper, sizes = ellipsoid(0.1, 0.05), np.array([2.0, 2.0]), Sizes(0.15, 0.02)
-    walls = box_walls(LOWER, upper, 1)
-
-    def tip_above_wall(angle, gap):
-        return Pose(np.array([[1.0, np.hypot(0.1 * np.sin(angle), 0.05 * np.cos(angle)) + gap]]), np.array([[angle]]))
-
-    inverted = 0
-    for angle in np.linspace(1.1, 1.5, 5):
-        start, end = tip_above_wall(angle, 0.03), tip_above_wall(angle + 0.1, 0.0065)
-        mesh = initial_mesh([body], start, LOWER, upper, walls, sizes)
-        moved = replace(mesh, points=MeshMotion(mesh, [body], start).move(end))
-        refined = refine_surface(moved, [body], end, walls, sizes)
-        inverted += cell_volumes(refined.points, refined.cells).min() < 0
-        new = remesh(moved, [body], end, walls, sizes)
-        assert_valid(new, [body], end, LOWER, upper)
-        assert cell_quality(new.points, new.cells).min() > 0.3
-    assert inverted > 0
-
-
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
     mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.01, 0.2)
@@ -259,6 +239,24 @@ def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
     monkeypatch.setattr(module, "run_mmg", lambda mesh, *_: mesh)
     with pytest.raises(MeshError):
         remesh(mesh, [DISK], pose, walls, COARSE)
+
+
+def test_where_bisection_inverts_a_cell_the_cells_are_improved_first(monkeypatch):
+    pose, walls = upright([1, RADIUS + 0.02]), box_walls(LOWER, UPPER, 1)
+    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    bisected = []
+
+    def inverts_at_first(mesh, *arguments):
+        bisected.append(mesh)
+        refined = refine_surface(mesh, *arguments)
+        return spoil_invert_a_cell(refined) if len(bisected) == 1 else refined
+
+    monkeypatch.setattr(module, "refine_surface", inverts_at_first)
+    new = remesh(mesh, [DISK], pose, walls, COARSE)
+    assert_valid(new, [DISK], pose, LOWER, UPPER)
+    assert len(bisected) == 2
+    assert not np.array_equal(bisected[0].points, bisected[1].points)
+    assert body_facets(bisected[0], 1) == body_facets(bisected[1], 1)
 
 
 def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
