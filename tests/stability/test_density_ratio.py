@@ -63,3 +63,18 @@ def test_a_neutrally_buoyant_disk_in_fluid_at_rest_stays_at_rest():
     bodies = fall(1.0, steps=5, step=0.01, size_body=0.04).bodies
     for column in ("vx", "vy", "w"):
         assert np.abs(bodies[column]).max() < 1e-10
+
+
+def test_the_fluids_wrench_is_what_changes_the_bodys_momentum():
+    """d(mU, Iω)/dt - weight, differenced as the scheme does, equals the columns f and t."""
+    bodies = fall(1.25, steps=12, step=0.004, size_body=0.04).bodies
+    mass, inertia = 1.25 * AREA, 1.25 * AREA * RADIUS**2 / 2
+
+    def rate(column):
+        values = bodies[column]
+        return (3 * values[2:] - 4 * values[1:-1] + values[:-2]) / (2 * 0.004)
+
+    weight = -(1.25 - 1.0) * AREA * GRAVITY
+    np.testing.assert_allclose(mass * rate("vy") - weight, bodies["fy"][2:], rtol=1e-6)
+    np.testing.assert_allclose(mass * rate("vx"), bodies["fx"][2:], atol=1e-6)
+    np.testing.assert_allclose(inertia * rate("w"), bodies["t"][2:], atol=1e-8)

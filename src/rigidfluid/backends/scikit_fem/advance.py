@@ -53,7 +53,7 @@ def advance(
     }
     d = space.dimension
     on_bodies = np.array(
-        [-constraint.resultant(b, reaction, assembled.node_points, position[b]) for b in range(len(twist))]
+        [-constraint.resultant(b, reaction, assembled.node_points, position) for b in range(len(twist))]
     ).reshape(twist.shape)
     return Advance(
         fluid=state,
