@@ -21,7 +21,7 @@ from typing import Any
 from ngsolve_step import time_ngsolve
 
 import rigidfluid
-from rigidfluid.core.run import Simulation
+from rigidfluid.core.simulation import Simulation
 from rigidfluid.core.threads import one_openblas_thread
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_disk.toml"

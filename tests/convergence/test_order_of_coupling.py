@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from falling import falling_disk
 
-from rigidfluid.core.run import Simulation
+from rigidfluid.core.simulation import Simulation
 
 END, REMESH = 0.16, 0.08
 
@@ -14,9 +14,7 @@ class Interrupted(Simulation):
 
     def __init__(self, step, uneven):
         super().__init__(
-            falling_disk(
-                mesh={"size": 0.3, "size_body": 0.03}, time={"step": step, "end": END}, output={"every": 1.0}
-            ),
+            falling_disk(mesh={"size": 0.3, "size_body": 0.03}, time={"step": step, "end": END}, output={"every": 1.0}),
             None,
             False,
         )

@@ -14,7 +14,7 @@ Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]
 """Rows by table name."""
 
-_LEDGER = ("kinetic", "contact", "gravity", "boundary", "control", "dissipation", "transfer_loss", "residual")
+LEDGER_COLUMNS = ("kinetic", "contact", "gravity", "boundary", "control", "dissipation", "transfer_loss", "residual")
 
 
 def columns(dimension: int) -> dict[str, tuple[str, ...]]:
@@ -34,7 +34,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
             *(*named("f"), *torque, *named("cf"), *named("c", torque), "gap"),
         ),
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
-        "energy": ("time", "step", *_LEDGER),
+        "energy": ("time", "step", *LEDGER_COLUMNS),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
     }
 
@@ -45,7 +45,7 @@ def records(system: System, probes: FloatArray, state: State, time: float) -> Re
     return {
         "bodies": list(_body_rows(system, state, stamp)),
         "contacts": list(_contact_rows(system, state, stamp)),
-        "energy": [(*stamp, *(getattr(state.ledger, name) for name in _LEDGER))],
+        "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
         "probes": list(_probe_rows(system, probes, state, stamp)),
     }
 

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
+from rigidfluid.core.records import LEDGER_COLUMNS
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.system import System
 from rigidfluid.core.types import FloatArray
 
 if TYPE_CHECKING:
-    from rigidfluid.core.run import Simulation
+    from rigidfluid.core.simulation import Simulation
 
 _PACKAGES = ("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py")
 
@@ -39,7 +41,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, history),
         "smallest_gap": float(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        "energy": energy_balance(history),
+        "energy": energy_balance(state.ledger),
     }
 
 
@@ -66,13 +68,10 @@ def _highest_speeds(system: System, history: History) -> FloatArray:
     return np.asarray(speed.max(axis=0))
 
 
-def energy_balance(history: History) -> dict[str, float]:
-    """The last row of the energy table, and its residual over the energy that passed through."""
-    energy = history.energy
-    last = {name: float(values[-1]) for name, values in energy.items() if name not in ("time", "step")}
-    initial = float(energy["kinetic"][0] + energy["contact"][0])
-    passed = max(abs(last["gravity"]) + abs(last["boundary"]) + abs(last["control"]), last["kinetic"], initial)
-    return {**last, "relative_residual": last["residual"] / passed if passed > 0 else 0.0}
+def energy_balance(ledger: Ledger) -> dict[str, float]:
+    """What is stored, what came in, what went out [energy], and the residual over the energy that passed through."""
+    names = (*LEDGER_COLUMNS, "relative_residual")
+    return {name: getattr(ledger, name) for name in names}
 
 
 def versions() -> dict[str, str]:

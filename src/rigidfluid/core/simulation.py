@@ -1,0 +1,248 @@
+"""The loop: choose a step, try it, accept it or try a shorter one, write what is due."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rigidfluid.core.checkpoint import Checkpoint
+from rigidfluid.core.clock import Clock
+from rigidfluid.core.energy import Ledger, kinetic_energy
+from rigidfluid.core.history import History
+from rigidfluid.core.mesh_adaptation import Mover
+from rigidfluid.core.proximity import surroundings, travel
+from rigidfluid.core.records import records
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.size_field import Sizes
+from rigidfluid.core.state import State
+from rigidfluid.core.step import CLOSEST_APPROACH, attempt, contact_energy, predicted
+from rigidfluid.core.stopwatch import Stopwatch
+from rigidfluid.core.summary import summarise
+from rigidfluid.core.system import System, build_system
+from rigidfluid.core.types import Wrench
+from rigidfluid.core.writer import Writer, earlier_run
+from rigidfluid.errors import OutputError, StepError, StepRejected
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds."""
+
+    time: float
+    end: float
+    step: float
+    gap: float
+    elapsed: float
+
+
+class Simulation:
+    """A run in progress: the latest accepted state, and all that it takes to reach the next one.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to run.
+    out : Path or None
+        Folder for the results, or None.
+    resume : bool
+        Whether to go on from the checkpoint there.
+    """
+
+    def __init__(self, scene: Scene, out: Path | None, resume: bool) -> None:
+        earlier = _earlier(scene, out) if resume else None
+        self.scene = scene
+        self.system = build_system(scene)
+        self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
+        sizes = _sizes(scene, self.system)
+        self.mover = Mover(self.system, sizes, scene.mesh.quality if scene.mesh else 0.0)
+        self.watch = Stopwatch()
+        self.history = History(scene.dimension)
+        self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
+        self._start = time.perf_counter()
+        if earlier is None:
+            self._begin(out)
+        else:
+            assert out is not None
+            self._take_up(out, earlier)
+
+    @property
+    def elapsed(self) -> float:
+        """Wall seconds of this run, those before a resumption included."""
+        return self._elapsed_before + time.perf_counter() - self._start
+
+    def go(self, progress: Callable[[Progress], None] | None) -> None:
+        """Step until the end."""
+        while self.state.tick < self.clock.last_tick:
+            self._advance()
+            self._record()
+            if self._output_due():
+                self._output()
+            if progress is not None:
+                now, level = self.clock.time(self.state.tick), self.state.level or 0
+                progress(Progress(now, self.clock.end, self.clock.size(level), self._smallest_gap(), self.elapsed))
+
+    def finish(self, status: str) -> None:
+        """Sum up, in memory and on disk."""
+        self.history.summary = summarise(self, status)
+        if self._writer is not None:
+            self.history.summary["files"] = self._writer.files
+            self._writer.summary(self.history.summary)
+
+    def _begin(self, out: Path | None) -> None:
+        self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
+        self._times: tuple[float, ...] = ()
+        with self.watch("mesh"):
+            self.state = _initial_state(self.system, self.mover)
+        self._writer = None if out is None else Writer(out, self.scene.dimension, None)
+        self._record()
+        self._output()
+
+    def _take_up(self, out: Path, earlier: Checkpoint) -> None:
+        self.state = earlier.state
+        self._elapsed_before, self.rejected, self.remeshes = earlier.elapsed, earlier.rejected, earlier.remeshes
+        self._times = earlier.times
+        self.watch.seconds = dict(earlier.seconds)
+        self._writer = Writer(out, self.scene.dimension, earlier)
+        self.history.extend(self._writer.records())
+
+    def _advance(self) -> None:
+        """One accepted step: the longest that is allowed, halved until it succeeds."""
+        level = self._first_level()
+        while True:
+            try:
+                self.state = self._tried(level)
+            except StepRejected as rejection:
+                self.rejected += 1
+                level += 1
+                if level > self.clock.levels:
+                    raise self._stuck(rejection) from rejection
+            else:
+                return
+
+    def _tried(self, level: int) -> State:
+        with self.watch("mesh"):
+            state = self.mover.adapted(self.state, predicted(self.state, self.clock.size(level)))
+            self.remeshes += state is not self.state
+            self.state = state
+        return attempt(self.system, self.clock, self.mover, self.watch, self.state, level)
+
+    def _first_level(self) -> int:
+        """The longest step on the clock's grid that does not close a gap too fast."""
+        level = self.clock.longest_level(self.state.tick, self.state.level)
+        with self.watch("detect"):
+            while level < self.clock.levels and self._closes_too_fast(level):
+                level += 1
+        return level
+
+    def _closes_too_fast(self, level: int) -> bool:
+        pose = predicted(self.state, self.clock.size(level))
+        moved = travel(self.system, self.state.pose, pose)
+        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * self.state.gaps):
+            return False  # too far away for that: no need to measure
+        _, gaps = surroundings(self.system, pose, None)
+        return bool((gaps < CLOSEST_APPROACH * self.state.gaps).any())
+
+    def _smallest_gap(self) -> float:
+        return float(self.state.gaps.min())
+
+    def _record(self) -> None:
+        now = records(self.system, self._probes, self.state, self.clock.time(self.state.tick))
+        self.history.extend(now)
+        if self._writer is not None:
+            with self.watch("write"):
+                self._writer.extend(now)
+
+    def _output_due(self) -> bool:
+        every = self.scene.output.every
+        latest = math.floor(self._times[-1] / every + 1e-9)
+        return self.state.tick >= min(self.clock.tick_at((latest + 1) * every), self.clock.last_tick)
+
+    def _output(self) -> None:
+        """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
+        self._times = (*self._times, self.clock.time(self.state.tick))
+        self.system.backend.forget()
+        if self._writer is None:
+            return
+        with self.watch("write"):
+            if self.state.mesh is not None:
+                self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
+            self._writer.checkpoint(self._checkpoint(self._writer))
+
+    def _checkpoint(self, writer: Writer) -> Checkpoint:
+        return Checkpoint(
+            state=self.state,
+            scene=json.dumps(self.scene.to_dict()),
+            times=self._times,
+            lengths=writer.lengths,
+            seconds=self.watch.seconds,
+            rejected=self.rejected,
+            remeshes=self.remeshes,
+            elapsed=self.elapsed,
+        )
+
+    def _stuck(self, rejection: StepRejected) -> StepError:
+        shortest, nearest = self.clock.size(self.clock.levels), int(np.argmin(self.state.gaps))
+        body, gap = self.system.surfaces[nearest], self.state.gaps[nearest]
+        return StepError(
+            f"{rejection.subject} at time {self.clock.time(self.state.tick):g}",
+            f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from the nearest surface",
+            rejection.allowed,
+            f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
+        )
+
+
+def _initial_state(system: System, mover: Mover) -> State:
+    zero = Wrench(np.zeros_like(system.twist.velocity), np.zeros_like(system.twist.angular_velocity))
+    contacts, gaps = surroundings(system, system.pose, None)
+    reference = mover.first_mesh(gaps)
+    mesh = None if reference is None else reference.mesh
+    kinetic = kinetic_energy(system.mass, system.inertia, system.pose, system.twist)
+    stored = contact_energy(system, contacts)
+    return State(
+        tick=0,
+        count=0,
+        level=None,
+        pose=system.pose,
+        twist=system.twist,
+        past=None,
+        mesh=mesh,
+        reference=reference,
+        fluid=system.backend.initial(mesh, system.pose, system.twist),
+        contacts=contacts,
+        gaps=gaps,
+        hydrodynamic_wrench=zero,
+        contact_wrench=zero,
+        ledger=Ledger(kinetic, stored, kinetic + stored),
+    )
+
+
+def _sizes(scene: Scene, system: System) -> Sizes | None:
+    if not system.backend.needs_mesh:
+        return None
+    assert scene.mesh is not None
+    m = scene.mesh
+    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements)
+
+
+def _earlier(scene: Scene, out: Path | None) -> Checkpoint:
+    """The checkpoint to resume; its scene must be this one, but for the end of time."""
+    if out is None:
+        raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
+    checkpoint = earlier_run(out)
+    stored, given = json.loads(checkpoint.scene), scene.to_dict()
+    stored["time"]["end"] = given["time"]["end"]
+    if stored != given:
+        changed = sorted(table for table in stored.keys() | given.keys() if stored.get(table) != given.get(table))
+        raise OutputError(
+            str(out),
+            f"a run of another scene (other: {', '.join(changed)})",
+            "a run of the same scene; only time.end may differ",
+            "Give the same scene and the same --set, or run without --resume.",
+        )
+    return checkpoint
