@@ -98,6 +98,13 @@ def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:
     assert "17 more bodies" in written[-1].read_text(encoding="utf-8")
 
 
+def test_a_body_alone_has_no_gap_to_show(tmp_path: Path) -> None:
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"]).to_dict()
+    scene["boundary"], scene["body"] = [{"on": "all", "type": "slip"}], scene["body"][:1]
+    rigidfluid.run(rigidfluid.Scene.from_dict(scene), tmp_path)
+    assert not any(path.stem == "gap" for path in report(tmp_path))
+
+
 @pytest.mark.parametrize("name", ["summary.json", "bodies.csv", "energy.csv", "fields/000001.vtu"])
 def test_missing_file_is_named(copy: Path, name: str) -> None:
     (copy / name).unlink()

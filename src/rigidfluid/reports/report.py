@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 from matplotlib.figure import Figure
 
 from rigidfluid.core.writer import writing
@@ -63,7 +64,8 @@ def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, .
         yield "smallest_gap", caption, gap_picture(narrowest_moment(results)), raster
     yield "position", "Where the bodies are.", position_plot(results), both
     yield "speed", "How fast the bodies are.", speed_plot(results), both
-    yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both
+    if np.isfinite(results.bodies["gap"]).any():
+        yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both
     yield "force", "What the fluid and what contacts do to each body.", force_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
 
