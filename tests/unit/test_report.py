@@ -31,21 +31,25 @@ def fall(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def written(fall: Path) -> list[Path]:
+    return report(fall)
+
+
 @pytest.fixture
 def copy(fall: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(fall, tmp_path / "copy"))
 
 
-def test_files_of_a_run_with_a_fluid(fall: Path) -> None:
-    written = report(fall)
+def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
     names = {path.name for path in written}
     assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in CURVES for kind in ("png", "svg")} | {"report.html"}
     assert all(path.stat().st_size > 0 for path in written)
     assert all(path.read_bytes().startswith(PNG) for path in written if path.suffix == ".png")
 
 
-def test_the_page_needs_no_other_file(fall: Path) -> None:
-    page = report(fall)[-1].read_text(encoding="utf-8")
+def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
+    page = written[-1].read_text(encoding="utf-8")
     summary = json.loads((fall / "summary.json").read_text())
     assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | CURVES)
     assert 'src="' not in page.replace('src="data:', "")
@@ -55,18 +59,18 @@ def test_the_page_needs_no_other_file(fall: Path) -> None:
     assert "of it: advance [s]" in page
 
 
-def test_the_same_run_gives_the_same_files(fall: Path) -> None:
-    first = {path: path.read_bytes() for path in report(fall)}
+def test_the_same_run_gives_the_same_files(fall: Path, written: list[Path]) -> None:
+    first = {path: path.read_bytes() for path in written}
     assert {path: path.read_bytes() for path in report(fall)} == first
 
 
-def test_the_scene_on_the_page_is_a_scene(copy: Path) -> None:
+def test_the_scene_on_the_page_is_a_scene(fall: Path, written: list[Path]) -> None:
     import tomllib
     from html import unescape
 
-    page = report(copy)[-1].read_text(encoding="utf-8")
+    page = written[-1].read_text(encoding="utf-8")
     text = unescape(page.partition("<pre>")[2].partition("</pre>")[0])
-    assert tomllib.loads(text) == json.loads((copy / "summary.json").read_text())["scene"]
+    assert tomllib.loads(text) == json.loads((fall / "summary.json").read_text())["scene"]
 
 
 def test_run_without_a_fluid(tmp_path: Path) -> None:
