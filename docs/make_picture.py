@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import tempfile
 from pathlib import Path
 
@@ -17,17 +18,15 @@ from rigidfluid.reports.plane import corner_triangles, fine_triangles
 from rigidfluid.reports.style import BLACK, BODY, COLOURMAP, ORANGE, STYLE, VERMILLION, new_figure
 
 HERE = Path(__file__).parent
+sys.path.append(str(HERE.parent / "tests" / "support"))
+
+from published import KOBLITZ_2017  # noqa: E402
+
 SCENE = HERE.parent / "scenes" / "falling_disk.toml"
 PATH = HERE / "falling_disk.png"
 OVERRIDES = ("mesh.size_body=0.025", "time.step=0.004")
 MOMENTS = (0.24, 0.5, 0.76)
 FASTEST = 5.7  # cm/s
-
-# Digitised from the figures, (time [s], velocity [cm/s]).
-KOBLITZ_2017 = (  # Koblitz, Lovett, Nikiforakis, Henshaw, J. Comput. Phys. 343 (2017) 414, figure 6b
-    *((0.0306, -1.892), (0.0518, -2.727), (0.0800, -3.590), (0.1152, -4.338), (0.1775, -5.040)),
-    *((0.2798, -5.430), (0.3832, -5.540), (0.4866, -5.579), (0.5900, -5.591), (0.6934, -5.515)),
-)
 
 
 def picture(history: History, folder: Path) -> Figure:
@@ -71,7 +70,7 @@ def compare(axes: Axes, history: History) -> None:
         color=VERMILLION,
         label=f"rigidfluid, {history.summary['steps']} steps,\n{history.summary['unknowns']} unknowns",
     )
-    axes.plot(*zip(*KOBLITZ_2017, strict=True), "o", color=BLACK, fillstyle="none", label="Koblitz et al. 2017")
+    axes.plot(*KOBLITZ_2017.T, "o", color=BLACK, fillstyle="none", label="Koblitz et al. 2017")
     touch = bodies["time"][np.argmax(bodies["gap"] < 0.015)]
     axes.axvline(touch, color=ORANGE, linestyle="--", label="contact force sets in")
     axes.set(xlabel="time [s]", ylabel="vertical velocity [cm/s]", xlim=(0, 1))

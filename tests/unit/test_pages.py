@@ -1,0 +1,79 @@
+"""The pages are complete, their links lead somewhere, and their examples run."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from falling import SCENES
+
+import rigidfluid
+from rigidfluid.core.records import columns
+from rigidfluid.registry import FORCE_LAW, GROUP, KINDS, Registry
+
+ROOT = SCENES.parent
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+Install = Callable[..., Path]
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def section(page: str, title: str) -> str:
+    return page.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("table", columns(2))
+def test_every_column_is_explained(table: str, dimension: int) -> None:
+    named = section(text("docs/results.md"), f"{table}.csv")
+    assert [name for name in columns(dimension)[table] if f"`{name}`" not in named] == []
+
+
+def test_every_figure_of_the_summary_is_explained() -> None:
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"])
+    named = section(text("docs/results.md"), "summary.json")
+    assert [key for key in rigidfluid.run(scene).summary if f"`{key}`" not in named] == []
+
+
+def test_every_hook_is_explained() -> None:
+    page = text("docs/plugins.md")
+    for kind in KINDS:
+        for word in (kind.hook, kind.interface.__name__, kind.field):
+            assert f"`{word}`" in page
+
+
+def test_every_built_in_part_is_in_the_readme() -> None:
+    page = text("README.md")
+    built_in = [entry.name for entry in Registry.load().entries if entry.origin.startswith("rigidfluid ")]
+    assert [name for name in built_in if f"`{name}`" not in page] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_to_files(page: Path) -> None:
+    links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    assert [link for link in links if not (page.parent / link).exists()] == []
+
+
+def test_the_example_of_a_plug_in_runs(install: Install) -> None:
+    page = text("docs/plugins.md")
+    project, scene_table = (tomllib.loads(block) for block in blocks(page, "toml"))
+    (name, module), *_ = project["project"]["entry-points"][GROUP].items()
+    install(blocks(page, "python")[0], name=name, module=module)
+    assert Registry.load().get(FORCE_LAW, "linear").__doc__
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.01"]).to_dict()
+    scene["contact"] = scene_table["contact"]
+    history = rigidfluid.run(rigidfluid.Scene.from_dict(scene))
+    assert history.bodies["cfx"].any()
+
+
+def test_the_picture_is_small() -> None:
+    assert (ROOT / "docs" / "falling_disk.png").stat().st_size < 300 * 1024
