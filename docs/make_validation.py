@@ -1,0 +1,146 @@
+"""Runs the validation scenes and writes docs/validation: a page and a plot for each.
+
+python docs/make_validation.py [falling_disk] [dfg_cylinder]
+"""
+
+from __future__ import annotations
+
+import datetime
+import sys
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import rigidfluid
+from rigidfluid.core.history import History
+
+ROOT = Path(__file__).parents[1]
+OUT = ROOT / "docs" / "validation"
+sys.path.append(str(ROOT / "tests" / "support"))
+
+from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_SPEED  # noqa: E402
+
+Row = tuple[str, str, str, str]
+FALLS = {
+    "size_body 0.01, step 0.001": [],
+    "size_body 0.025, step 0.004": ["mesh.size_body=0.025", "time.step=0.004"],
+}
+
+
+def run(scene: str, overrides: Iterable[str] = ()) -> tuple[History, float]:
+    """A scene's history, and its wall time [s]."""
+    start = time.perf_counter()
+    history = rigidfluid.run(rigidfluid.load_scene(ROOT / "scenes" / scene, overrides))
+    return history, time.perf_counter() - start
+
+
+def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    """A Markdown table."""
+    lines = [head, ("---",) * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def write_page(name: str, title: str, command: str, text: str) -> None:
+    """One page with its date, its command and its plot."""
+    stamp = f"Made on {datetime.date.today()} by `{command}`, rigidfluid {rigidfluid.__version__}."
+    page = f"# {title}\n\n{stamp}\n\n![{title}]({name}.png)\n\n{text}\n"
+    (OUT / f"{name}.md").write_text(page, encoding="utf-8")
+
+
+def falling_disk() -> None:
+    """Case 1 of arXiv:2402.19093 at two resolutions."""
+    runs = {label: run("falling_disk.toml", overrides) for label, overrides in FALLS.items()}
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    axes = figure.add_subplot(xlabel="time [s]", ylabel="velocity of the disk [cm/s]")
+    for (label, (history, _)), style in zip(runs.items(), ("-", "--"), strict=True):
+        axes.plot(history.bodies["time"], history.bodies["vy"], style, label=f"rigidfluid, {label}")
+    axes.plot(*KOBLITZ_2017.T, "s", mfc="none", label="Koblitz et al. 2017")
+    axes.plot(*GLOWINSKI_2001.T, "x", label="Glowinski et al. 2001")
+    axes.legend()
+    figure.savefig(OUT / "falling_disk.png", dpi=120)
+    head = ("figure", "reference", *FALLS)
+    columns = [fall_figures(history, seconds) for history, seconds in runs.values()]
+    rows = [(name, reference, *(column[name] for column in columns)) for name, reference in FALL_REFERENCES.items()]
+    write_page("falling_disk", "Falling disk", "python docs/make_validation.py falling_disk", table(head, rows))
+
+
+FALL_REFERENCES = {
+    "highest Re, density of the solid": f"{HIGHEST_REYNOLDS} ± 1 %",
+    "passes y = 2 cm at [s]": "0.434 ± 0.01",
+    "passes y = 1 cm at [s]": "0.613 ± 0.01",
+    "passes y = 0.5 cm at [s]": "0.703 ± 0.01",
+    "off Koblitz et al. 2017, largest": "< 3 %",
+    "off Glowinski et al. 2001, root mean square": "< 3 %",
+    "off Glowinski et al. 2001, largest after 0.15 s": "< 3 %",
+    "drift sideways before contact [cm]": "< 0.001",
+    "smallest gap [cm]": "> 0",
+    "energy unaccounted for": "< 2 %",
+    "unknowns at the end": "",
+    "remeshes": "",
+    "wall time [s]": "",
+}
+
+
+def fall_figures(history: History, seconds: float) -> dict[str, str]:
+    """The figures of FALL_REFERENCES, measured; velocities over the terminal speed."""
+    bodies, summary = history.bodies, history.summary
+
+    def off(curve: np.ndarray) -> np.ndarray:
+        return (np.interp(curve[:, 0], bodies["time"], bodies["vy"]) - curve[:, 1]) / TERMINAL_SPEED
+
+    def passes(height: float) -> str:
+        return f"{np.interp(-height, -bodies['y'], bodies['time']):.4f}"
+
+    glowinski = off(GLOWINSKI_2001)
+    values = (
+        f"{summary['reynolds_solid_density']:.3f}",
+        *(passes(height) for height in (2.0, 1.0, 0.5)),
+        f"{np.abs(off(KOBLITZ_2017)).max():.2%}",
+        f"{np.sqrt(np.mean(glowinski**2)):.2%}",
+        f"{np.abs(glowinski[GLOWINSKI_2001[:, 0] > 0.15]).max():.2%}",
+        f"{np.abs(bodies['x'] - 1.0)[bodies['gap'] > 0.015].max():.1e}",
+        f"{summary['smallest_gap']:.5f}",
+        f"{summary['energy']['relative_residual']:.1e}",
+        f"{summary['unknowns']}",
+        f"{summary['remeshes']}",
+        f"{seconds:.0f}",
+    )
+    return dict(zip(FALL_REFERENCES, values, strict=True))
+
+
+def dfg_cylinder() -> None:
+    """Schäfer & Turek's benchmark 2D-1."""
+    history, seconds = run("dfg_cylinder.toml")
+    bodies = history.bodies
+    front, back = (history.probes["pressure"][i::2] for i in (0, 1))
+    scale = 2.0 / (0.2**2 * 0.1)
+    measured = {
+        "drag coefficient": (bodies["fx"] * scale, 5.57953523384),
+        "lift coefficient": (bodies["fy"] * scale, 0.010618948146),
+        "pressure difference": (front - back, 0.11752016697),
+    }
+    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
+    axes = figure.add_subplot(xlabel="time [s]", ylabel="distance from the reference, relative", yscale="log")
+    for name, (values, reference) in measured.items():
+        axes.plot(bodies["time"][1:], np.abs(values[1:] / reference - 1.0), label=name)
+    axes.legend()
+    figure.savefig(OUT / "dfg_cylinder.png", dpi=120)
+    rows = [
+        (name, f"{reference:.8g}", f"{values[-1]:.8g}", f"{values[-1] / reference - 1.0:+.4%}")
+        for name, (values, reference) in measured.items()
+    ]
+    text = table(("figure", "reference", "measured", "difference"), rows)
+    text += f"\n\n{history.summary['unknowns']} unknowns, {history.summary['steps']} steps, {seconds:.0f} s."
+    write_page("dfg_cylinder", "DFG cylinder 2D-1", "python docs/make_validation.py dfg_cylinder", text)
+
+
+CASES = {"falling_disk": falling_disk, "dfg_cylinder": dfg_cylinder}
+
+
+if __name__ == "__main__":
+    OUT.mkdir(exist_ok=True)
+    for case in sys.argv[1:] or CASES:
+        CASES[case]()
