@@ -128,6 +128,13 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
     refused(tmp_path, "summary.json", "Run the scene")
 
 
+def test_a_summary_without_a_figure_is_refused(copy: Path) -> None:
+    summary = json.loads((copy / "summary.json").read_text())
+    del summary["energy"]
+    (copy / "summary.json").write_text(json.dumps(summary))
+    refused(copy, "summary.json", "no energy in it")
+
+
 def test_other_columns_are_refused(copy: Path) -> None:
     table = copy / "energy.csv"
     table.write_text(table.read_text().replace("kinetic", "potential", 1))

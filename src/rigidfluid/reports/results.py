@@ -22,6 +22,13 @@ from rigidfluid.core.vtu import read_pvd
 from rigidfluid.core.writer import SERIES, SUMMARY
 from rigidfluid.errors import OutputError
 
+NEEDED = (
+    *("scene", "status", "versions", "time", "steps", "rejected_steps", "remeshes", "cells", "unknowns"),
+    *("wall_time", "wall_time_per_stage", "reynolds_solid_density", "reynolds", "smallest_gap"),
+    *("rest_position", "energy"),
+)
+"""What the page takes from summary.json."""
+
 REMEDY = "Run the scene again, or go on with --resume; then make the report."
 
 
@@ -102,9 +109,10 @@ def _summary(path: Path) -> dict[str, Any]:
         raise _unreadable(path, error.strerror) from error
     except ValueError as error:
         raise _unreadable(path, f"no JSON ({error})") from error
-    if not isinstance(summary, dict) or "scene" not in summary:
-        raise _unreadable(path, "no scene in it")
-    return summary
+    missing = [key for key in NEEDED if key not in summary] if isinstance(summary, dict) else ["table"]
+    if missing:
+        raise _unreadable(path, f"no {missing[0]} in it")
+    return dict(summary)
 
 
 def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
