@@ -31,6 +31,7 @@ DISK = {
     "output": {"every": 0.02},
 }
 SECOND = {"type": "sphere", "radius": 0.125, "density": 1.0, "position": [1.0, 2.0]}
+ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.2], "density": 1.0, "position": [1.0, 1.0]}
 DELETE = object()
 
 
@@ -297,8 +298,12 @@ def test_defaults() -> None:
 
 
 def test_detector_for_other_shapes() -> None:
-    ellipse = {"type": "ellipsoid", "semi_axes": [0.1, 0.2], "density": 1.0, "position": [1.0, 1.0]}
-    assert build_system(Scene.from_dict(changed({"body.1": ellipse}))).detector.name == "brute_force"
+    assert build_system(Scene.from_dict(changed({"body.1": ELLIPSE, "contact": {}}))).detector.name == "brute_force"
+
+
+def test_a_law_for_balls_refuses_other_shapes() -> None:
+    with pytest.raises(SceneError, match=r"contact.law: found 'centre' with bodies that are no balls"):
+        Scene.from_dict(changed({"body.1": ELLIPSE}))
 
 
 def test_numpy_values_are_accepted() -> None:
