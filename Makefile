@@ -15,6 +15,7 @@ test: .venv/.installed-test
 
 validate: .venv/.installed-test
 	$(BIN)/pytest -m validation
+	$(BIN)/python docs/make_validation.py
 
 lint: .venv/.installed-dev
 	$(BIN)/ruff check

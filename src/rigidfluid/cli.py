@@ -141,10 +141,11 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
 
 
 def _print_end(summary: dict[str, Any], folder: Path) -> None:
-    if summary["reynolds"] is not None:
+    if summary["reynolds"]:
         solid, fluid = _figure(summary["reynolds_solid_density"]), _figure(summary["reynolds"])
         _print(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
-    _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
+    if summary["smallest_gap"] is not None:
+        _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
     _print(f"rest position: {_figure(summary['rest_position'])}")
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 

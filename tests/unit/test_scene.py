@@ -374,3 +374,10 @@ def test_mean_of_a_parabolic_profile_in_3d() -> None:
     inlet = [{"on": "left", "type": "velocity", "velocity": [1, 0, 0], "profile": "parabolic"}]
     outlet = [{"on": "right", "type": "velocity", "velocity": [4 / 9, 0, 0]}]
     Scene.from_dict(in_3d(boundary=inlet + outlet))
+
+
+def test_angular_velocity_in_3d() -> None:
+    given = in_3d(**{"body.0.angular_velocity": [0.1, 0.2, 0.3]})
+    np.testing.assert_array_equal(build_system(Scene.from_dict(given)).twist.angular_velocity, [[0.1, 0.2, 0.3]])
+    given = in_3d(**{"body.0.prescribed": {"angular_velocity": [0.1, 0.2, 0.3]}})
+    np.testing.assert_array_equal(build_system(Scene.from_dict(given)).twist.angular_velocity, [[0.1, 0.2, 0.3]])

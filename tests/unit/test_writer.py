@@ -10,9 +10,10 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.core.checkpoint import read_checkpoint
+from rigidfluid.core.mesh_adaptation import Mover
 from rigidfluid.core.simulation import Simulation
 from rigidfluid.core.tables import Table, read_rows
-from rigidfluid.errors import OutputError
+from rigidfluid.errors import MeshError, OutputError
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
@@ -47,13 +48,14 @@ def test_disk_and_memory_hold_the_same(scene, tmp_path):
     assert all(Path(file).exists() for file in history.summary["files"])
 
 
-def test_numbers_survive_a_table(tmp_path):
-    rows = [(0.1 + 0.2, 3, "disk"), (float("inf"), -1, "left")]
-    table = Table(tmp_path / "t.csv", ("a", "b", "c"), None)
+def test_numbers_and_names_survive_a_table(tmp_path):
+    names = ("time", "step", "body")
+    rows = [(0.1 + 0.2, 3, "disk"), (float("inf"), -1, "1e3")]
+    table = Table(tmp_path / "t.csv", names, None)
     table.extend(rows)
     kept = table.length
     table.extend(rows)
-    Table(tmp_path / "t.csv", ("a", "b", "c"), kept)
+    Table(tmp_path / "t.csv", names, kept)
     assert read_rows(tmp_path / "t.csv") == rows
 
 
@@ -100,3 +102,18 @@ def test_a_run_that_gets_stuck_says_where_and_keeps_what_it_has(tmp_path):
     assert summary["status"].startswith("stopped")
     assert summary["smallest_gap"] > 0
     assert read_rows(tmp_path / "bodies.csv")[-1][0] == pytest.approx(summary["time"])
+
+
+def test_a_failed_remesh_leaves_the_mesh_that_still_serves(scene, monkeypatch):
+    def fail(*_):
+        raise MeshError("mesh", "nothing", "a mesh", "None.")
+
+    monkeypatch.setattr("rigidfluid.core.mesh_adaptation.remesh", fail)
+    monkeypatch.setattr(Mover, "_asks", lambda *_: True)
+    assert rigidfluid.run(scene).summary["status"] == "complete"
+
+
+def test_a_body_without_any_wall_has_no_gap(tmp_path):
+    data = falling_disk(**SHORT).to_dict() | {"boundary": [{"on": "all", "type": "slip"}]}
+    rigidfluid.run(rigidfluid.Scene.from_dict(data), tmp_path)
+    assert json.loads((tmp_path / "summary.json").read_text())["smallest_gap"] is None

@@ -13,7 +13,7 @@ from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.state import Reference, State
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, FloatArray, Mesh, Pose
-from rigidfluid.errors import StepRejected
+from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
@@ -58,7 +58,7 @@ class Mover:
                 "mesh",
                 f"a cell of quality {worst:.3f}",
                 f"at least {TANGLED}",
-                "If bodies are about to touch, strengthen the contact force (contact.epsilon); else shorten time.step.",
+                "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
             )
         return replace(state.reference.mesh, points=points)
 
@@ -69,7 +69,10 @@ class Mover:
         assert self._sizes is not None
         assert state.mesh is not None
         s = self._system
-        mesh = remesh(state.mesh, s.bodies, state.pose, s.walls, self._sizes)
+        try:
+            mesh = remesh(state.mesh, s.bodies, state.pose, s.walls, self._sizes)
+        except MeshError:
+            return state  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
         fluid, loss = s.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,

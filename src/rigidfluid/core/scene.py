@@ -25,7 +25,8 @@ Vector = tuple[float, ...]
 Angular = Annotated[
     Vector,
     BeforeValidator(
-        lambda value: value if isinstance(value, list) else (value,), json_schema_input_type=float | tuple[float, ...]
+        lambda value: tuple(value) if isinstance(value, list | tuple) else (value,),
+        json_schema_input_type=float | tuple[float, ...],
     ),
 ]
 Face = Literal["all", "left", "right", "bottom", "top", "back", "front"]

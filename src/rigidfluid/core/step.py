@@ -40,7 +40,7 @@ def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state:
         mesh = mover.moved(state, pose)
     with watch("detect"):
         contacts, gaps = surroundings(system, pose, mesh)
-        _refuse_overlap(system, gaps, time)
+        _refuse_overlap(system, gaps)
         pushed = _contact_wrench(system, contacts, pose)
     with watch("advance"):
         step = _step(system, state, time, size, pose, mesh, pushed)
@@ -123,12 +123,12 @@ def _rate(wrench: Wrench, twist: Twist) -> FloatArray:
     )
 
 
-def _refuse_overlap(system: System, gaps: FloatArray, time: float) -> None:
+def _refuse_overlap(system: System, gaps: FloatArray) -> None:
     body = int(np.argmin(gaps))
     if gaps[body] <= 0.0:
         raise StepRejected(
-            f"body {system.surfaces[body]} at time {time:g}",
+            f"body {system.surfaces[body]}",
             f"a gap of {gaps[body]:.3e}",
             "a positive gap to every other surface",
-            "Strengthen the contact force (smaller contact.epsilon or larger contact.range) or refine mesh.size_body.",
+            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
         )

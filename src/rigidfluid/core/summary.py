@@ -39,10 +39,15 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "wall_time": simulation.elapsed,
         "wall_time_per_stage": simulation.watch.seconds,
         **reynolds_numbers(simulation.scene, system, history),
-        "smallest_gap": float(np.min(bodies["gap"])),
+        "smallest_gap": _finite(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         "energy": energy_balance(state.ledger),
     }
+
+
+def _finite(value: float) -> float | None:
+    """The number, or None where it is infinite: JSON knows no infinity."""
+    return float(value) if np.isfinite(value) else None
 
 
 def reynolds_numbers(scene: Scene, system: System, history: History) -> dict[str, float | None]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rigidfluid.core.records import Row
@@ -45,18 +45,20 @@ class Table:
             csv.writer(file, lineterminator="\n").writerows(rows)
 
 
+KINDS: Mapping[str, type[float | int | str]] = {"body": str, "a": str, "b": str, "step": int, "probe": int}
+"""What stands in a column; a number with a fraction where it is not named here."""
+
+
 def read_rows(path: Path) -> list[Row]:
-    """The rows of a table on disk, numbers as numbers."""
+    """The rows of a table on disk, numbers as numbers; raises ValueError where one is not."""
     with path.open(newline="", encoding="utf-8") as file:
         reader = csv.reader(file)
-        next(reader, None)
-        return [tuple(_value(text) for text in row) for row in reader]
+        names = next(reader, [])
+        return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
 
 
-def _value(text: str) -> float | int | str:
-    for number in (int, float):
-        try:
-            return number(text)
-        except ValueError:
-            continue
-    return text
+def _value(name: str, text: str) -> float | int | str:
+    try:
+        return KINDS.get(name, float)(text)
+    except ValueError:
+        raise ValueError(f"a value that is no number in column {name}") from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -112,3 +113,5 @@ def _clear(out: Path) -> None:
         (out / name).unlink(missing_ok=True)
     for file in (out / FIELDS).glob("*.vtu"):
         file.unlink()
+    (out / "report.html").unlink(missing_ok=True)
+    shutil.rmtree(out / "report", ignore_errors=True)

@@ -120,11 +120,7 @@ def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
     path, names = folder / f"{name}.csv", columns(dimension)[name]
     rows = _rows(path, names)
     history = History(dimension, {name: rows})
-    numbers = {key: values for key, values in history.table(name).items() if key != "body"}
-    for key, values in numbers.items():
-        if values.dtype.kind not in "if":
-            raise _unreadable(path, f"a value that is no number in column {key}")
-    return {key: values.astype(np.float64) for key, values in numbers.items()}
+    return {key: values.astype(np.float64) for key, values in history.table(name).items() if key != "body"}
 
 
 def _rows(path: Path, names: Sequence[str]) -> list[Row]:
@@ -136,8 +132,10 @@ def _rows(path: Path, names: Sequence[str]) -> list[Row]:
         raise _unreadable(path, "no file") from None
     except OSError as error:
         raise _unreadable(path, error.strerror) from error
-    except ValueError as error:
+    except UnicodeDecodeError as error:
         raise _unreadable(path, f"no text ({error})") from error
+    except ValueError as error:
+        raise _unreadable(path, str(error)) from error
     if tuple(header) != tuple(names):
         raise _unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
     torn = next((number for number, row in enumerate(rows, start=2) if len(row) != len(names)), None)
