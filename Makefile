@@ -22,7 +22,7 @@ lint: .venv/.installed-dev
 	$(BIN)/mypy
 
 bench: .venv/.installed-bench
-	$(BIN)/python benchmarks/step.py
+	$(BIN)/python benchmarks/step.py --page docs/validation/step.md
 
 clean:
 	rm -rf .venv
