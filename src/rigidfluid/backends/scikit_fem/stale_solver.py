@@ -15,7 +15,7 @@ from rigidfluid.errors import StepRejected
 # One factorisation costs about as much as this many iterations (PARDISO, 15,000 to 150,000 unknowns),
 _ITERATIONS_PER_FACTORISATION = 30
 # and with fresh factors, once the step has settled, a solve takes about this many.
-_ITERATIONS_WHEN_FRESH = 4
+_ITERATIONS_WHEN_FRESH = 3
 _MOST_ITERATIONS = 60
 
 
