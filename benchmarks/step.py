@@ -109,19 +109,22 @@ def show(row: dict[str, Any]) -> None:
             print(f"    {title:15s} {stage:36s} {1000 * seconds:9.2f} ms")
 
 
+PREAMBLE = """\
+Made on {date} by `make bench` on {cores} cores. Seconds a step on the same mesh. NGSolve assembles and factorises
+(UMFPACK) at every step; rigidfluid reuses factors, drops them every 20 steps as at an output, and its step includes
+moving the mesh, detection, the bodies and the energy balance. Only the ratios of one run mean something.
+
+What is left on the table: most of a step is the iteration with old factors, three to five back-substitutions; a better
+first guess or a cheaper preconditioner could save part of that. Assembly uses one core.
+"""
+
+
 def page(rows: list[dict[str, Any]]) -> str:
     """The rows as a Markdown page with its date and command."""
     lines = [
         "# One step beside NGSolve",
         "",
-        f"Made on {datetime.date.today()} by `make bench` on {os.cpu_count()} cores. Seconds a step on the same mesh.",
-        "NGSolve assembles and factorises (UMFPACK) at every step; rigidfluid reuses factors, drops them every 20",
-        "steps as at an output, and its step includes moving the mesh, detection, the bodies and the energy balance. Only",
-        "the ratios of one run mean something.",
-        "",
-        "What is left on the table: most of a step is the iteration with old factors, three to five",
-        "back-substitutions; a better first guess or a cheaper preconditioner could save part of that. Assembly uses one core.",
-        "",
+        PREAMBLE.format(date=datetime.date.today(), cores=os.cpu_count()),
         "| unknowns | rigidfluid [s] | NGSolve [s] | ratio |",
         "|---|---|---|---|",
         *(
