@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.backends.scikit_fem.boundary import face_power, pressure_load
-from rigidfluid.backends.scikit_fem.discretisation import Discretisation
+from rigidfluid.backends.scikit_fem.discretisation import Discretisation, kinetic_energy, mass_times
 from rigidfluid.backends.scikit_fem.stale_solver import StaleSolver
 from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 
@@ -59,7 +59,7 @@ def advance(
         fluid=state,
         twist=Twist(twist[:, :d], twist[:, d:]),
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
-        kinetic_energy=discretisation.kinetic_energy(points, velocity),
+        kinetic_energy=kinetic_energy(discretisation.problem, space, points, velocity),
         dissipation=discretisation.dissipation(points, velocity),
         boundary_power=face_power(discretisation, mesh, assembled, velocity, reaction, step.time),
         iterations=iterations,
@@ -88,7 +88,7 @@ def _assemble(
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
     load = np.zeros(space.unknowns)
-    load[: node_points.size] = discretisation.mass_times(points, density_of_load).ravel()
+    load[: node_points.size] = mass_times(space, points, density_of_load).ravel()
     load[: node_points.size] += pressure_load(discretisation, mesh, node_points, step.time).ravel()
     return _Assembled(space.matrix(data), load, node_points, mesh_velocity, extrapolated)
 

@@ -12,6 +12,19 @@ from rigidfluid.backends.scikit_fem.space import TaylorHood
 from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
 
 
+def mass_times(space: TaylorHood, points: FloatArray, field: FloatArray) -> FloatArray:
+    """(field, v) for every nodal test function, (nodes, d)."""
+    load: FloatArray = kernels.apply_mass(points, space.cell_vertices, space.cell_nodes, space.tables.mass, field)
+    return load
+
+
+def kinetic_energy(problem: FluidProblem, space: TaylorHood, points: FloatArray, velocity: FloatArray) -> float:
+    """½ ρ ∫ |u|² [energy]; zero in Stokes flow, which has no inertia."""
+    if not problem.inertia:
+        return 0.0
+    return 0.5 * problem.density * float(np.sum(velocity * mass_times(space, points, velocity)))
+
+
 @dataclass(frozen=True)
 class Discretisation:
     """The problem on one topology: what stays the same while the mesh only moves."""
@@ -28,18 +41,6 @@ class Discretisation:
             advection, t.value, t.gradient, t.weight, t.flat_gradient, t.flat_linear, t.flat_weight, t.mass,
         )  # fmt: skip
         return data
-
-    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
-        """(field, v) for every nodal test function, (nodes, d)."""
-        space = self.space
-        load: FloatArray = kernels.apply_mass(points, space.cell_vertices, space.cell_nodes, space.tables.mass, field)
-        return load
-
-    def kinetic_energy(self, points: FloatArray, velocity: FloatArray) -> float:
-        """½ ρ ∫ |u|² [energy]; zero in Stokes flow, which has no inertia."""
-        if not self.problem.inertia:
-            return 0.0
-        return 0.5 * self.problem.density * float(np.sum(velocity * self.mass_times(points, velocity)))
 
     def dissipation(self, points: FloatArray, velocity: FloatArray) -> float:
         """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.backends.scikit_fem.constraint import rigid_velocity
-from rigidfluid.backends.scikit_fem.discretisation import Discretisation
+from rigidfluid.backends.scikit_fem.discretisation import Discretisation, kinetic_energy
 from rigidfluid.backends.scikit_fem.factorization import factorise
 from rigidfluid.backends.scikit_fem.location import locate, quadratic_basis
 from rigidfluid.backends.scikit_fem.space import TaylorHood
@@ -40,7 +40,8 @@ def transfer(
         velocity = on_nodes(fluid["velocity" + suffix])
         _move_with_bodies(target, velocity, points, fluid["position" + suffix], fluid["twist" + suffix])
         moved["velocity" + suffix] = project(target, velocity, points)
-    return moved, _kinetic_energy(target, source, fluid, old) - target.kinetic_energy(new.points, moved["velocity"])
+    before = kinetic_energy(target.problem, source, old.points, fluid["velocity"])
+    return moved, before - kinetic_energy(target.problem, space, new.points, moved["velocity"])
 
 
 def project(target: Discretisation, velocity: FloatArray, points: FloatArray) -> FloatArray:
@@ -60,7 +61,3 @@ def _move_with_bodies(
     node_points = target.space.node_points(points)
     for body, nodes in enumerate(target.constraint.body_nodes):
         velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
-
-
-def _kinetic_energy(target: Discretisation, source: TaylorHood, fluid: FluidState, old: Mesh) -> float:
-    return Discretisation(target.problem, source, target.constraint).kinetic_energy(old.points, fluid["velocity"])
