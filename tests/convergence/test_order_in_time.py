@@ -28,7 +28,7 @@ def run(sizes, velocity, source, density=DENSITY):
     """Largest nodal error at END after steps of these sizes on the swaying mesh."""
     mesh = unit_square(2)
     fluid = backend(velocity, density, VISCOSITY, source)
-    state = dict(fluid.initial(mesh, NO_POSE, NO_TWIST))
+    state = dict(fluid.initial(mesh, NO_POSE, NO_TWIST)[0])
     space = fluid._discretisations.space(mesh)
     state["velocity"] = velocity(0.0, space.node_points(mesh.points))
     time, before, now = 0.0, None, mesh

@@ -19,7 +19,7 @@ class Interrupted(Simulation):
             False,
         )
         self.uneven = uneven
-        self.mover._asks = lambda state, pose: state.tick == self.clock.tick_at(REMESH)
+        self.mover._asks = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
 
     def _first_level(self):
         odd = self.state.tick // self.clock.ticks(0) % 2

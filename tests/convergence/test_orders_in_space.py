@@ -44,7 +44,7 @@ def errors(refinements):
     """L² errors of the Oseen step whose advecting field is the exact one: the space alone decides."""
     mesh = unit_square(refinements)
     fluid = backend(velocity, DENSITY, VISCOSITY, source)
-    state = dict(fluid.initial(mesh, NO_POSE, NO_TWIST))
+    state = dict(fluid.initial(mesh, NO_POSE, NO_TWIST)[0])
     discretisation = fluid._discretisations.on(mesh, np.zeros(0, dtype=bool))
     nodes = discretisation.space.node_points(mesh.points)
     state["velocity"] = velocity(0.0, nodes)

@@ -117,3 +117,12 @@ def test_a_body_without_any_wall_has_no_gap(tmp_path):
     data = falling_disk(**SHORT).to_dict() | {"boundary": [{"on": "all", "type": "slip"}]}
     rigidfluid.run(rigidfluid.Scene.from_dict(data), tmp_path)
     assert json.loads((tmp_path / "summary.json").read_text())["smallest_gap"] is None
+
+
+def test_a_table_that_has_lost_rows_is_refused(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    whole = (tmp_path / "bodies.csv").read_bytes()
+    (tmp_path / "bodies.csv").write_bytes(whole[:300])
+    with pytest.raises(OutputError, match=r"bodies.csv: found 300 bytes"):
+        rigidfluid.run(scene, tmp_path, resume=True)
+    assert (tmp_path / "bodies.csv").read_bytes() == whole[:300]

@@ -12,8 +12,8 @@ import rigidfluid
 VISCOSITY, SPEED, FAR = 0.7, 0.3, 60.0
 
 
-def drag(height, direction):
-    """Force (2,) and torque on a cylinder of radius 1 that moves at SPEED, its centre ``height`` above the floor."""
+def drag(height, direction=(0.0, 0.0), spin=0.0):
+    """Force (2,) and torque on a cylinder of radius 1 that moves at SPEED or turns, ``height`` above the floor."""
     scene = rigidfluid.Scene.from_dict(
         {
             "scene": {"name": "cylinder", "dimension": 2},
@@ -26,7 +26,10 @@ def drag(height, direction):
                     "radius": 1.0,
                     "density": 1.0,
                     "position": [0.0, height],
-                    "prescribed": {"velocity": [SPEED * component for component in direction]},
+                    "prescribed": {
+                        "velocity": [SPEED * component for component in direction],
+                        "angular_velocity": spin,
+                    },
                 }
             ],
             "mesh": {"size": 6.0, "size_body": 0.05},
@@ -51,3 +54,12 @@ def test_towards_the_wall(gap):
     force, _ = drag(1.0 + gap, (0.0, -1.0))
     alpha = np.arccosh(1.0 + gap)
     assert force[1] == pytest.approx(4 * np.pi * VISCOSITY * SPEED / (alpha - np.tanh(alpha)), rel=0.01)
+
+
+@pytest.mark.parametrize("gap", [1.0, 0.1])
+def test_turning_on_the_spot(gap):
+    """4πμω coth α, and no force (Jeffery, Proc. R. Soc. Lond. A 101 (1922) 169, doi:10.1098/rspa.1922.0035)."""
+    force, torque = drag(1.0 + gap, spin=SPEED)
+    expected = 4 * np.pi * VISCOSITY * SPEED / np.tanh(np.arccosh(1.0 + gap))
+    assert torque == pytest.approx(-expected, rel=0.01)
+    assert np.abs(force).max() < 0.02 * expected

@@ -24,9 +24,9 @@ class Dry(FluidBackend):
     name: ClassVar[str] = "dry"
     needs_mesh: ClassVar[bool] = False
 
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> FluidState:
-        """An empty state."""
-        return {}
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        """An empty state without energy."""
+        return {}, 0.0
 
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
         """The twists at the new time; the fluid's wrench and powers are zero."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+_END_LEVEL = 3
+
 
 @dataclass(frozen=True, slots=True)
 class Clock:
@@ -24,12 +26,13 @@ class Clock:
 
     @property
     def last_tick(self) -> int:
-        """The tick nearest to the end."""
-        return self.tick_at(self.end)
+        """The first eighth of a nominal step that is not before the end, so that no sliver of a step is left over."""
+        coarse = max(0, self.levels - _END_LEVEL)
+        return -(-self.tick_from(self.end) >> coarse) << coarse
 
-    def tick_at(self, time: float) -> int:
-        """The tick nearest to a time."""
-        return round(time / self.step * (1 << self.levels))
+    def tick_from(self, time: float) -> int:
+        """The first tick that is not before a time."""
+        return math.ceil(time / self.step * (1 << self.levels) - 1e-6)
 
     def time(self, tick: int) -> float:
         """The time of a tick."""

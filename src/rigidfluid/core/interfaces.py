@@ -161,8 +161,8 @@ class FluidBackend(Part):
         self.problem = problem
 
     @abstractmethod
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> FluidState:
-        """The state of a fluid at rest around bodies that move with ``twist``."""
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        """The fluid that was at rest when its bodies were set in motion with ``twist``, and its kinetic energy."""
 
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

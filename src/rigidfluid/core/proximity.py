@@ -21,15 +21,24 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     infinite, so that the work grows with the number of neighbours and not of pairs.
     """
     count = len(system.bodies)
-    few = count * (count + len(system.walls)) <= _MOST_PAIRS
-    law_range = system.law.range if system.law else 0.0
-    reach = math.inf if few else law_range + 2.0 * max(body.bounding_radius for body in system.bodies)
-    near = system.detector.detect(pose, mesh, reach)
+    near = system.detector.detect(pose, mesh, reach(system))
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, near.gap <= law_range), gaps
+    return select(near, near.gap <= _law_range(system)), gaps
+
+
+def reach(system: System) -> float:
+    """Up to where gaps are measured [length]."""
+    count = len(system.bodies)
+    if count * (count + len(system.walls)) <= _MOST_PAIRS:
+        return math.inf
+    return _law_range(system) + 2.0 * max(body.bounding_radius for body in system.bodies)
+
+
+def _law_range(system: System) -> float:
+    return system.law.range if system.law else 0.0
 
 
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:

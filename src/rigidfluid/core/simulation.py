@@ -13,15 +13,15 @@ import numpy as np
 
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.energy import Ledger, kinetic_energy
+from rigidfluid.core.energy import Ledger, Power
 from rigidfluid.core.history import History
 from rigidfluid.core.mesh_adaptation import Mover
-from rigidfluid.core.proximity import surroundings, travel
+from rigidfluid.core.proximity import reach, surroundings, travel
 from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.state import State
-from rigidfluid.core.step import CLOSEST_APPROACH, attempt, contact_energy, predicted
+from rigidfluid.core.step import CLOSEST_APPROACH, attempt, bodies_energy, contact_energy, gravity_power, predicted
 from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.summary import summarise
 from rigidfluid.core.system import System, build_system
@@ -143,10 +143,11 @@ class Simulation:
     def _closes_too_fast(self, level: int) -> bool:
         pose = predicted(self.state, self.clock.size(level))
         moved = travel(self.system, self.state.pose, pose)
-        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * self.state.gaps):
+        known = np.minimum(self.state.gaps, reach(self.system))
+        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * known):
             return False  # too far away for that: no need to measure
         _, gaps = surroundings(self.system, pose, None)
-        return bool((gaps < CLOSEST_APPROACH * self.state.gaps).any())
+        return bool((gaps < CLOSEST_APPROACH * known).any())
 
     def _smallest_gap(self) -> float:
         return float(self.state.gaps.min())
@@ -161,7 +162,7 @@ class Simulation:
     def _output_due(self) -> bool:
         every = self.scene.output.every
         latest = math.floor(self._times[-1] / every + 1e-9)
-        return self.state.tick >= min(self.clock.tick_at((latest + 1) * every), self.clock.last_tick)
+        return self.state.tick >= min(self.clock.tick_from((latest + 1) * every), self.clock.last_tick)
 
     def _output(self) -> None:
         """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
@@ -202,7 +203,8 @@ def _initial_state(system: System, mover: Mover) -> State:
     contacts, gaps = surroundings(system, system.pose, None)
     reference = mover.first_mesh(gaps)
     mesh = None if reference is None else reference.mesh
-    kinetic = kinetic_energy(system.mass, system.inertia, system.pose, system.twist)
+    fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
+    kinetic += bodies_energy(system, system.pose, system.twist)
     stored = contact_energy(system, contacts)
     return State(
         tick=0,
@@ -213,12 +215,12 @@ def _initial_state(system: System, mover: Mover) -> State:
         past=None,
         mesh=mesh,
         reference=reference,
-        fluid=system.backend.initial(mesh, system.pose, system.twist),
+        fluid=fluid,
         contacts=contacts,
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored),
+        ledger=Ledger(kinetic, stored, kinetic + stored, power=Power(gravity=gravity_power(system, system.twist))),
     )
 
 

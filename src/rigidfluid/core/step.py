@@ -62,10 +62,16 @@ def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state:
         ledger=state.ledger.after(
             size,
             _power(system, advance, pushed),
-            advance.kinetic_energy + kinetic_energy(system.mass, system.inertia, pose, advance.twist),
+            advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
     )
+
+
+def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
+    """Kinetic energy of the free bodies; what a hand drives has no energy of its own in the balance."""
+    free = ~system.controlled
+    return kinetic_energy(system.mass * free, system.inertia * free[:, None, None], pose, twist)
 
 
 def contact_energy(system: System, contacts: Contacts) -> float:
@@ -105,16 +111,20 @@ def _step(
 
 
 def _power(system: System, advance: Advance, pushed: Wrench) -> Power:
-    """The hands that drive a controlled body do what fluid, contact and weight do not, to change its momentum."""
+    """The hands that drive controlled bodies work against the fluid and the contacts."""
     twist, fluid = advance.twist, advance.hydrodynamic_wrench
     driven = _rate(fluid, twist) + _rate(pushed, twist)
-    weight = np.sum(system.weight * twist.velocity, axis=1)
     return Power(
-        gravity=float(weight[~system.controlled].sum()),
+        gravity=gravity_power(system, twist),
         boundary=advance.boundary_power,
         control=-float(driven[system.controlled].sum()),
         dissipation=advance.dissipation,
     )
+
+
+def gravity_power(system: System, twist: Twist) -> float:
+    """Of the submerged weight of the free bodies [energy/time]."""
+    return float(np.sum((system.weight * twist.velocity)[~system.controlled]))
 
 
 def _rate(wrench: Wrench, twist: Twist) -> FloatArray:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rigidfluid.core.records import Row
+from rigidfluid.errors import OutputError
 
 
 class Table:
@@ -28,7 +29,7 @@ class Table:
         if length is None:
             self._write("w", [columns])
         else:
-            os.truncate(path, length)
+            self._cut(length)
 
     def extend(self, rows: Sequence[Row]) -> None:
         """Append rows; numbers are written so that reading gives the same bits back."""
@@ -39,6 +40,12 @@ class Table:
     def length(self) -> int:
         """Bytes written so far."""
         return self._path.stat().st_size
+
+    def _cut(self, length: int) -> None:
+        if self.length < length:
+            found, allowed = f"{self.length} bytes", f"the {length} bytes or more of the checkpoint"
+            raise OutputError(str(self._path), found, allowed, "Restore the file, or run without --resume.")
+        os.truncate(self._path, length)
 
     def _write(self, mode: str, rows: Sequence[Sequence[object]]) -> None:
         with self._path.open(mode, newline="", encoding="utf-8") as file:

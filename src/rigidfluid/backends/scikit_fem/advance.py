@@ -15,12 +15,12 @@ from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, T
 
 @dataclass(frozen=True)
 class _Assembled:
-    """K x = load for all unknowns, at nodes ``node_points`` that move with ``mesh_velocity``."""
+    """K x = load for all unknowns, at nodes ``node_points``; ``pressure_load`` is the part of load from the faces."""
 
     matrix: sparse.csr_array
     load: FloatArray
+    pressure_load: FloatArray
     node_points: FloatArray
-    mesh_velocity: FloatArray
     extrapolated: FloatArray
 
 
@@ -61,7 +61,7 @@ def advance(
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
         kinetic_energy=kinetic_energy(discretisation.problem, space, points, velocity),
         dissipation=discretisation.dissipation(points, velocity),
-        boundary_power=face_power(discretisation, mesh, assembled, velocity, reaction, step.time),
+        boundary_power=face_power(discretisation, assembled.node_points, velocity, assembled.pressure_load, reaction),
         iterations=iterations,
     )
 
@@ -89,8 +89,9 @@ def _assemble(
         density_of_load += problem.source(step.time, node_points)
     load = np.zeros(space.unknowns)
     load[: node_points.size] = mass_times(space, points, density_of_load).ravel()
-    load[: node_points.size] += pressure_load(discretisation, mesh, node_points, step.time).ravel()
-    return _Assembled(space.matrix(data), load, node_points, mesh_velocity, extrapolated)
+    on_faces = pressure_load(discretisation, node_points, step.time)
+    load[: node_points.size] += on_faces.ravel()
+    return _Assembled(space.matrix(data), load, on_faces, node_points, extrapolated)
 
 
 def _solve(
@@ -132,6 +133,8 @@ def _guess(
     constraint = discretisation.constraint
     e0, e1 = step.extrapolation
     pressure = e0 * fluid["pressure"] + e1 * fluid["pressure_previous"]
+    if constraint.pinned is not None:
+        pressure -= pressure[constraint.pinned]
     everything = np.concatenate([assembled.extrapolated.ravel(), pressure])
     guess = np.empty(constraint.unknowns)
     guess[constraint.free_columns] = everything[constraint.free_unknowns]
@@ -149,7 +152,7 @@ def _twist(discretisation: Discretisation, reduced: FloatArray, step: Step) -> F
 
 def _centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
     """In an enclosed flow the pressure's constant is free: take the one with zero mean."""
-    if not discretisation.constraint.enclosed:
+    if discretisation.constraint.pinned is None:
         return pressure
     cells = discretisation.space.cell_vertices
     volume = np.abs(np.linalg.det(points[cells[:, 1:]] - points[cells[:, :1]]))

@@ -51,10 +51,11 @@ class ScikitFem(FluidBackend):
         self._discretisations = Discretisations(self.problem)
         self._solver = StaleSolver()
 
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> FluidState:
-        from rigidfluid.backends.scikit_fem.state import at_rest
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        from rigidfluid.backends.scikit_fem.transfer import initial
 
-        return at_rest(self._discretisations.space(_given(mesh)), _given(mesh), pose, twist)
+        everything = np.ones(self.problem.bodies, dtype=bool)
+        return initial(self._discretisations.on(_given(mesh), everything), _given(mesh), pose, twist)
 
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
         from rigidfluid.backends.scikit_fem.advance import advance
@@ -67,7 +68,7 @@ class ScikitFem(FluidBackend):
 
         everything = np.ones(self.problem.bodies, dtype=bool)
         source = self._discretisations.space(old)
-        self.forget()
+        self._solver.forget()
         target = self._discretisations.on(new, everything)
         return transfer(source, target, fluid, old, new)
 

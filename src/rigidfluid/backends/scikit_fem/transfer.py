@@ -1,4 +1,4 @@
-"""Carries a state onto another mesh of the same domain: interpolation, then projection to zero divergence."""
+"""States whose velocity comes from elsewhere, from another mesh or a blow; it is projected to zero divergence."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from rigidfluid.backends.scikit_fem.discretisation import Discretisation, kineti
 from rigidfluid.backends.scikit_fem.factorization import factorise
 from rigidfluid.backends.scikit_fem.location import locate, quadratic_basis
 from rigidfluid.backends.scikit_fem.space import TaylorHood
-from rigidfluid.core.types import FloatArray, FluidState, Mesh
+from rigidfluid.backends.scikit_fem.state import at_rest
+from rigidfluid.core.types import FloatArray, FluidState, Mesh, Pose, Twist
 
 
 def transfer(
@@ -42,6 +43,17 @@ def transfer(
         moved["velocity" + suffix] = project(target, velocity, points)
     before = kinetic_energy(target.problem, source, old.points, fluid["velocity"])
     return moved, before - kinetic_energy(target.problem, space, new.points, moved["velocity"])
+
+
+def initial(target: Discretisation, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
+
+    A blow on the bodies sends a wave of pressure through the fluid, which is projection: the flow is a potential flow.
+    """
+    state = dict(at_rest(target.space, mesh, pose, twist))
+    if state["velocity"].any():
+        state["velocity"] = state["velocity_previous"] = project(target, state["velocity"], mesh.points)
+    return state, kinetic_energy(target.problem, target.space, mesh.points, state["velocity"])
 
 
 def project(target: Discretisation, velocity: FloatArray, points: FloatArray) -> FloatArray:

@@ -1,0 +1,95 @@
+"""A state on another mesh, and one after a blow: no divergence, bodies rigid, what is lost is known."""
+
+import numpy as np
+import pytest
+from falling import falling_disk
+
+import rigidfluid
+from rigidfluid.backends.scikit_fem.constraint import Constraint, rigid_velocity
+from rigidfluid.backends.scikit_fem.discretisation import kinetic_energy, mass_times
+from rigidfluid.backends.scikit_fem.space import TaylorHood
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.step import predicted
+
+SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
+
+
+@pytest.fixture
+def spinning():
+    simulation = Simulation(
+        falling_disk(body={"angular_velocity": 30.0, "velocity": [0.0, -4.0]}, **SHORT), None, False
+    )
+    simulation.go(None)
+    return simulation
+
+
+def on(simulation, mesh):
+    return simulation.system.backend._discretisations.on(mesh, simulation.system.controlled)
+
+
+def divergence(discretisation, points, velocity):
+    matrix = discretisation.space.matrix(discretisation.matrix_data(points, 0.0, 0.0, np.zeros_like(velocity)))
+    return (matrix @ np.concatenate([velocity.ravel(), np.zeros(discretisation.space.vertices)]))[velocity.size :]
+
+
+def test_an_enclosed_flows_pressure_has_zero_mean(spinning):
+    state, space = spinning.state, on(spinning, spinning.state.mesh).space
+    pressure = space.node_points(state.fluid["pressure"][:, None]) @ np.ones((1, 2))
+    assert abs(mass_times(space, state.mesh.points, pressure).sum()) < 1e-9 * np.abs(pressure).max()
+
+
+def test_both_levels_are_carried_over(spinning):
+    before = spinning.state
+    space = TaylorHood(before.mesh.cells, len(before.mesh.points))
+    problem = spinning.system.backend.problem
+    energy = kinetic_energy(problem, space, before.mesh.points, before.fluid["velocity"])
+    spinning.mover._asks = lambda *_: True
+    after = spinning.mover.adapted(before, predicted(before, 0.004))
+    assert after.mesh is not before.mesh
+    new = on(spinning, after.mesh)
+    levels = (
+        ("", after.mesh.points, before.pose, before.twist),
+        ("_previous", after.fluid["points_previous"], before.past.pose, before.past.twist),
+    )
+    for suffix, points, pose, twist in levels:
+        velocity, pressure = after.fluid["velocity" + suffix], after.fluid["pressure" + suffix]
+        assert np.abs(divergence(new, points, velocity)).max() < 1e-12 * np.abs(velocity).max()
+        nodes = new.constraint.body_nodes[0]
+        arm = new.space.node_points(points)[nodes] - pose.position[0]
+        rigid = twist.velocity[0] + twist.angular_velocity[0] * np.column_stack([-arm[:, 1], arm[:, 0]])
+        np.testing.assert_allclose(velocity[nodes], rigid, atol=1e-12)
+        assert np.ptp(pressure) > 0.5 * np.ptp(before.fluid["pressure" + suffix])
+    lost = energy - kinetic_energy(problem, new.space, after.mesh.points, after.fluid["velocity"])
+    assert after.ledger.transfer_loss - before.ledger.transfer_loss == pytest.approx(lost)
+    assert before.ledger.kinetic - after.ledger.kinetic == pytest.approx(lost)
+
+
+def test_a_blow_leaves_the_disk_its_velocity_and_the_energy_in_the_books():
+    blow = {"velocity": [0.0, -1.0], "density": 2.0}
+    fine = {"time": {"step": 2e-4, "end": 2e-3}, "mesh": {"size": 0.3, "size_body": 0.02}, "output": {"every": 1.0}}
+    history = rigidfluid.run(falling_disk(body=blow, fluid={"gravity": [0.0, 0.0]}, **fine))
+    assert history.bodies["vy"][1] < -0.9
+    added = np.pi * 0.125**2  # the disk's added mass, a little more in a box
+    assert history.energy["kinetic"][0] == pytest.approx(0.5 * 3 * added, rel=0.05)
+    assert abs(history.summary["energy"]["relative_residual"]) < 0.05
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_operator_moves_a_bodys_nodes_rigidly(dimension):
+    """P, its transpose by hand and U + ω × r say the same."""
+    rng = np.random.default_rng(0)
+    size, count = {2: 3, 3: 6}[dimension], 5
+    cells = np.arange(dimension + 1)[None]
+    space = TaylorHood(cells, dimension + 1)
+    constraint = Constraint.__new__(Constraint)
+    constraint.space, constraint.controlled = space, np.array([False])
+    constraint.body_nodes, constraint.free_unknowns = [np.arange(count)], np.zeros(0, dtype=np.int64)
+    constraint._build_pattern()
+    points, force = rng.normal(size=(space.nodes, dimension)), rng.normal(size=(space.nodes, dimension))
+    position, twist = rng.normal(size=(1, dimension)), rng.normal(size=size)
+    constraint.place(points, position)
+    moved = (constraint.operator @ twist)[: space.nodes * dimension].reshape(-1, dimension)
+    np.testing.assert_allclose(moved[:count], rigid_velocity(twist, points[:count] - position[0]), atol=1e-14)
+    padded = np.concatenate([force.ravel(), np.zeros(space.vertices)])
+    expected = constraint.transposed @ padded
+    np.testing.assert_allclose(constraint.resultant(0, force, points, position), expected, atol=1e-14)
