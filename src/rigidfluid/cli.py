@@ -163,14 +163,14 @@ def _print_bodies(scene: Scene, system: System) -> None:
     from rigidfluid.core.geometry_checks import initial_contacts
 
     contacts = initial_contacts(scene, system.bodies, system.pose)
+    solid = {*range(len(scene.body)), *(wall.surface for wall in system.walls)}
+    pairs = sorted(zip(contacts.gap, contacts.body_a, contacts.body_b, strict=True))
     table = Table("body", "type", "mass", "submerged weight", "smallest gap", "to")
     for number, body in enumerate(scene.body):
-        rows = (contacts.body_a == number) | (contacts.body_b == number)
-        nearest = int(contacts.gap[rows].argmin())
-        pair = contacts.body_a[rows][nearest], contacts.body_b[rows][nearest]
-        other = system.surfaces[pair[1] if pair[0] == number else pair[0]]
-        figures = system.mass[number], system.weight[number], contacts.gap[rows][nearest]
-        table.add_row(body.name, body.type, *map(_figure, figures), other)
+        near = ((gap, a + b - number) for gap, a, b in pairs if number in (a, b) and b in solid)
+        gap, other = next(near, (None, None))
+        figures = system.mass[number], system.weight[number], gap
+        table.add_row(body.name, body.type, *map(_figure, figures), "" if other is None else system.surfaces[other])
     Console().print(table)
 
 

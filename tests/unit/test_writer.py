@@ -126,3 +126,16 @@ def test_a_table_that_has_lost_rows_is_refused(scene, tmp_path):
     with pytest.raises(OutputError, match=r"bodies.csv: found 300 bytes"):
         rigidfluid.run(scene, tmp_path, resume=True)
     assert (tmp_path / "bodies.csv").read_bytes() == whole[:300]
+
+
+def test_a_scene_whose_first_step_fails_leaves_earlier_output_untouched(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+    with pytest.raises(rigidfluid.errors.StepError):
+        rigidfluid.run(falling_disk(**SHORT, body={"velocity": [1e7, 0.0]}), tmp_path)
+    assert before == {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+
+
+def test_running_again_gives_the_same(scene, tmp_path):
+    first = rigidfluid.run(scene, tmp_path).records
+    assert rigidfluid.run(scene, tmp_path).records == first

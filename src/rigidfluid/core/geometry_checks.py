@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene import MeshTable, Scene
 
 
+MOST_FACETS_PER_RADIUS = 10**4
+"""Facets still smaller than that beside a body are a slip of units, and a mesher would never end."""
+
+
 def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     """Refuse a start that cannot be.
 
@@ -40,6 +44,7 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     contacts = initial_contacts(scene, parts.bodies, pose)
     _check_overlap(scene, contacts)
     if parts.backend.part.needs_mesh and scene.mesh is not None:
+        _check_facets(scene.mesh, parts)
         _check_resolution(scene, scene.mesh, parts, contacts)
 
 
@@ -76,6 +81,13 @@ def _check_overlap(scene: Scene, contacts: Contacts) -> None:
         "a place inside the domain and clear of all other surfaces",
         f"Move it by more than {-gap:.6g}, or make it smaller.",
     )
+
+
+def _check_facets(mesh: MeshTable, parts: Parts) -> None:
+    largest = max(body.bounding_radius for body in parts.bodies)
+    least = largest / MOST_FACETS_PER_RADIUS
+    if mesh.size_body < least:
+        raise SceneError("mesh.size_body", mesh.size_body, f"at least {least:g} for these bodies", "Coarsen it.")
 
 
 def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Contacts) -> None:

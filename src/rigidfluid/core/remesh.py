@@ -14,6 +14,7 @@ from rigidfluid.core.interfaces import Body
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.refine_surface import long_edges, refine_surface
+from rigidfluid.core.signals import kept_signals
 from rigidfluid.core.size_field import Sizes, wanted_size
 from rigidfluid.core.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.types import FloatArray, IntArray, Mesh, Pose, Wall
@@ -186,7 +187,8 @@ def run_mmg(mesh: Mesh, bodies: int, metric: FloatArray, gradation: float) -> Me
     mmg.set_required_vertices(corners.astype(np.int32))
     mmg["metric"] = metric[:, None]
     try:
-        mmg.remesh(verbose=-1, hgrad=gradation)
+        with kept_signals():
+            mmg.remesh(verbose=-1, hgrad=gradation)
     except RuntimeError as error:
         raise MeshError("mesh", f"MMG failed ({error})", "a mesh that MMG can improve", REMEDY) from error
     facets, references = get_facets()

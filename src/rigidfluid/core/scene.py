@@ -144,10 +144,12 @@ class MeshTable(_Table):
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: Positive = Field(description="Edge length on the bodies [length]")
-    growth: Positive = Field(default=0.2, description="Growth of the edge length per distance to a body [1]")
-    cells_per_gap: int = Field(default=2, ge=1, description="Cells across the gap between surfaces near contact [1]")
+    growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
+    cells_per_gap: int = Field(
+        default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
+    )
     quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is made anew [1]")
-    refinements: int = Field(default=5, ge=0, description="How many times a facet may be halved in a gap [1]")
+    refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
 
 
 class TimeTable(_Table):

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
 
+MOST_STEPS = 10**9
+"""A scene of more nominal steps than this is a slip of units."""
+
 
 def check_tables(scene: Scene) -> None:
     """Refuse what contradicts itself in the tables alone.
@@ -162,6 +165,10 @@ def _check_contact(scene: Scene) -> None:
 
 def _check_sizes(scene: Scene) -> None:
     time, mesh = scene.time, scene.mesh
+    if time.step > time.end:
+        raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten it, or end later.")
+    if time.end / time.step > MOST_STEPS:
+        raise SceneError("time.step", time.step, f"at least {time.end / MOST_STEPS:g} for this end", "Lengthen it.")
     if scene.output.every < time.step:
         raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
     if time.step > time.end:

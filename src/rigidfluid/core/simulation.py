@@ -26,7 +26,7 @@ from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.summary import summarise
 from rigidfluid.core.system import System, build_system
 from rigidfluid.core.types import Wrench
-from rigidfluid.core.writer import Writer, earlier_run
+from rigidfluid.core.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.errors import OutputError, StepError, StepRejected
 
 
@@ -90,8 +90,8 @@ class Simulation:
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk."""
         self.history.summary = summarise(self, status)
+        self.history.summary["files"] = [] if self._writer is None else self._writer.files
         if self._writer is not None:
-            self.history.summary["files"] = self._writer.files
             self._writer.summary(self.history.summary)
 
     def _begin(self, out: Path | None) -> None:
@@ -99,9 +99,17 @@ class Simulation:
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover)
+        if out is not None and (out / CHECKPOINT).exists():
+            self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None)
         self._record()
         self._output()
+
+    def _rehearse(self) -> None:
+        """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
+        start = self.state
+        self._advance()
+        self.state, self.rejected, self.remeshes = start, 0, 0
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state

@@ -42,8 +42,9 @@ class Table:
         return self._path.stat().st_size
 
     def _cut(self, length: int) -> None:
-        if self.length < length:
-            found, allowed = f"{self.length} bytes", f"the {length} bytes or more of the checkpoint"
+        present = self.length if self._path.exists() else 0
+        if present < length:
+            found, allowed = f"{present} bytes", f"the {length} bytes or more of the checkpoint"
             raise OutputError(str(self._path), found, allowed, "Restore the file, or run without --resume.")
         os.truncate(self._path, length)
 

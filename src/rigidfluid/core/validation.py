@@ -92,7 +92,9 @@ def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) ->
     misspelt = [other for other in table if other not in fields and suggestion(other, [key])]
     if misspelt:
         return unknown_key(field.removesuffix(key) + misspelt[0], fields)
-    meaning = fields[key].description or "a value"
+    meaning = fields[key].description
+    if meaning is None:
+        return SceneError(field, "nothing", "a table", f"Add the table [{field}].")
     return SceneError(field, "nothing", meaning, f"Add the key {key!r}.")
 
 

@@ -25,7 +25,7 @@ from rigidfluid.core.types import (
 class ScikitFemOptions(PartOptions):
     """Keys of ``[fluid]`` that this backend reads."""
 
-    tolerance: float = Field(1e-9, gt=0, lt=1, description="Relative residual of each step's linear system [1]")
+    tolerance: float = Field(1e-9, ge=1e-13, lt=1, description="Relative residual of each step's linear system [1]")
 
 
 class ScikitFem(FluidBackend):
