@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import cycle
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from rigidfluid.reports.style import BLACK, PALETTE, new_figure
 from rigidfluid.studies.model import Settings
@@ -16,7 +18,7 @@ _MARKERS = "osD^vP*X"
 
 
 def error_plot(results: Results) -> Figure:
-    """A line for each value of the group, and the Pareto front behind them.
+    """A line for each value of the group, through its runs in the order of the study file, and the Pareto front.
 
     Parameters
     ----------
@@ -28,19 +30,23 @@ def error_plot(results: Results) -> Figure:
     Figure
         One panel.
     """
-    figure = new_figure(8.0, 5.0)
+    figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
-    _draw_front(axes, results)
     for (name, keys), colour, marker in zip(_series(results).items(), cycle(PALETTE), cycle(_MARKERS)):
         axes.plot(*_coordinates(results, keys), marker=marker, color=colour, linewidth=1.0, label=name)
-    _name_front(axes, results)
+    _draw_front(axes, results)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.margins(0.1)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    seconds, errors = zip(*results.points.values(), strict=True)
+    axes.set_xlim(*_limits(seconds))
+    axes.set_ylim(*_limits(errors))
     axes.set_xlabel("wall time [s]")
     axes.set_ylabel(error_label(results))
     axes.grid(which="minor", alpha=0.12)
-    figure.legend(loc="outside upper center", ncols=4)
+    figure.legend(loc="outside right upper")
     return figure
 
 
@@ -53,23 +59,30 @@ def error_label(results: Results) -> str:
 
 
 def _series(results: Results) -> dict[str, list[str]]:
-    """Fingerprints of the points by value of the group, each by wall time."""
+    """Fingerprints of the points by value of the group, all in the order of the study file."""
     group = results.study.tables.study.group
-    series: dict[str, list[str]] = {}
-    for key, settings in sorted(_settings(results).items(), key=lambda item: results.points[item[0]]):
-        name = "runs" if group is None else f"{group} = {text_of(settings[group])}"
-        series.setdefault(name, []).append(key)
-    return dict(sorted(series.items(), key=lambda item: _place(results, item[1][0])))
+    values = [None] if group is None else results.study.tables.vary[group]
+    series = {}
+    for value in values:
+        keys = [key for key, settings in _settings(results).items() if group is None or settings[group] == value]
+        series["runs" if group is None else _words(group, value)] = keys
+    return {name: keys for name, keys in series.items() if keys}
 
 
 def _settings(results: Results) -> dict[str, Settings]:
     return {key: settings for key, settings in zip(results.prints, results.plan, strict=True) if key in results.points}
 
 
-def _place(results: Results, key: str) -> int:
-    """Where the value of the group stands in its list."""
-    group = results.study.tables.study.group
-    return 0 if group is None else results.study.tables.vary[group].index(_settings(results)[key][group])
+def _limits(values: Sequence[float]) -> tuple[float, float]:
+    """A tenth more than the values span on a logarithmic scale, and never less than a factor of 1.5 to either side."""
+    low, high = min(values), max(values)
+    room = max((high / low) ** 0.1, 1.5)
+    return low / room, high * room
+
+
+def _words(knob: str, value: object) -> str:
+    """A setting in few words."""
+    return f"{knob.rpartition('.')[2]} {text_of(value)}"
 
 
 def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
@@ -77,15 +90,12 @@ def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[f
 
 
 def _draw_front(axes: Axes, results: Results) -> None:
+    """Mark the front's runs and write their knobs beside them, but for the group, which the colour tells."""
     seconds, errors = _coordinates(results, results.front)
     axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
     axes.plot(seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0)
-
-
-def _name_front(axes: Axes, results: Results) -> None:
-    """Write the knobs of the front's runs beside them, but for the group, which the colour tells."""
     shown = [key for key in results.study.knobs if key != results.study.tables.study.group]
     settings = _settings(results)
     for key in results.front:
-        words = "\n".join(f"{knob.rpartition('.')[2]} {text_of(settings[key][knob])}" for knob in shown)
+        words = "\n".join(_words(knob, settings[key][knob]) for knob in shown)
         axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)
