@@ -59,8 +59,8 @@ class Results:
 
     @cached_property
     def points(self) -> dict[str, tuple[float, float]]:
-        """(seconds, error) of the runs that can be drawn to logarithmic scales; the reference run is none of them."""
-        drawn = {key: (self.outcomes[key].seconds, error) for key, error in self.errors.items() if key != self.finest}
+        """(seconds, error) of the runs with an error, which the reference run has not: on scales without a zero."""
+        drawn = {key: (self.outcomes[key].seconds, error) for key, error in self.errors.items()}
         return {key: point for key, point in drawn.items() if point[1] > 0}
 
     @cached_property
