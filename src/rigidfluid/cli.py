@@ -168,16 +168,19 @@ def _study_bar(name: str) -> Iterator[Callable[[StudyProgress], None]]:
     columns = (
         TextColumn(name),
         BarColumn(),
-        TextColumn("run {task.fields[run]} of {task.total:.0f}: {task.fields[settings]}"),
+        TextColumn("{task.fields[now]}"),
         TimeRemainingColumn(),
         TextColumn("left"),
     )
     console = Console(stderr=True)
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
-        task = bar.add_task(name, total=None, run=0, settings="")
-        yield lambda now: bar.update(
-            task, total=now.total, completed=now.done, run=min(int(now.done) + 1, now.total), settings=now.settings
-        )
+        task = bar.add_task(name, total=None, now="")
+
+        def show(now: StudyProgress) -> None:
+            text = f"run {min(int(now.done) + 1, now.total)} of {now.total}: {now.settings}"
+            bar.update(task, total=now.total, completed=now.done, now=text)
+
+        yield show
 
 
 def _print_study(results: Results) -> None:

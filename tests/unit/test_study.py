@@ -82,8 +82,8 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Settings]:
     return started
 
 
-def study_command(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["study", *map(str, arguments)], env={"COLUMNS": "200"})
+def study_command(*arguments: object, **environment: str) -> Result:
+    return CliRunner().invoke(app, ["study", *map(str, arguments)], env={"COLUMNS": "200"} | environment)
 
 
 def table(out: Path) -> list[dict[str, str]]:
@@ -229,6 +229,12 @@ def test_progress_grows_to_the_number_of_runs(write: Write, tmp_path: Path) -> N
     assert 0.5 in done
     assert {now.total for now in seen} == {6}
     assert seen[0].settings == "time.step 0.002, body.0.density 1.0"
+
+
+def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
+    result = study_command(write(), "--out", tmp_path / "out", FORCE_COLOR="1")
+    assert result.exit_code == 0, result.exception
+    assert "run 6 of 6: time.step 0.0005, body.0.density 2.0" in result.stderr
 
 
 @pytest.mark.parametrize(
