@@ -3,7 +3,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: run test install lint validate bench clean
+PLUGINS := $(wildcard plugins/*)
+
+.PHONY: run test test-plugins install lint validate bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -12,6 +14,9 @@ install: .venv/.installed
 
 test: .venv/.installed-test
 	$(BIN)/pytest
+
+test-plugins: .venv/.installed-plugins
+	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest) || exit 1; done
 
 validate: .venv/.installed-test
 	$(BIN)/pytest -m validation
@@ -35,6 +40,10 @@ clean:
 
 .venv/.installed: pyproject.toml | .venv/.created
 	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+.venv/.installed-plugins: $(PLUGINS:%=%/pyproject.toml) | .venv/.installed-test
+	$(BIN)/python -m pip install --quiet $(PLUGINS:%=--editable %)
 	touch $@
 
 .venv/.installed-%: pyproject.toml | .venv/.created

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
     from rigidfluid.core.system import System
+    from rigidfluid.studies.results import Results
+    from rigidfluid.studies.run import StudyProgress
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -32,6 +34,10 @@ Assignments = Annotated[
 ]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+Continue = Annotated[
+    bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything anew.")
+]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -99,6 +105,20 @@ def report(folder: Folder) -> None:
 
 
 @app.command()
+def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> None:
+    """Run a scene with many settings, and plot the error against the run time."""
+    with _reported("The same command goes on with the runs that are not done."):
+        from rigidfluid.studies import load_study, run_study
+
+        loaded = load_study(study)
+        folder = out or Path("out") / loaded.name
+        with _study_bar(loaded.name) as show:
+            results, written = run_study(loaded, folder, fresh=not resume, progress=show)
+        _print_study(results)
+        _print(f"wrote to {folder}: {', '.join(path.name for path in written)}")
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scene files, with the keys of every installed part."""
     with _reported():
@@ -138,6 +158,39 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
         yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
+
+
+@contextmanager
+def _study_bar(name: str) -> Iterator[Callable[[StudyProgress], None]]:
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn(name),
+        BarColumn(),
+        TextColumn("{task.fields[now]}"),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
+        task = bar.add_task(name, total=None, now="")
+
+        def show(now: StudyProgress) -> None:
+            text = f"run {min(int(now.done) + 1, now.total)} of {now.total}: {now.settings}"
+            bar.update(task, total=now.total, completed=now.done, now=text)
+
+        yield show
+
+
+def _print_study(results: Results) -> None:
+    failed = len(results.plan) - sum(key in results.outcomes for key in results.prints)
+    _print(f"{len(results.plan)} runs, {failed} failed; reference {_figure(results.reference)}")
+    for settings, key in zip(results.plan, results.prints, strict=True):
+        if key in results.front:
+            seconds, error = results.points[key]
+            knobs = ", ".join(f"{knob} {value}" for knob, value in settings.items())
+            _print(f"on the Pareto front: {knobs}: error {_figure(error)} in {_figure(seconds)} s")
 
 
 def _print_end(summary: dict[str, Any], folder: Path) -> None:

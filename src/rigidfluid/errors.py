@@ -1,7 +1,7 @@
 """The exception tree: every error a user can meet, and nothing else.
 
 RigidfluidError
-├── SceneError          the scene file, or a value in it, cannot be used
+├── SceneError          the scene or study file, or a value in it, cannot be used
 ├── PluginError         a plug-in is missing, misspelt, doubled or incomplete
 ├── MeshError           no valid mesh can be made for this geometry
 ├── OutputError         a result cannot be written or read back
@@ -36,7 +36,7 @@ class RigidfluidError(Exception):
 
 
 class SceneError(RigidfluidError):
-    """The scene file, or a value in it, cannot be used."""
+    """The scene or study file, or a value in it, cannot be used."""
 
 
 class PluginError(RigidfluidError):

@@ -31,7 +31,35 @@ def override(data: dict[str, Any], assignments: Iterable[str]) -> None:
         path, equals, text = assignment.partition("=")
         if not equals or not path.strip():
             raise SceneError("--set", repr(assignment), "key=value", "For instance: --set contact.range=0.02")
-        _assign(data, path.strip(), _value(path.strip(), text.strip()))
+        assign(data, path.strip(), _value(path.strip(), text.strip()))
+
+
+def assign(data: dict[str, Any], path: str, value: Any) -> None:
+    """Set one value in place.
+
+    Parameters
+    ----------
+    data : dict
+        The scene's tables, changed in place.
+    path : str
+        A dotted key; numbers count the entries of lists from 0.
+    value : object
+        As TOML gives it.
+
+    Raises
+    ------
+    SceneError
+        If the key leads nowhere.
+    """
+    *parents, key = path.split(".")
+    table: Any = data
+    for parent in parents:
+        table = table.setdefault(parent, {}) if isinstance(table, dict) else _entry(table, parent, path)
+    if isinstance(table, dict):
+        table[key] = value
+    else:
+        _entry(table, key, path)
+        table[int(key)] = value
 
 
 def _value(path: str, text: str) -> Any:
@@ -44,18 +72,6 @@ def _value(path: str, text: str) -> Any:
     if _WORD.fullmatch(text):
         return text
     raise SceneError(path, repr(text), "a TOML value, or one word", 'For instance: 0.02, [0.0, 1.0], "a text", stokes.')
-
-
-def _assign(data: dict[str, Any], path: str, value: Any) -> None:
-    *parents, key = path.split(".")
-    table: Any = data
-    for parent in parents:
-        table = table.setdefault(parent, {}) if isinstance(table, dict) else _entry(table, parent, path)
-    if isinstance(table, dict):
-        table[key] = value
-    else:
-        _entry(table, key, path)
-        table[int(key)] = value
 
 
 def _entry(table: Any, key: str, path: str) -> Any:

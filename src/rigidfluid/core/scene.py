@@ -251,15 +251,16 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     PluginError
         If it names a part that is not there.
     """
-    data = _read_toml(Path(path))
+    data = read_toml(Path(path))
     override(data, overrides)
     return Scene.from_dict(data)
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
+    """The tables of a TOML file; ``kind`` says in messages what file it should be."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise SceneError(str(path), error.strerror, "a readable scene file", "Check path and permissions.") from None
+        raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from rigidfluid.core.simulation import Simulation
 
 _PACKAGES = ("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py")
+FIGURES = (
+    *("time", "unknowns", "cells", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
+    *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
+)
+"""Keys of summary.json that hold numbers, or tables and lists of them."""
 
 
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:

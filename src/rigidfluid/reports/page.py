@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
-h1, h2 { line-height: 1.2; } h2 { margin-top: 2.2rem; }
-table { border-collapse: collapse; } th, td { text-align: left; padding: .2rem 1.2rem .2rem 0; }
-tr { border-bottom: 1px solid #ddd; } td.n { text-align: right; font-variant-numeric: tabular-nums; }
-img { max-width: 100%; height: auto; } figure { margin: 1rem 0; } figcaption { color: #555; }
-pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; } .note { color: #8a3c00; }
-"""
+from rigidfluid.reports.html import document, picture, table
+
 _MOST_BODIES = 8
 _ENERGIES = {
     "gravity": "supplied by gravity",
@@ -47,26 +40,21 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
     str
         HTML.
     """
-    name = escape(summary["scene"]["scene"]["name"])
     parts = [
-        f"<h1>{name}</h1>",
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
         *(f'<p class="note">{escape(note)}</p>' for note in notes),
-        _table(_figures(summary)),
-        *(_picture(path, caption) for path, caption in pictures),
+        table(_figures(summary)),
+        *(picture(path, caption) for path, caption in pictures),
         "<h2>Energy balance</h2>",
-        _table(_energy(summary["energy"])),
+        table(_energy(summary["energy"])),
         "<h2>Cost</h2>",
-        _table(_cost(summary)),
+        table(_cost(summary)),
         "<h2>Scene</h2>",
         f"<details open><summary>With all defaults</summary><pre>{escape(_toml(summary['scene']))}</pre></details>",
         "<h2>Versions</h2>",
-        _table(summary["versions"].items()),
+        table(summary["versions"].items()),
     ]
-    return (
-        f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{name}</title>'
-        f"<style>{_STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body>\n</html>\n"
-    )
+    return document(summary["scene"]["scene"]["name"], parts)
 
 
 def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
@@ -94,21 +82,6 @@ def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
     yield "wall time [s]", summary["wall_time"]
     for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
         yield f"of it: {stage} [s]", seconds
-
-
-def _table(rows: Iterable[tuple[str, object]]) -> str:
-    lines = (f'<tr><th scope="row">{escape(name)}</th><td class="n">{_text(value)}</td></tr>' for name, value in rows)
-    return "<table>\n" + "\n".join(lines) + "\n</table>"
-
-
-def _text(value: object) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else escape(str(value))
-
-
-def _picture(path: Path, caption: str) -> str:
-    data = base64.b64encode(path.read_bytes()).decode("ascii")
-    words = escape(caption)
-    return f'<figure><img alt="{words}" src="data:image/png;base64,{data}"><figcaption>{words}</figcaption></figure>'
 
 
 def _toml(scene: Mapping[str, Any]) -> str:

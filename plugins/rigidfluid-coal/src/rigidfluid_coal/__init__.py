@@ -1,0 +1,13 @@
+"""A detector for convex bodies, by the collision library coal."""
+
+from __future__ import annotations
+
+from rigidfluid.core.interfaces import Detector
+from rigidfluid.hookspecs import hookimpl
+from rigidfluid_coal.detector import CoalDetector
+
+
+@hookimpl
+def rigidfluid_detectors() -> list[type[Detector]]:
+    """The detector "coal"."""
+    return [CoalDetector]

@@ -1,0 +1,100 @@
+"""The detector "coal"."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.core.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.rigid import rotation_matrices
+from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid_coal.broad_phase import near_pairs
+from rigidfluid_coal.narrow_phase import NarrowPhase
+from rigidfluid_coal.refinement import extent, farthest, refined, separation, shape_matrices
+from rigidfluid_coal.shapes import semi_axes
+
+
+class CoalDetector(Detector):
+    """Contacts of balls and ellipsoids (disks and ellipses in 2D) with each other and with flat walls.
+
+    Pairs whose bounding balls are near go to coal, which finds their normal; Newton's method on the support functions
+    then makes the gap accurate to round-off. A wall's normal is known, and the gap there is in closed form. Where two
+    bodies overlap, the gap is minus the shortest way apart.
+
+    Parameters
+    ----------
+    options : PartOptions
+        None are read.
+    bodies : sequence of Body
+        Balls and ellipsoids.
+    walls : sequence of Wall
+        The walls that repel.
+
+    Raises
+    ------
+    SceneError
+        If a body is neither a ball nor an ellipsoid.
+    """
+
+    name: ClassVar[str] = "coal"
+    requires: ClassVar[Mapping[str, str]] = {"coal": "coal (`pip install coal`)"}
+
+    def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        super().__init__(options, bodies, walls)
+        self._axes = np.array([semi_axes(index, body) for index, body in enumerate(bodies)])
+        self._bounding = self._axes.max(axis=1)
+        self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies])
+        self._narrow = NarrowPhase(self._axes)
+
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone."""
+        rotation = rotation_matrices(pose.orientation)
+        shapes = shape_matrices(rotation, self._axes)
+        found = [self._body_contacts(pose.position, rotation, shapes, reach)]
+        found += [self._wall_contacts(pose.position, shapes, wall, reach) for wall in self.walls]
+        return _sorted(found)
+
+    def _body_contacts(self, position: FloatArray, rotation: FloatArray, shapes: FloatArray, reach: float) -> Contacts:
+        body_a, body_b = near_pairs(position, self._bounding, reach)
+        offset, shape_a, shape_b = position[body_a] - position[body_b], shapes[body_a], shapes[body_b]
+        normal = self._narrow.normals(body_a, body_b, position, rotation)
+        normal = refined(normal, offset, shape_a, shape_b)
+        gap = separation(normal, offset, shape_a, shape_b)
+        contacts = Contacts(
+            body_a=body_a,
+            body_b=body_b,
+            point_a=position[body_a] - farthest(shape_a, normal),
+            point_b=position[body_b] + farthest(shape_b, normal),
+            normal=normal,
+            gap=gap,
+            radius_a=self._radii[body_a],
+            radius_b=self._radii[body_b],
+        )
+        return _take(contacts, gap <= reach)
+
+    def _wall_contacts(self, position: FloatArray, shapes: FloatArray, wall: Wall, reach: float) -> Contacts:
+        normal = np.tile(wall.normal, (len(position), 1))
+        gap = (position - wall.point) @ wall.normal - extent(shapes, normal)
+        point = position - farthest(shapes, normal)
+        contacts = Contacts(
+            body_a=np.arange(len(position)),
+            body_b=np.full(len(position), wall.surface),
+            point_a=point,
+            point_b=point - gap[:, None] * normal,
+            normal=normal,
+            gap=gap,
+            radius_a=self._radii,
+            radius_b=np.full(len(position), np.inf),
+        )
+        return _take(contacts, gap <= reach)
+
+
+def _take(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
+    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
+
+
+def _sorted(parts: Sequence[Contacts]) -> Contacts:
+    merged = Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+    return _take(merged, np.lexsort((merged.body_b, merged.body_a)))

@@ -1,0 +1,175 @@
+"""What a study file may say, and how a file becomes a `Study`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from rigidfluid.core.scene import read_toml
+from rigidfluid.core.validation import read_table
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+Settings = dict[str, Any]
+"""Values by dotted key of the scene."""
+
+
+def _flat(value: Any) -> Any:
+    """``{"mesh": {"size": x}}`` as ``{"mesh.size": x}``: TOML reads a bare dotted key as tables."""
+    if not isinstance(value, Mapping):
+        return value
+    flat: Settings = {}
+    for key, part in value.items():
+        below = _flat(part)
+        flat |= {f"{key}.{rest}": leaf for rest, leaf in below.items()} if isinstance(part, Mapping) else {key: part}
+    return flat
+
+
+class _Table(BaseModel):
+    """A table whose keys are all given here."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class StudyTable(_Table):
+    """What is run, and how the settings are put together."""
+
+    name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the study; results go to `out/<name>` by default")
+    scene: str = Field(description="Path of the scene file, relative to the study file")
+    label: str = Field(default="", description="What the error is of, for the plot; the figure if not given")
+    group: str | None = Field(default=None, description="Key of [vary]; the plot has a line for each of its values")
+    zip: bool = Field(default=False, description="Take the lists of [vary] side by side, not every combination")
+
+
+class FigureTable(_Table):
+    """A number that a run ends with: a key path of summary.json, or a column of bodies.csv at a time or its extreme."""
+
+    key: str | None = Field(default=None, description="Key path of summary.json, as `energy.dissipation`")
+    table: Literal["bodies"] | None = Field(default=None, description="Table that holds the column")
+    column: str | None = Field(default=None, description="Column of that table")
+    body: str | None = Field(default=None, description="Name of the body; the first if not given")
+    at: float | None = Field(default=None, description="Time when the column is read, by cubic interpolation [time]")
+    extreme: Literal["highest", "lowest"] | None = Field(default=None, description="Which extreme over time is taken")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_key(cls, value: Any) -> Any:
+        return {"key": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _is_one_of_two(self) -> FigureTable:
+        of_summary = self.key is not None
+        of_table = self.table is not None and self.column is not None and (self.at is None) != (self.extreme is None)
+        rest = (self.table, self.column, self.body, self.at, self.extreme)
+        if of_summary == of_table or (of_summary and any(part is not None for part in rest)):
+            raise ValueError("a key path of summary.json, or table, column and one of at and extreme")
+        return self
+
+    def __str__(self) -> str:
+        if self.key is not None:
+            return self.key
+        moment = f"at {self.at:g}" if self.at is not None else str(self.extreme)
+        return " ".join(filter(None, (self.body, self.column, moment)))
+
+
+class ErrorTable(_Table):
+    """What the error is."""
+
+    figure: FigureTable = Field(description="The figure whose error is studied")
+    reference: Annotated[float | None, BeforeValidator(lambda value: None if value == "finest" else value)] = Field(
+        description='What the figure should be: a number, or "finest", its value in the most expensive run'
+    )
+    relative: bool = Field(default=False, description="Divide the error by the reference")
+
+
+class StudyFile(_Table):
+    """A whole study file."""
+
+    study: StudyTable
+    set: Annotated[Settings, BeforeValidator(_flat)] = Field(
+        default={}, description="Values that all runs have, by dotted key of the scene"
+    )
+    vary: Annotated[dict[str, Annotated[list[Any], Field(min_length=1)]], BeforeValidator(_flat)] = Field(
+        min_length=1, description="Lists of values, by dotted key of the scene"
+    )
+    error: ErrorTable
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file, read: its ``tables``, where it is (``path``), and its ``text`` as it stands there."""
+
+    tables: StudyFile
+    path: Path
+    text: str
+
+    @property
+    def name(self) -> str:
+        """Name of the study."""
+        return self.tables.study.name
+
+    @property
+    def scene(self) -> Path:
+        """The scene file."""
+        return self.path.parent / self.tables.study.scene
+
+    @property
+    def knobs(self) -> list[str]:
+        """Keys of the scene that vary."""
+        return list(self.tables.vary)
+
+    def settings(self) -> list[Settings]:
+        """The values of the knobs, run by run."""
+        lists = self.tables.vary.values()
+        rows = zip(*lists, strict=True) if self.tables.study.zip else product(*lists)
+        return [dict(zip(self.knobs, row, strict=True)) for row in rows]
+
+
+def load_study(path: str | Path) -> Study:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file.
+
+    Returns
+    -------
+    Study
+        Validated but for its scene.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, is no TOML, or says something that is not allowed.
+    """
+    path = Path(path)
+    tables = read_table(StudyFile, read_toml(path, "study"))
+    _check_group(tables)
+    _check_lengths(tables)
+    _check_reference(tables)
+    return Study(tables, path, path.read_text(encoding="utf-8"))
+
+
+def _check_group(tables: StudyFile) -> None:
+    group, knobs = tables.study.group, list(tables.vary)
+    if group is not None and group not in knobs:
+        remedy = suggestion(group, knobs) or "Name one of them, or leave it out."
+        raise SceneError("study.group", repr(group), f"a key of [vary]: {', '.join(knobs)}", remedy)
+
+
+def _check_lengths(tables: StudyFile) -> None:
+    lengths = {key: len(values) for key, values in tables.vary.items()}
+    if tables.study.zip and len(set(lengths.values())) > 1:
+        found = ", ".join(f"{length} values of {key}" for key, length in lengths.items())
+        raise SceneError("vary", found, "lists of one length with zip = true", "Complete the lists, or drop zip.")
+
+
+def _check_reference(tables: StudyFile) -> None:
+    if tables.error.relative and tables.error.reference == 0:
+        raise SceneError("error.reference", 0, "another number with relative = true", "Set relative = false.")

@@ -1,0 +1,101 @@
+"""The plot of a study: error against wall time, both logarithmic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from rigidfluid.reports.style import BLACK, PALETTE, new_figure
+from rigidfluid.studies.model import Settings
+from rigidfluid.studies.results import Results
+from rigidfluid.studies.rows import text_of
+
+_MARKERS = "osD^vP*X"
+
+
+def error_plot(results: Results) -> Figure:
+    """A line for each value of the group, through its runs in the order of the study file, and the Pareto front.
+
+    Parameters
+    ----------
+    results : Results
+        With at least one point.
+
+    Returns
+    -------
+    Figure
+        One panel.
+    """
+    figure = new_figure(9.0, 5.0)
+    axes = figure.subplots()
+    for (name, keys), colour, marker in zip(_series(results).items(), cycle(PALETTE), cycle(_MARKERS)):
+        axes.plot(*_coordinates(results, keys), marker=marker, color=colour, linewidth=1.0, label=name)
+    _draw_front(axes, results)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    seconds, errors = zip(*results.points.values(), strict=True)
+    axes.set_xlim(*_limits(seconds))
+    axes.set_ylim(*_limits(errors))
+    axes.set_xlabel("wall time [s]")
+    axes.set_ylabel(error_label(results))
+    axes.grid(which="minor", alpha=0.12)
+    figure.legend(loc="outside right upper")
+    return figure
+
+
+def error_label(results: Results) -> str:
+    """What the error is of, and against what."""
+    tables = results.study.tables
+    what = tables.study.label or str(tables.error.figure)
+    against = "the finest run" if tables.error.reference is None else f"{tables.error.reference:g}"
+    return f"{'relative error' if results.is_relative else 'error'} of {what}\nagainst {against}"
+
+
+def _series(results: Results) -> dict[str, list[str]]:
+    """Fingerprints of the points by value of the group, all in the order of the study file."""
+    group = results.study.tables.study.group
+    values = [None] if group is None else results.study.tables.vary[group]
+    series = {}
+    for value in values:
+        keys = [key for key, settings in _settings(results).items() if group is None or settings[group] == value]
+        series["runs" if group is None else _words(group, value)] = keys
+    return {name: keys for name, keys in series.items() if keys}
+
+
+def _settings(results: Results) -> dict[str, Settings]:
+    return {key: settings for key, settings in zip(results.prints, results.plan, strict=True) if key in results.points}
+
+
+def _limits(values: Sequence[float]) -> tuple[float, float]:
+    """A tenth more than the values span on a logarithmic scale, and never less than a factor of 1.5 to either side."""
+    low, high = min(values), max(values)
+    room = max((high / low) ** 0.1, 1.5)
+    return low / room, high * room
+
+
+def _words(knob: str, value: object) -> str:
+    """A setting in few words."""
+    return f"{knob.rpartition('.')[2]} {text_of(value)}"
+
+
+def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
+    return [results.points[key][0] for key in keys], [results.points[key][1] for key in keys]
+
+
+def _draw_front(axes: Axes, results: Results) -> None:
+    """Mark the front's runs and write their knobs beside them, but for the group, which the colour tells."""
+    seconds, errors = _coordinates(results, results.front)
+    axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
+    axes.plot(seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0)
+    shown = [key for key in results.study.knobs if key != results.study.tables.study.group]
+    settings = _settings(results)
+    for key in results.front:
+        words = "\n".join(_words(knob, settings[key][knob]) for knob in shown)
+        axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)
