@@ -1,5 +1,6 @@
 """A run that is killed and resumed equals an uninterrupted one to the last bit."""
 
+import json
 import random
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from falling import SCENES
 
 COMMAND = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml")]
 SETTINGS = ["mesh.size_body=0.04", "mesh.size=0.3", "time.step=0.004", "time.end=0.2", "body.0.position=[1.0, 0.6]"]
+FIGURES = ["steps", "rejected_steps", "remeshes", "smallest_gap", "energy", "reynolds", "rest_position"]
 RESULTS = ["bodies.csv", "contacts.csv", "energy.csv", "fields.pvd"]
 
 
@@ -33,7 +35,9 @@ def run_until_killed(out, seconds, *options):
 
 def contents(out):
     files = [out / name for name in RESULTS] + sorted((out / "fields").iterdir())
-    return {file.relative_to(out).as_posix(): file.read_bytes() for file in files}
+    summary = json.loads((out / "summary.json").read_text())
+    found = {file.relative_to(out).as_posix(): file.read_bytes() for file in files}
+    return found | {figure: summary[figure] for figure in FIGURES}
 
 
 @pytest.fixture(scope="module")
