@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 P = TypeVar("P", bound=Part)
 
+AUTO = "auto"
+"""What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+
 
 @dataclass(frozen=True)
 class Choice(Generic[P]):
@@ -57,13 +60,29 @@ def resolve(scene: Scene) -> Parts:
     """
     registry = Registry.load()
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
-    detector, law = _contact(scene.contact, registry, bodies)
-    return Parts(_backend(scene.fluid, registry), bodies, detector, law)
+    backend = _backend(scene.fluid, registry)
+    detector, law = _contact(scene.contact, registry, bodies, backend.part.needs_mesh)
+    return Parts(backend, bodies, detector, law)
 
 
-def default_detector(bodies: Sequence[Body]) -> str:
-    """Name of the exact detector that suits these bodies best."""
-    return "sphere" if all(body.radius is not None for body in bodies) else "brute_force"
+def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> str:
+    """Name of the cheapest detector that is exact for these bodies, to the facets if there is a mesh to move.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes.
+    mesh : bool
+        Whether there is a mesh around them, whose contacts beyond the reach of a law do not matter.
+
+    Returns
+    -------
+    str
+        ``sphere`` for balls alone; else ``narrow_band`` on a mesh, ``brute_force`` without.
+    """
+    if all(body.radius is not None for body in bodies):
+        return "sphere"
+    return "narrow_band" if mesh else "brute_force"
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:
@@ -85,10 +104,14 @@ def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:
 
 
 def _contact(
-    table: ContactTable, registry: Registry, bodies: Sequence[Body]
+    table: ContactTable, registry: Registry, bodies: Sequence[Body], mesh: bool
 ) -> tuple[Choice[Detector], Choice[ForceLaw] | None]:
-    detector = registry.get(DETECTOR, table.detector or default_detector(bodies))
     law = registry.get(FORCE_LAW, table.law) if table.law else None
+    chosen = cheapest_detector(bodies, mesh and law is not None) if table.detector == AUTO else table.detector
+    detector = registry.get(DETECTOR, chosen)
+    if detector.needs_mesh and not mesh:
+        remedy = 'Choose another detector, as "brute_force", or a backend with a mesh.'
+        raise SceneError("contact.detector", f"{detector.name!r} in a scene without a mesh", "one without", remedy)
     readers: list[type[Part]] = [detector, law] if law else [detector]
     hint = "" if law else "Name the law that reads it: `law = …`."
     _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
