@@ -60,7 +60,8 @@ def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose) -> Contac
     Contacts
         At any distance, from the exact detector that suits the bodies best.
     """
-    detector = Registry.load().get(DETECTOR, cheapest_detector(bodies, mesh=False))
+    name, _ = cheapest_detector(bodies, mesh=False)
+    detector = Registry.load().get(DETECTOR, name)
     return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, inf)
 
 

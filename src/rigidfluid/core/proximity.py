@@ -11,45 +11,27 @@ from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 
-_MOST_PAIRS = 1000
-
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts within the law's range, and each body's nearest gap (n,), infinite where beyond `sight`."""
+    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``."""
     count = len(system.bodies)
-    near = system.detector.detect(pose, mesh, sight(system))
+    law_range = system.law.range if system.law else 0.0
+    near = system.detector.detect(pose, mesh, system.reach)
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, near.gap <= _law_range(system)), gaps
-
-
-def sight(system: System) -> float:
-    """The largest gap that is measured [length].
-
-    Among few bodies it is what the detector allows; among many it is at most twice the largest body's size, so that the
-    work grows with the number of neighbours and not of pairs.
-    """
-    count, law_range = len(system.bodies), _law_range(system)
-    allowed = system.detector.sight(law_range)
-    if count * (count + len(system.walls)) <= _MOST_PAIRS:
-        return allowed
-    return min(allowed, law_range + 2.0 * max(body.bounding_radius for body in system.bodies))
+    return select(near, near.gap <= law_range), gaps
 
 
 def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
-    """Each body's nearest gap (n,), and where it was beyond `sight` the most that is known to be free [length]."""
+    """Each body's nearest gap (n,), and where it is not measured the most that is known to be free [length]."""
     beyond = ~np.isfinite(gaps)
     if not beyond.any():
         return gaps
     bounds = np.array([body.bounding_radius for body in system.bodies])
-    free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), sight(system))
+    free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), system.reach)
     return np.where(beyond, free, gaps)
-
-
-def _law_range(system: System) -> float:
-    return system.law.range if system.law else 0.0
 
 
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:
