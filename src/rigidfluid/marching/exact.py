@@ -62,6 +62,22 @@ def march(points, neighbours, surfaces, wanted, limit, work, size, touched):
 
 
 @njit(cache=True, nogil=True)
+def accept(vertices, key, facet, limit, work, touched):
+    """Put into the empty heap the vertices that others know to be nearer; its size, and how many are touched now."""
+    size = 0
+    for k in range(len(vertices)):
+        vertex, state = vertices[k], work.state[vertices[k]]
+        if key[k] > limit or (state != FAR and key[k] >= work.key[vertex]):
+            continue
+        if state == FAR:
+            work.touched[touched] = vertex
+            touched += 1
+        work.state[vertex], work.key[vertex], work.facet[vertex] = TRIAL, key[k], facet[k]
+        size = push(work.heap, work.heap_key, work.place, size, vertex, key[k])
+    return size, touched
+
+
+@njit(cache=True, nogil=True)
 def reset(work, touched):
     """Make all touched vertices FAR again."""
     for k in range(touched):
