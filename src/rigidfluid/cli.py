@@ -37,7 +37,7 @@ Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last chec
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 
 JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the rows there as JSON.")]
-Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.05)]
+Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 bench = typer.Typer(help="Measure on this machine what a paper measured on its own.")

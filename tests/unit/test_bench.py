@@ -9,7 +9,7 @@ from rigidfluid.cli import app
 
 def test_narrow_band_writes_a_row_for_each_band(tmp_path):
     file = tmp_path / "rows.json"
-    result = CliRunner().invoke(app, ["bench", "narrow-band", "--refinement", "0.2", "--json", str(file)])
+    result = CliRunner().invoke(app, ["bench", "narrow-band", "--refinement", "0.4", "--json", str(file)])
     assert result.exit_code == 0
     rows = json.loads(file.read_text())
     assert [row["dimension"] for row in rows] == [2] * 6 + [3] * 5

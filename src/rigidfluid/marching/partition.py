@@ -109,8 +109,9 @@ def field_in_threads(
     board = _Board(parts, len(points))
     with ThreadPoolExecutor(len(parts)) as pool:
         jobs = [
-            pool.submit(march_part, part, points[part.vertices], chosen, band_width, board.exchange_of(part)) for part in parts
-        ]  # fmt: skip
+            pool.submit(march_part, part, points[part.vertices], chosen, band_width, board.exchange_of(part))
+            for part in parts
+        ]
         fields = [job.result() for job in jobs]
     columns = ([getattr(field, name) for field in fields] for name in DistanceField.__slots__)
     return DistanceField(*map(np.concatenate, columns))
