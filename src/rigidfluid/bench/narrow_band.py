@@ -47,8 +47,9 @@ class BandRow:
     """One band: ``threshold`` [length], and the best of several times with one thread and with two.
 
     ``seconds`` is the better of the two: a short march is over before a second thread has started. ``elements`` of the
-    mesh; ``band_elements`` with a vertex in the band; ``max_error`` to the facets over the threshold;
-    ``mesh_seconds``, ``adjacency_seconds`` and ``partition_seconds`` are paid once for each mesh; ``paper_…`` are the paper's figures, on its mesh and machine.
+    mesh; ``band_elements`` with a vertex in the band; ``max_error`` to the facets over the threshold. ``mesh_seconds``,
+    ``adjacency_seconds`` and ``partition_seconds`` are paid once for each mesh; ``paper_…`` are the paper's figures, on
+    its mesh and machine.
     """
 
     dimension: int

@@ -20,6 +20,9 @@ from rigidfluid.marching.topology import Numbers, Topology
 from rigidfluid.marching.workers import Workers
 from rigidfluid.marching.workspace import Workspace
 
+ROUNDED_UP = 1.0 + 1e-9
+"""Bounding balls are so much larger, as the vertices of a mesh are on the surface only to rounding."""
+
 
 class _Scope(NamedTuple):
     """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
@@ -117,16 +120,17 @@ class ContactFinder:
     def _longest_edge(self, scope: _Scope, body: int, other: int) -> float:
         """Of the facets of ``other`` near the bounding ball of ``body``; 0 if there are none."""
         topology, points, position, reach = scope
-        radius = self._bounds[body] * (1.0 + 1e-9) + reach
+        radius = self._bounds[body] * ROUNDED_UP + reach
         chosen = topology.facets_of(other)
         return float(longest_edge_near(points, topology.surfaces.facets, chosen, position[body], radius))
 
     def _between(self, scope: _Scope, work: Workspace, body: int, other: int) -> list[_Touch]:
-        topology, points, _, reach = scope
+        topology, points, position, reach = scope
         chosen = topology.facets_of(other)
+        ball = position[body], self._bounds[body] * ROUNDED_UP
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
         _, wanted = topology.seeds([body])
-        facet_gaps(points, topology.surfaces, wanted, chosen, reach, self._several, work, gap, partner)
+        facet_gaps(points, topology.surfaces, wanted, *ball, chosen, reach, self._several, work, gap, partner)
         facets = topology.surfaces.facets
         touches = []
         for row in self._best_rows(facets, chosen, gap):

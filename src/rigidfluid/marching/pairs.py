@@ -28,29 +28,60 @@ def longest_edge_near(points, facets, chosen, centre, radius):
 
 
 @njit(cache=True, nogil=True)
-def facet_gaps(points, surfaces, wanted, chosen, reach, all_places, work, gap, partner):
-    """Distance of each facet of ``chosen`` to the surfaces ``wanted`` whose field is in ``work``.
+def facet_gaps(points, surfaces, wanted, centre, radius, chosen, reach, all_places, work, gap, partner):
+    """Distance of each facet of ``chosen`` to the surfaces ``wanted``, inside a ball, whose field is in ``work``.
 
-    ``gap`` (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above an earlier one), and
-    ``partner`` (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that its
-    corners' distances, less its edges, show to be too far.
+    ``gap`` (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above that of another facet), and
+    ``partner`` (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that
+    its distance to the ball, or its corners' distances less its edges, show to be too far.
     """
-    limit = reach
+    bound = gap
+    nearest_corner = np.inf
     for row in range(len(chosen)):
-        gap[row] = np.inf
-        facet = chosen[row]
-        near, start = _least_possible(points, surfaces, wanted, facet, work)
-        if start < 0 or near > limit:
+        bound[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
+        if bound[row] > reach:
             continue
-        for corner in surfaces.facets[facet]:
-            if work.state[corner] != FAR:
-                square, found = walk_to_facet(points, facet, surfaces, wanted, work.facet[corner])
-                if sqrt(square) < gap[row]:
-                    gap[row], partner[row] = sqrt(square), found
-        if gap[row] > limit:
+        by_corners, corner_gap = _bounds(points, surfaces, wanted, chosen[row], work)
+        bound[row] = max(bound[row], by_corners)
+        nearest_corner = min(nearest_corner, corner_gap)
+    limit = reach if all_places else min(reach, nearest_corner)
+    for row in range(len(chosen)):
+        if bound[row] <= limit:
+            gap[row], partner[row] = _facet_gap(points, surfaces, wanted, chosen[row], work)
+            if not all_places:
+                limit = min(limit, gap[row])
+        if bound[row] > limit:
             gap[row] = np.inf
-        elif not all_places:
-            limit = gap[row]
+
+
+@njit(cache=True, nogil=True)
+def _bounds(points, surfaces, wanted, facet, work):
+    """A lower bound of a facet's distance, and that of its nearest corner; infinite without a corner in the band."""
+    least, nearest = np.inf, np.inf
+    for corner in surfaces.facets[facet]:
+        if work.state[corner] != FAR:
+            square, _ = walk_to_vertex(points, corner, surfaces, wanted, work.facet[corner])
+            edge = 0.0
+            for other in surfaces.facets[facet]:
+                edge = max(edge, _length(points, corner, other))
+            bound = max(sqrt(square) - edge, 0.0)
+            least = bound if least == np.inf else max(least, bound)
+            nearest = min(nearest, sqrt(square))
+    return least, nearest
+
+
+@njit(cache=True, nogil=True)
+def _facet_gap(points, surfaces, wanted, facet, work):
+    """The distance of a facet, and the facet where it is reached, walking from those nearest to its corners."""
+    least, partner, before = np.inf, -1, -1
+    for corner in surfaces.facets[facet]:
+        if work.state[corner] == FAR or work.facet[corner] == before:
+            continue
+        before = work.facet[corner]
+        square, found = walk_to_facet(points, facet, surfaces, wanted, before)
+        if sqrt(square) < least:
+            least, partner = sqrt(square), found
+    return least, partner
 
 
 @njit(cache=True, nogil=True)
@@ -86,21 +117,6 @@ def places(facets, chosen, gap):
                     waiting.append(other)
         count += 1
     return patch
-
-
-@njit(cache=True, nogil=True)
-def _least_possible(points, surfaces, wanted, facet, work):
-    """A lower bound of a facet's distance, from those of its corners in the band; and one of these, or -1."""
-    bound, start = 0.0, -1
-    for corner in surfaces.facets[facet]:
-        if work.state[corner] != FAR:
-            start = corner
-            square, _ = walk_to_vertex(points, corner, surfaces, wanted, work.facet[corner])
-            edge = 0.0
-            for other in surfaces.facets[facet]:
-                edge = max(edge, _length(points, corner, other))
-            bound = max(bound, sqrt(square) - edge)
-    return bound, start
 
 
 @njit(cache=True, nogil=True)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
+from rigidfluid.marching.simplices import boxes_apart, facet_to_facet, vertex_to_facet
 
 
 @njit(cache=True, nogil=True)
@@ -71,6 +71,8 @@ def walk_to_facet(points, target, surfaces, wanted, facet):
             for k in range(surfaces.start[corner], surfaces.start[corner + 1]):
                 other = surfaces.members[k]
                 if other == at or not wanted[surfaces.marker[other]]:
+                    continue
+                if boxes_apart(points, surfaces.facets, target, other) >= square:
                     continue
                 new_square = facet_to_facet(points, surfaces.facets, target, other)[0]
                 if new_square < square:
