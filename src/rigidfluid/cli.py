@@ -38,6 +38,7 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 
 JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the rows there as JSON.")]
 Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
+MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 bench = typer.Typer(help="Measure on this machine what a paper measured on its own.")
@@ -112,6 +113,15 @@ def narrow_band(json_file: JsonFile = None, refinement: Refinement = 1.0) -> Non
         from rigidfluid.bench.narrow_band import band_rows
 
         _print_rows(band_rows(refinement), json_file)
+
+
+@bench.command()
+def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> None:
+    """Time the collision algorithm among many balls (Van Landeghem et al., Tables 2 and 3)."""
+    with _reported():
+        from rigidfluid.bench.collisions import collision_rows
+
+        _print_rows(collision_rows(most_bodies), json_file)
 
 
 @app.command()

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from time import perf_counter
-from typing import Any
 
 import numpy as np
 
 from rigidfluid.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.bench.shells import INNER, shell
-from rigidfluid.core.types import Mesh
+from rigidfluid.bench.timing import fastest, timed
+from rigidfluid.core.types import IntArray, Mesh
 from rigidfluid.marching.field import DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology
@@ -84,16 +83,16 @@ def band_rows(refinement: float = 1.0, repeats: int = 5) -> Iterator[BandRow]:
     """
     for dimension, table in PAPER.items():
         size = SIZES[dimension] / refinement
-        mesh, mesh_seconds = _timed(partial(shell, dimension, INNER_RADIUS, OUTER_RADIUS, size))
+        mesh, mesh_seconds = timed(partial(shell, dimension, INNER_RADIUS, OUTER_RADIUS, size))
         Topology.of(shell(dimension, INNER_RADIUS, 2 * INNER_RADIUS, INNER_RADIUS / 2))  # compiles
-        topology, adjacency_seconds = _timed(partial(Topology.of, mesh))
-        parts, partition_seconds = _timed(partial(split, mesh, _halves(mesh)))
+        topology, adjacency_seconds = timed(partial(Topology.of, mesh))
+        parts, partition_seconds = timed(partial(split, mesh, _halves(mesh)))
         work = new_workspace(len(mesh.points), len(mesh.facets))
         true = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[mesh.markers == INNER]])
         for threshold, (paper_elements, paper_seconds) in table.items():
             one = partial(distance_field, topology, mesh.points, [INNER], threshold, workspace=work)
             two = partial(field_in_threads, parts, mesh.points, [INNER], threshold)
-            field, alone, together = one(), _fastest(one, repeats), _fastest(two, repeats)
+            field, alone, together = one(), fastest(one, repeats), fastest(two, repeats)
             yield BandRow(
                 dimension=dimension,
                 threshold=threshold,
@@ -111,22 +110,12 @@ def band_rows(refinement: float = 1.0, repeats: int = 5) -> Iterator[BandRow]:
             )
 
 
-def _halves(mesh: Mesh) -> Any:
-    return (mesh.points[mesh.cells, 0].mean(axis=1) > 0).astype(np.int64)
+def _halves(mesh: Mesh) -> IntArray:
+    halves: IntArray = (mesh.points[mesh.cells, 0].mean(axis=1) > 0).astype(np.int64)
+    return halves
 
 
 def _band_elements(mesh: Mesh, field: DistanceField) -> int:
     reached = np.zeros(len(mesh.points), dtype=bool)
     reached[field.vertices] = True
     return int(np.count_nonzero(reached[mesh.cells].any(axis=1)))
-
-
-def _fastest(call: Callable[[], object], repeats: int) -> float:
-    call()  # compiles, and warms the caches
-    return min(_timed(call)[1] for _ in range(repeats))
-
-
-def _timed(call: Callable[[], Any]) -> tuple[Any, float]:
-    start = perf_counter()
-    result = call()
-    return result, perf_counter() - start
