@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,6 +17,8 @@ from rigidfluid import __version__
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
     from rigidfluid.core.system import System
@@ -40,7 +42,13 @@ Continue = Annotated[
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 
+JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the rows there as JSON.")]
+Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
+MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
+
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+bench = typer.Typer(help="Measure on this machine what a paper measured on its own.")
+app.add_typer(bench, name="bench")
 
 
 @app.callback(invoke_without_command=True)
@@ -102,6 +110,24 @@ def report(folder: Folder) -> None:
 
         for path in make_report(folder):
             _print(f"wrote {path}")
+
+
+@bench.command()
+def narrow_band(json_file: JsonFile = None, refinement: Refinement = 1.0) -> None:
+    """Time distance fields in bands around a disk and a ball (Van Landeghem et al., Table 1)."""
+    with _reported():
+        from rigidfluid.bench.narrow_band import band_rows
+
+        _print_rows(band_rows(refinement), json_file)
+
+
+@bench.command()
+def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> None:
+    """Time the collision algorithm among many balls (Van Landeghem et al., Tables 2 and 3)."""
+    with _reported():
+        from rigidfluid.bench.collisions import collision_rows
+
+        _print_rows(collision_rows(most_bodies), json_file)
 
 
 @app.command()
@@ -225,6 +251,21 @@ def _print_bodies(scene: Scene, system: System) -> None:
         figures = system.mass[number], system.weight[number], gap
         table.add_row(body.name, body.type, *map(_figure, figures), "" if other is None else system.surfaces[other])
     Console().print(table)
+
+
+def _print_rows(rows: Iterable[DataclassInstance], json_file: Path | None) -> None:
+    """A line for each row as soon as it is measured; all of them to a file, if one is named."""
+    from dataclasses import asdict
+
+    made = []
+    for row in rows:
+        made.append(asdict(row))
+        if len(made) == 1:
+            _print("  ".join(made[0]))
+        cells = {name: value if isinstance(value, int) else _figure(value) for name, value in made[-1].items()}
+        _print("  ".join(f"{cell:>{len(name)}}" for name, cell in cells.items()))
+    if json_file is not None:
+        json_file.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
 
 
 def _figure(value: Any) -> str:

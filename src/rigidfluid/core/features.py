@@ -71,7 +71,14 @@ def _contact(system: System) -> Iterator[Feature]:
     else:
         yield Feature("contact forces", True, f"law {system.law.name!r} below a gap of {system.law.range}")
         yield Feature("repelling walls", bool(system.walls), names)
-    yield Feature("contact detection", True, f"detector {system.detector.name!r} also records the smallest gap")
+    yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
+    yield _measured(system.reach)
+
+
+def _measured(reach: float) -> Feature:
+    return Feature(
+        "smallest gap recorded", reach > 0, f"up to {reach:.4g}" if np.isfinite(reach) else "at any distance"
+    )
 
 
 def _count(name: str, bodies: np.ndarray[tuple[int], np.dtype[np.bool_]], what: str) -> Feature:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.boundary import face_planes, faces
-from rigidfluid.core.parts import default_detector
+from rigidfluid.core.parts import cheapest_detector
 from rigidfluid.core.types import Contacts, Pose
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import DETECTOR, Registry
@@ -65,7 +65,8 @@ def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose) -> Contac
     Contacts
         At any distance, from the exact detector that suits the bodies best.
     """
-    detector = Registry.load().get(DETECTOR, default_detector(bodies))
+    name, _ = cheapest_detector(bodies, mesh=False)
+    detector = Registry.load().get(DETECTOR, name)
     return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, inf)
 
 

@@ -6,6 +6,7 @@ keys it reads from its table of the scene file (``Options``). Importing the clas
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
@@ -97,6 +98,8 @@ class Body(Part):
 class Detector(Part):
     """Finds which surfaces are near each other.
 
+    With ``needs_mesh`` it is never asked without a mesh.
+
     Parameters
     ----------
     options : PartOptions
@@ -107,10 +110,16 @@ class Detector(Part):
         The walls that repel.
     """
 
+    needs_mesh: ClassVar[bool] = False
+
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         self.options = options
         self.bodies = tuple(bodies)
         self.walls = tuple(walls)
+
+    def sight(self, law_range: float) -> float:
+        """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""
+        return math.inf
 
     @abstractmethod
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:

@@ -39,13 +39,12 @@ class Mover:
         self._motion: MeshMotion | None = None
         self._reference: Reference | None = None
 
-    def first_mesh(self, gaps: FloatArray) -> Reference | None:
+    def first_mesh(self) -> Mesh | None:
         """The mesh around the bodies' initial pose."""
         if self._sizes is None:
             return None
         s = self._system
-        mesh = initial_mesh(s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes)
-        return _reference(mesh, s.pose, gaps, 0)
+        return initial_mesh(s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes)
 
     def moved(self, state: State, pose: Pose) -> Mesh | None:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
@@ -77,7 +76,7 @@ class Mover:
         return replace(
             state,
             mesh=mesh,
-            reference=_reference(mesh, state.pose, state.gaps, state.tick),
+            reference=reference_of(mesh, state.pose, state.gaps, state.tick),
             fluid=fluid,
             ledger=state.ledger.after_transfer(loss),
         )
@@ -97,7 +96,8 @@ class Mover:
         return self._motion
 
 
-def _reference(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
+def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
+    """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
     return Reference(mesh, pose, gaps, float(cell_quality(mesh.points, mesh.cells).min()), tick)
 
 

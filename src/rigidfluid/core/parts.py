@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 P = TypeVar("P", bound=Part)
 
+AUTO = "auto"
+"""What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+
 
 @dataclass(frozen=True)
 class Choice(Generic[P]):
@@ -27,12 +30,16 @@ class Choice(Generic[P]):
 
 @dataclass(frozen=True)
 class Parts:
-    """All that a scene names; ``law`` is None in a scene without contact forces."""
+    """All that a scene names; ``law`` is None in a scene without contact forces.
+
+    ``detector_why`` says who chose the detector, and for what reason.
+    """
 
     backend: Choice[FluidBackend]
     bodies: tuple[Body, ...]
     detector: Choice[Detector]
     law: Choice[ForceLaw] | None
+    detector_why: str
 
 
 def resolve(scene: Scene) -> Parts:
@@ -57,13 +64,36 @@ def resolve(scene: Scene) -> Parts:
     """
     registry = Registry.load()
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
-    detector, law = _contact(scene.contact, registry, bodies)
-    return Parts(_backend(scene.fluid, registry), bodies, detector, law)
+    backend = _backend(scene.fluid, registry)
+    mesh = backend.part.needs_mesh
+    law = _law(scene.contact, registry)
+    detector, why = _detector(scene.contact, registry, bodies, mesh, law is not None)
+    _refuse_contact(scene.contact, detector, law, bodies, mesh)
+    chosen = None if law is None else _choose(law, scene.contact)
+    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why)
 
 
-def default_detector(bodies: Sequence[Body]) -> str:
-    """Name of the exact detector that suits these bodies best."""
-    return "sphere" if all(body.radius is not None for body in bodies) else "brute_force"
+def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
+    """The cheapest detector that is exact for these bodies.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes.
+    mesh : bool
+        Whether there is a mesh around them, and no need to know gaps beyond the range of a law.
+
+    Returns
+    -------
+    str, str
+        The name, and the reason: ``sphere`` for balls alone; else ``narrow_band``, exact to the facets, on a mesh, and
+        ``brute_force`` without.
+    """
+    if all(body.radius is not None for body in bodies):
+        return "sphere", "all bodies are balls"
+    if mesh:
+        return "narrow_band", "not all bodies are balls, and there is a mesh and a law"
+    return "brute_force", "not all bodies are balls, and there is no mesh or no law"
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:
@@ -84,18 +114,31 @@ def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:
     return Choice(part, read_table(part.Options, table.options, "fluid"))
 
 
-def _contact(
-    table: ContactTable, registry: Registry, bodies: Sequence[Body]
-) -> tuple[Choice[Detector], Choice[ForceLaw] | None]:
-    detector = registry.get(DETECTOR, table.detector or default_detector(bodies))
-    law = registry.get(FORCE_LAW, table.law) if table.law else None
+def _law(table: ContactTable, registry: Registry) -> type[ForceLaw] | None:
+    return registry.get(FORCE_LAW, table.law) if table.law else None
+
+
+def _detector(
+    table: ContactTable, registry: Registry, bodies: Sequence[Body], mesh: bool, law: bool
+) -> tuple[type[Detector], str]:
+    if table.detector != AUTO:
+        return registry.get(DETECTOR, table.detector), "the scene names it"
+    name, why = cheapest_detector(bodies, mesh and law)
+    return registry.get(DETECTOR, name), f"chosen as {why}"
+
+
+def _refuse_contact(
+    table: ContactTable, detector: type[Detector], law: type[ForceLaw] | None, bodies: Sequence[Body], mesh: bool
+) -> None:
     readers: list[type[Part]] = [detector, law] if law else [detector]
     hint = "" if law else "Name the law that reads it: `law = …`."
     _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
     if law and law.balls_only and any(body.radius is None for body in bodies):
         remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
         raise SceneError("contact.law", f"{law.name!r} with bodies that are no balls", "a law for any shape", remedy)
-    return _choose(detector, table), _choose(law, table) if law else None
+    if detector.needs_mesh and not mesh:
+        remedy = 'Use detector = "auto", or a backend with a mesh.'
+        raise SceneError("contact.detector", f"{detector.name!r} without a mesh", "a detector that needs none", remedy)
 
 
 def _choose(part: type[P], table: ContactTable) -> Choice[P]:

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core import broad_phase
 from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 
-_MOST_PAIRS = 1000
-
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts within the law's range, and each body's nearest gap (n,).
-
-    Among few bodies every gap is measured; among many those within twice the largest body's size, and the rest is
-    infinite, so that the work grows with the number of neighbours and not of pairs.
-    """
+    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``."""
     count = len(system.bodies)
-    near = system.detector.detect(pose, mesh, reach(system))
+    near = system.detector.detect(pose, mesh, system.reach)
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
@@ -29,16 +23,18 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     return select(near, near.gap <= _law_range(system)), gaps
 
 
-def reach(system: System) -> float:
-    """Up to where gaps are measured [length]."""
-    count = len(system.bodies)
-    if count * (count + len(system.walls)) <= _MOST_PAIRS:
-        return math.inf
-    return _law_range(system) + 2.0 * max(body.bounding_radius for body in system.bodies)
-
-
 def _law_range(system: System) -> float:
     return system.law.range if system.law else 0.0
+
+
+def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
+    """Each body's nearest gap (n,), and where it is not measured the most that is known to be free [length]."""
+    beyond = ~np.isfinite(gaps)
+    if not beyond.any():
+        return gaps
+    bounds = np.array([body.bounding_radius for body in system.bodies])
+    free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), system.reach)
+    return np.where(beyond, free, gaps)
 
 
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:

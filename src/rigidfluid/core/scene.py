@@ -132,8 +132,8 @@ class BodyTable(_OpenTable):
 class ContactTable(_OpenTable):
     """How contacts are found, and what force they exert; without it there is no contact force."""
 
-    detector: str | None = Field(
-        default=None, description="Name of a detector; `sphere` among balls, else `brute_force`, if not given"
+    detector: str = Field(
+        default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
     )
     law: str | None = Field(default=None, description="Name of a force law; no contact force if not given")
     range: Positive | None = Field(default=None, description="Gap above which the law is zero [length]")

@@ -15,8 +15,8 @@ from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
 from rigidfluid.core.energy import Ledger, Power
 from rigidfluid.core.history import History
-from rigidfluid.core.mesh_adaptation import Mover
-from rigidfluid.core.proximity import reach, surroundings, travel
+from rigidfluid.core.mesh_adaptation import Mover, reference_of
+from rigidfluid.core.proximity import least_gaps, surroundings, travel
 from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
@@ -151,11 +151,15 @@ class Simulation:
     def _closes_too_fast(self, level: int) -> bool:
         pose = predicted(self.state, self.clock.size(level))
         moved = travel(self.system, self.state.pose, pose)
-        known = np.minimum(self.state.gaps, reach(self.system))
-        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * known):
+        before = least_gaps(self.system, self.state.pose, self.state.gaps)
+        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
             return False  # too far away for that: no need to measure
-        _, gaps = surroundings(self.system, pose, None)
-        return bool((gaps < CLOSEST_APPROACH * known).any())
+        try:
+            mesh = self.mover.moved(self.state, pose) if self.system.detector.needs_mesh else None
+        except StepRejected:
+            return True
+        _, gaps = surroundings(self.system, pose, mesh)
+        return bool((gaps < CLOSEST_APPROACH * before).any())
 
     def _smallest_gap(self) -> float:
         return float(self.state.gaps.min())
@@ -208,9 +212,8 @@ class Simulation:
 
 def _initial_state(system: System, mover: Mover) -> State:
     zero = Wrench(np.zeros_like(system.twist.velocity), np.zeros_like(system.twist.angular_velocity))
-    contacts, gaps = surroundings(system, system.pose, None)
-    reference = mover.first_mesh(gaps)
-    mesh = None if reference is None else reference.mesh
+    mesh = mover.first_mesh()
+    contacts, gaps = surroundings(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
     kinetic += bodies_energy(system, system.pose, system.twist)
     stored = contact_energy(system, contacts)
@@ -222,7 +225,7 @@ def _initial_state(system: System, mover: Mover) -> State:
         twist=system.twist,
         past=None,
         mesh=mesh,
-        reference=reference,
+        reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
         fluid=fluid,
         contacts=contacts,
         gaps=gaps,

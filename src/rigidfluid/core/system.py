@@ -15,6 +15,8 @@ from rigidfluid.core.prescribed import prescribed_motion
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, FluidProblem, Pose, Twist, Wall
 
+_MOST_PAIRS = 1000
+
 
 @dataclass(frozen=True)
 class System:
@@ -24,6 +26,7 @@ class System:
     ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²], ``weight`` (n, d) submerged,
     (m - ρV)g [force]. ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
+    ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     """
 
     dimension: int
@@ -41,6 +44,8 @@ class System:
     controlled_twist: Callable[[float], FloatArray]
     backend: FluidBackend
     detector: Detector
+    detector_why: str
+    reach: float
     law: ForceLaw | None
 
 
@@ -68,6 +73,7 @@ def build_system(scene: Scene) -> System:
     pose, motion = _initial_pose(scene), prescribed_motion(scene)
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
     check_geometry(scene, parts, pose)
+    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts)
     return System(
         dimension=scene.dimension,
         bodies=parts.bodies,
@@ -83,8 +89,10 @@ def build_system(scene: Scene) -> System:
         controlled=controlled,
         controlled_twist=motion,
         backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
-        detector=parts.detector.part(parts.detector.options, parts.bodies, walls),
-        law=_law(scene, parts),
+        detector=detector,
+        detector_why=parts.detector_why,
+        reach=_reach(detector, law),
+        law=law,
     )
 
 
@@ -124,6 +132,18 @@ def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProb
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
     )
+
+
+def _reach(detector: Detector, law: ForceLaw | None) -> float:
+    """Among few bodies as far as the detector sees; among many at most twice the largest body's size beyond the range.
+
+    So the work grows with the number of neighbours and not of pairs.
+    """
+    law_range, count = law.range if law else 0.0, len(detector.bodies)
+    sight = detector.sight(law_range)
+    if count * (count + len(detector.walls)) <= _MOST_PAIRS:
+        return sight
+    return min(sight, law_range + 2.0 * max(body.bounding_radius for body in detector.bodies))
 
 
 def _law(scene: Scene, parts: Parts) -> ForceLaw | None:

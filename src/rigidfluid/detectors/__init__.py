@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from rigidfluid.core.interfaces import Detector
 from rigidfluid.detectors.brute_force import BruteForceDetector
+from rigidfluid.detectors.fast_marching import FastMarchingDetector
+from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.hookspecs import hookimpl
 
@@ -11,4 +13,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_detectors() -> list[type[Detector]]:
     """The built-in detectors."""
-    return [SphereDetector, BruteForceDetector]
+    return [SphereDetector, NarrowBandDetector, FastMarchingDetector, BruteForceDetector]

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.broad_phase import near_pairs
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
@@ -62,7 +63,7 @@ def _radius(index: int, body: Body) -> float:
 
 
 def _ball_contacts(position: FloatArray, radii: FloatArray, reach: float) -> Contacts:
-    body_a, body_b = _near_pairs(position, radii, reach)
+    body_a, body_b = near_pairs(position, radii, reach)
     line = position[body_a] - position[body_b]
     distance = np.linalg.norm(line, axis=1)
     gap = distance - radii[body_a] - radii[body_b]
@@ -94,19 +95,6 @@ def _wall_contacts(position: FloatArray, radii: FloatArray, wall: Wall, reach: f
         radius_b=np.full(len(radii), np.inf),
     )
     return _take(contacts, contacts.gap <= reach)
-
-
-def _near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
-    """Pairs a < b that may be within reach: all of them, or those that a search tree finds."""
-    if len(radii) < 2 or not np.isfinite(reach):
-        first, second = np.triu_indices(len(radii), k=1)
-        return first.astype(np.int64), second.astype(np.int64)
-    from scipy.spatial import cKDTree
-
-    span = max(reach + 2 * float(radii.max()), 0.0)
-    # a little more than needed, so that rounding loses no pair that is just at reach
-    pairs = cKDTree(position).query_pairs(span * (1 + 1e-12), output_type="ndarray")
-    return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
 
 
 def _unit(line: FloatArray, distance: FloatArray) -> FloatArray:

@@ -1,0 +1,1 @@
+"""Measurements that `rigidfluid bench` makes on the machine it runs on, beside published figures."""

@@ -1,0 +1,69 @@
+"""Which cells, vertices and facets meet at a vertex, as compressed rows. Arrays in, arrays out."""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def rows_of(simplices, count):
+    """Simplices at each vertex: those of vertex v are ``members[start[v]:start[v + 1]]``; start (count + 1,)."""
+    start = np.zeros(count + 1, np.int32)
+    for simplex in range(simplices.shape[0]):
+        for i in range(simplices.shape[1]):
+            start[simplices[simplex, i] + 1] += 1
+    for row in range(count):
+        start[row + 1] += start[row]
+    members = np.empty(start[count], np.int32)
+    fill = start[:-1].copy()
+    for simplex in range(simplices.shape[0]):
+        for i in range(simplices.shape[1]):
+            vertex = simplices[simplex, i]
+            members[fill[vertex]] = simplex
+            fill[vertex] += 1
+    return start, members
+
+
+@njit(cache=True, nogil=True)
+def neighbours_of(cells, cell_start, cell_members):
+    """Vertices that share a cell with each vertex, as `rows_of` gives them."""
+    count = len(cell_start) - 1
+    seen = np.full(count, -1, np.int32)
+    start = np.zeros(count + 1, np.int32)
+    members = np.empty(len(cell_members) * (cells.shape[1] - 1), np.int32)
+    total = 0
+    for vertex in range(count):
+        seen[vertex] = vertex
+        for k in range(cell_start[vertex], cell_start[vertex + 1]):
+            for i in range(cells.shape[1]):
+                other = cells[cell_members[k], i]
+                if seen[other] != vertex:
+                    seen[other] = vertex
+                    members[total] = other
+                    total += 1
+        start[vertex + 1] = total
+    return start, members[:total].copy()
+
+
+@njit(cache=True, nogil=True)
+def inner_vertices(facets, cells, cell_start, cell_members):
+    """The vertex across from each boundary facet in its cell, (F,): it tells the fluid's side; -1 without a cell."""
+    across = np.full(len(facets), -1, np.int32)
+    for facet in range(len(facets)):
+        first = facets[facet, 0]
+        for k in range(cell_start[first], cell_start[first + 1]):
+            cell = cells[cell_members[k]]
+            total, shared = 0, 0
+            for vertex in cell:
+                total += vertex
+                for corner in facets[facet]:
+                    if corner == vertex:
+                        total -= vertex
+                        shared += 1
+            if shared == facets.shape[1]:
+                across[facet] = total
+    return across

@@ -1,0 +1,168 @@
+"""Contacts of bodies with each other and with walls, from the distance fields of their surfaces on a mesh."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from functools import partial
+from math import inf, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.broad_phase import near_pairs, near_walls
+from rigidfluid.core.interfaces import Body
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.marching.exact import reset
+from rigidfluid.marching.field import Accuracy, march_from
+from rigidfluid.marching.pairs import facet_gaps, longest_edge_near, nearest_points, places
+from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.workers import Workers
+from rigidfluid.marching.workspace import Workspace
+
+ROUNDED_UP = 1.0 + 1e-9
+"""Bounding balls are so much larger, as the vertices of a mesh are on the surface only to rounding."""
+
+
+class _Scope(NamedTuple):
+    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
+
+    topology: Topology
+    points: FloatArray
+    position: FloatArray
+    reach: float
+
+
+class _Touch(NamedTuple):
+    """One contact before it is put into arrays."""
+
+    body_a: int
+    body_b: int
+    gap: float
+    point_a: FloatArray
+    point_b: FloatArray
+
+
+class ContactFinder:
+    """Finds gap = min |x - y| over the facets x of surface a and y of surface b, and the points where it is reached.
+
+    A field is marched from each body that has something near, and the facets of its neighbours in the band are compared
+    with the body's own. A facet within ``reach`` has a corner within reach + L/2 (in space: + L/√3), L its longest
+    edge; the band is that wide.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes.
+    walls : sequence of Wall
+        The walls that repel.
+    accuracy : "exact" or "first-order"
+        Of the fields; the gaps are exact to the facets in both cases.
+    several : bool
+        Whether a pair has one contact for each separate place where it is near.
+    whole_domain : bool
+        Whether the fields go on to the end of the mesh.
+    threads : int
+        How many threads may march; 0 for as many as there are cores.
+    """
+
+    def __init__(
+        self,
+        bodies: Sequence[Body],
+        walls: Sequence[Wall],
+        accuracy: Accuracy,
+        several: bool,
+        whole_domain: bool,
+        threads: int = 0,
+    ) -> None:
+        self._walls = tuple(walls)
+        self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
+        radii = [np.nan if body.radius is None else body.radius for body in bodies]
+        self._radii = np.array(radii, dtype=float)
+        self._accuracy: Accuracy = accuracy
+        self._several = several
+        self._whole_domain = whole_domain
+        self._workers = Workers(threads)
+
+    def find(self, pose: Pose, mesh: Mesh, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap)."""
+        near = self._near(pose.position, reach)
+        touches: list[_Touch] = []
+        if near:
+            topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
+            scope = _Scope(topology, points, pose.position, reach)
+            touches = self._workers.map(partial(self._touches_of, scope), near)
+        return self._contacts(sorted(touches, key=lambda touch: touch[:3]), mesh.points.shape[1])
+
+    def _near(self, position: FloatArray, reach: float) -> list[tuple[int, list[int]]]:
+        """Bodies, each with the surfaces whose bounding volumes are in reach; a pair stands with its first body."""
+        surfaces: dict[int, list[int]] = defaultdict(list)
+        for a, b in zip(*near_pairs(position, self._bounds, reach), strict=True):
+            surfaces[int(a)].append(int(b))
+        for body, wall in near_walls(position, self._bounds, self._walls, reach):
+            surfaces[body].append(wall.surface)
+        return sorted(surfaces.items())
+
+    def _touches_of(self, scope: _Scope, work: Workspace, near: tuple[int, list[int]]) -> list[_Touch]:
+        body, others = near
+        edges = {other: self._longest_edge(scope, body, other) for other in others}
+        others = [other for other in others if edges[other] > 0.0]
+        if not others:
+            return []
+        topology, points, _, reach = scope
+        to_corner = 0.5 if points.shape[1] == 2 else 1.0 / sqrt(3.0)
+        width = inf if self._whole_domain else reach + to_corner * max(edges[other] for other in others)
+        touched = march_from(topology, points, [body], width, self._accuracy, work)
+        touches = [touch for other in others for touch in self._between(scope, work, body, other)]
+        reset(work, touched)
+        return touches
+
+    def _longest_edge(self, scope: _Scope, body: int, other: int) -> float:
+        """Of the facets of ``other`` near the bounding ball of ``body``; 0 if there are none."""
+        topology, points, position, reach = scope
+        radius = self._bounds[body] * ROUNDED_UP + reach
+        chosen = topology.facets_of(other)
+        return float(longest_edge_near(points, topology.surfaces.facets, chosen, position[body], radius))
+
+    def _between(self, scope: _Scope, work: Workspace, body: int, other: int) -> list[_Touch]:
+        topology, points, position, reach = scope
+        chosen = topology.facets_of(other)
+        ball = position[body], self._bounds[body] * ROUNDED_UP
+        gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
+        _, wanted = topology.seeds([body])
+        facet_gaps(points, topology.surfaces, wanted, *ball, chosen, reach, self._several, work, gap, partner)
+        facets = topology.surfaces.facets
+        touches = []
+        for row in self._best_rows(facets, chosen, gap):
+            on_body, on_other = np.empty((2, points.shape[1]))
+            nearest_points(points, facets, partner[row], chosen[row], on_body, on_other)
+            touches.append(_Touch(body, other, float(gap[row]), on_body, on_other))
+        return touches
+
+    def _best_rows(self, facets: Numbers, chosen: Numbers, gap: FloatArray) -> list[int]:
+        """Where the gap is least: of all, or of each separate place."""
+        if not np.isfinite(gap).any():
+            return []
+        if not self._several:
+            return [int(np.argmin(gap))]
+        patch = places(facets, chosen, gap)
+        rows = [np.flatnonzero(patch == number) for number in range(patch.max() + 1)]
+        return [int(row[np.argmin(gap[row])]) for row in rows]
+
+    def _contacts(self, touches: Sequence[_Touch], dimension: int) -> Contacts:
+        columns = list(zip(*touches, strict=True)) or [()] * len(_Touch._fields)
+        shape = (len(touches), dimension)
+        a, b = (np.array(column, dtype=np.int64) for column in columns[:2])
+        gap = np.array(columns[2], dtype=float)
+        point_a, point_b = (np.array(column, dtype=float).reshape(shape) for column in columns[3:])
+        curvature = np.append(self._radii, np.inf)  # the last one is for walls
+        return Contacts(
+            body_a=a,
+            body_b=b,
+            point_a=point_a,
+            point_b=point_b,
+            normal=(point_a - point_b) / gap[:, None],
+            gap=gap,
+            radius_a=curvature[a],
+            radius_b=curvature[np.minimum(b, len(self._radii))],
+        )

@@ -1,0 +1,148 @@
+"""The nearest points of two surfaces, exact to their facets, from the field of one of them. Arrays in, arrays out."""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+from numba import njit
+
+from rigidfluid.marching.simplices import facet_to_facet
+from rigidfluid.marching.walk import walk_to_facet, walk_to_vertex
+from rigidfluid.marching.workspace import FAR
+
+
+@njit(cache=True, nogil=True)
+def longest_edge_near(points, facets, chosen, centre, radius):
+    """Longest edge of those facets of ``chosen`` whose bounding box meets a ball; 0 where none does."""
+    longest = 0.0
+    for facet in chosen:
+        if _box_to_point(points, facets[facet], centre) <= radius * radius:
+            for i in range(facets.shape[1]):
+                for j in range(i):
+                    longest = max(longest, _length(points, facets[facet, i], facets[facet, j]))
+    return longest
+
+
+@njit(cache=True, nogil=True)
+def facet_gaps(points, surfaces, wanted, centre, radius, chosen, reach, all_places, work, gap, partner):
+    """Distance of each facet of ``chosen`` to the surfaces ``wanted``, inside a ball, whose field is in ``work``.
+
+    ``gap`` (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above that of another facet), and
+    ``partner`` (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that
+    its distance to the ball, or its corners' distances less its edges, show to be too far.
+    """
+    bound = gap
+    nearest_corner = np.inf
+    for row in range(len(chosen)):
+        bound[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
+        if bound[row] > reach:
+            continue
+        by_corners, corner_gap = _bounds(points, surfaces, wanted, chosen[row], work)
+        bound[row] = max(bound[row], by_corners)
+        nearest_corner = min(nearest_corner, corner_gap)
+    limit = reach if all_places else min(reach, nearest_corner)
+    for row in range(len(chosen)):
+        if bound[row] <= limit:
+            gap[row], partner[row] = _facet_gap(points, surfaces, wanted, chosen[row], work)
+            if not all_places:
+                limit = min(limit, gap[row])
+        if bound[row] > limit:
+            gap[row] = np.inf
+
+
+@njit(cache=True, nogil=True)
+def _bounds(points, surfaces, wanted, facet, work):
+    """A lower bound of a facet's distance, and that of its nearest corner; infinite without a corner in the band."""
+    least, nearest = np.inf, np.inf
+    for corner in surfaces.facets[facet]:
+        if work.state[corner] != FAR:
+            square, _ = walk_to_vertex(points, corner, surfaces, wanted, work.facet[corner])
+            edge = 0.0
+            for other in surfaces.facets[facet]:
+                edge = max(edge, _length(points, corner, other))
+            bound = max(sqrt(square) - edge, 0.0)
+            least = bound if least == np.inf else max(least, bound)
+            nearest = min(nearest, sqrt(square))
+    return least, nearest
+
+
+@njit(cache=True, nogil=True)
+def _facet_gap(points, surfaces, wanted, facet, work):
+    """The distance of a facet, and the facet where it is reached, walking from those nearest to its corners."""
+    least, partner, before = np.inf, -1, -1
+    for corner in surfaces.facets[facet]:
+        if work.state[corner] == FAR or work.facet[corner] == before:
+            continue
+        before = work.facet[corner]
+        square, found = walk_to_facet(points, facet, surfaces, wanted, before)
+        if sqrt(square) < least:
+            least, partner = sqrt(square), found
+    return least, partner
+
+
+@njit(cache=True, nogil=True)
+def nearest_points(points, facets, first, second, on_first, on_second):
+    """Write the nearest points of two facets to ``on_first`` (d,) and ``on_second`` (d,)."""
+    found = facet_to_facet(points, facets, first, second)
+    on_first[:], on_second[:] = 0.0, 0.0
+    for i in range(points.shape[1]):
+        for k in range(points.shape[1]):
+            on_first[k] += found[1 + i] * points[facets[first, i], k]
+            on_second[k] += found[4 + i] * points[facets[second, i], k]
+
+
+@njit(cache=True, nogil=True)
+def places(facets, chosen, gap):
+    """Number (c,) of the connected patch that each facet with a finite gap belongs to; -1 for the others.
+
+    Facets that share a vertex belong together.
+    """
+    patch = np.full(len(chosen), -1, np.int64)
+    rows = np.flatnonzero(np.isfinite(gap))
+    count = 0
+    for row in rows:
+        if patch[row] >= 0:
+            continue
+        patch[row] = count
+        waiting = [row]
+        while len(waiting) > 0:
+            at = waiting.pop()
+            for other in rows:
+                if patch[other] < 0 and _touch(facets, chosen[at], chosen[other]):
+                    patch[other] = count
+                    waiting.append(other)
+        count += 1
+    return patch
+
+
+@njit(cache=True, nogil=True)
+def _touch(facets, first, second):
+    for i in facets[first]:
+        for j in facets[second]:
+            if i == j:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _length(points, a, b):
+    total = 0.0
+    for k in range(points.shape[1]):
+        total += (points[a, k] - points[b, k]) ** 2
+    return sqrt(total)
+
+
+@njit(cache=True, nogil=True)
+def _box_to_point(points, corners, centre):
+    """Squared distance of a point to the box around a facet."""
+    total = 0.0
+    for k in range(points.shape[1]):
+        low = high = points[corners[0], k]
+        for corner in corners:
+            low, high = min(low, points[corner, k]), max(high, points[corner, k])
+        total += max(low - centre[k], centre[k] - high, 0.0) ** 2
+    return total

@@ -1,0 +1,157 @@
+"""One distance field over a mesh in parts, each with its own workspace: for threads here, for processes elsewhere.
+
+Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
+both. A part marches until its heap is empty, then the parts exchange what they found on their borders and march on from
+what has improved, until nothing does. As a vertex takes the least of all the distances it is offered, in whatever
+order, the field is that of the whole mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from threading import Barrier, Lock
+
+import numpy as np
+
+from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.marching.concave import mark_concave
+from rigidfluid.marching.exact import accept, march, reset, seed
+from rigidfluid.marching.field import DistanceField
+from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.workspace import FAR, Workspace, new_workspace
+
+Exchange = Callable[[FloatArray, Numbers], tuple[FloatArray, Numbers] | None]
+"""From squared distance and facet at a part's border to the least of all parts'; None once nothing improves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Some cells of a mesh: ``topology`` in numbers of its own, ``vertices`` (n,) their numbers in the whole mesh.
+
+    ``border`` (s,) are its own numbers of vertices that other parts hold as well.
+    """
+
+    topology: Topology
+    vertices: IntArray
+    border: Numbers
+    workspace: Workspace
+
+
+def split(mesh: Mesh, owner: IntArray) -> list[Part]:
+    """Cut a mesh into parts along its facets.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The whole.
+    owner : (M,) array
+        Number of the part that each cell goes to, from 0.
+
+    Returns
+    -------
+    list of Part
+        In the order of their numbers.
+    """
+    groups = [mesh.cells[owner == number] for number in range(int(owner.max()) + 1)]
+    holders = np.zeros(len(mesh.points), dtype=np.int64)
+    for cells in groups:
+        holders[np.unique(cells)] += 1
+    return [_part(mesh, cells, holders > 1) for cells in groups]
+
+
+def march_part(
+    part: Part, points: FloatArray, surfaces: Iterable[int], band_width: float, exchange: Exchange
+) -> DistanceField:
+    """This part of the distance field of the whole mesh, D(x) = min |x - y| over the facets y of some surfaces.
+
+    Parameters
+    ----------
+    part : Part
+        From `split`.
+    points : (n, d) array
+        The part's own vertices, in the order of ``part.vertices`` [length].
+    surfaces : iterable of int
+        Markers of the surfaces to measure from.
+    band_width : float
+        Where the march stops [length].
+    exchange : callable
+        Called by all parts together, as often as needed.
+
+    Returns
+    -------
+    DistanceField
+        In the numbers of the whole mesh, for the vertices of this part.
+    """
+    topology, work, limit = part.topology, part.workspace, band_width * band_width
+    seeds, wanted = topology.seeds(surfaces)
+    mark_concave(points, topology.surfaces, wanted, seeds, work.concave)
+    size = touched = seed(topology.surfaces, seeds, work)
+    while True:
+        touched = march(points, topology.neighbours, topology.surfaces, wanted, limit, work, size, touched)
+        known = np.where(work.state[part.border] == FAR, np.inf, work.key[part.border])
+        found = exchange(known, work.facet[part.border])
+        if found is None:
+            break
+        size, touched = accept(part.border, *found, limit, work, touched)
+    local = work.touched[:touched].copy()
+    field = DistanceField(part.vertices[local].astype(np.int32), np.sqrt(work.key[local]), work.facet[local])
+    reset(work, touched)
+    return field
+
+
+def field_in_threads(
+    parts: Sequence[Part], points: FloatArray, surfaces: Iterable[int], band_width: float = np.inf
+) -> DistanceField:
+    """The field of `distance_field`, one thread for each part; on borders and surfaces vertices come once per part."""
+    chosen = list(surfaces)
+    board = _Board(parts, len(points))
+    with ThreadPoolExecutor(len(parts)) as pool:
+        jobs = [
+            pool.submit(march_part, part, points[part.vertices], chosen, band_width, board.exchange_of(part))
+            for part in parts
+        ]
+        fields = [job.result() for job in jobs]
+    columns = ([getattr(field, name) for field in fields] for name in DistanceField.__slots__)
+    return DistanceField(*map(np.concatenate, columns))
+
+
+class _Board:
+    """Where parts in one process leave what they know of their borders; all wait for all before they read."""
+
+    def __init__(self, parts: Sequence[Part], count: int) -> None:
+        self._key, self._facet = np.full(count, np.inf), np.zeros(count, np.int32)
+        self._lock, self._barrier = Lock(), Barrier(len(parts))
+        self._improved = False
+
+    def exchange_of(self, part: Part) -> Exchange:
+        """The callback of one part."""
+        border = part.vertices[part.border]
+
+        def exchange(key: FloatArray, facet: Numbers) -> tuple[FloatArray, Numbers] | None:
+            self._barrier.wait()
+            self._improved = False
+            self._barrier.wait()
+            with self._lock:
+                self._post(border, key, facet)
+            self._barrier.wait()
+            return (self._key[border], self._facet[border]) if self._improved else None
+
+        return exchange
+
+    def _post(self, border: IntArray, key: FloatArray, facet: Numbers) -> None:
+        better: BoolArray = key < self._key[border]
+        self._key[border[better]], self._facet[border[better]] = key[better], facet[better]
+        self._improved |= bool(better.any())
+
+
+def _part(mesh: Mesh, cells: IntArray, shared: BoolArray) -> Part:
+    """Cells with the vertices of all facets; a vertex of a facet that is in no cell of the part is just a point."""
+    inside = np.unique(cells)
+    vertices = np.concatenate([inside, np.setdiff1d(mesh.facets, inside)])
+    number = np.full(len(mesh.points), -1)
+    number[vertices] = np.arange(len(vertices))
+    topology = Topology(number[cells], number[mesh.facets], mesh.markers, len(vertices))
+    border = np.flatnonzero(shared[inside]).astype(np.int32)
+    return Part(topology, vertices, border, new_workspace(len(vertices), len(mesh.facets)))

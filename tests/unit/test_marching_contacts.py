@@ -1,0 +1,164 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from marching_meshes import naive_distances
+from mesh_tools import ball, box_walls, ellipsoid, upright
+from numba import njit
+
+from rigidfluid.core.meshing import generate_mesh
+from rigidfluid.core.topology import boundary_facets
+from rigidfluid.core.types import Contacts, Mesh, Pose
+from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
+from rigidfluid.detectors.fast_marching import FastMarchingDetector, FastMarchingOptions
+from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
+from rigidfluid.errors import SceneError
+from rigidfluid.marching.simplices import facet_to_facet
+
+REACH = 0.25
+
+
+def narrow_band(bodies, walls, **options):
+    return NarrowBandDetector(NarrowBandOptions(**options), bodies, walls)
+
+
+def random_ellipsoids(dimension, seed):
+    """Ellipsoids of all shapes and tilts in the cells of a grid, their mesh, and the walls of the box around them."""
+    rng = np.random.default_rng(seed)
+    cells = np.stack(np.meshgrid(*[np.arange(2 if dimension == 3 else 3)] * dimension), axis=-1).reshape(-1, dimension)
+    bodies = [ellipsoid(*rng.uniform(0.15, 0.45, dimension)) for _ in cells]
+    position = cells + 0.5 + rng.uniform(-0.04, 0.04, cells.shape)
+    turn = rng.uniform(0, 3, (len(cells), 1)) if dimension == 2 else rng.normal(size=(len(cells), 4))
+    pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
+    lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
+    size = 0.04 if dimension == 2 else 0.2
+    mesh = generate_mesh(bodies, pose, lower, upper, 0.3, size, 0.5)
+    return bodies, box_walls(lower, upper, len(bodies)), pose, mesh, size
+
+
+def naive_gap(mesh, a, b):
+    """Least distance over all pairs of facets of two surfaces."""
+    first, second = np.flatnonzero(mesh.markers == a), np.flatnonzero(mesh.markers == b)
+    return least(mesh.points, mesh.facets, first, second)
+
+
+@njit
+def least(points, facets, first, second):
+    square = np.inf
+    for i in first:
+        for j in second:
+            square = min(square, facet_to_facet(points, facets, i, j)[0])
+    return np.sqrt(square)
+
+
+@pytest.fixture(scope="module", params=[(2, 0), (2, 1), (2, 2), (3, 0)], ids=str)
+def ellipsoids(request):
+    return random_ellipsoids(*request.param)
+
+
+@pytest.mark.parametrize("accuracy", ["exact", "first-order"])
+def test_gaps_are_those_of_all_pairs_of_facets(ellipsoids, accuracy):
+    bodies, walls, pose, mesh, _ = ellipsoids
+    contacts = narrow_band(bodies, walls, accuracy=accuracy).detect(pose, mesh, REACH)
+    found = dict(zip(zip(contacts.body_a, contacts.body_b, strict=True), contacts.gap, strict=True))
+    surfaces = len(bodies) + len(walls)
+    pairs = [(a, b) for a in range(len(bodies)) for b in range(a + 1, surfaces)]
+    near = {pair: gap for pair in pairs if (gap := naive_gap(mesh, *pair)) <= REACH}
+    assert list(found) == list(near)
+    np.testing.assert_allclose(list(found.values()), list(near.values()), rtol=1e-12)
+
+
+def test_contact_points_are_on_the_facets_and_a_gap_apart(ellipsoids):
+    bodies, walls, pose, mesh, _ = ellipsoids
+    contacts = narrow_band(bodies, walls).detect(pose, mesh, REACH)
+    np.testing.assert_allclose(np.linalg.norm(contacts.point_a - contacts.point_b, axis=1), contacts.gap, rtol=1e-12)
+    for surfaces, points in ((contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)):
+        for surface, point in zip(surfaces, points, strict=True):
+            assert naive_distances(point[None], mesh.points, mesh.facets[mesh.markers == surface])[0] < 1e-12
+
+
+def test_gaps_agree_with_the_shapes_to_second_order(ellipsoids):
+    bodies, walls, pose, mesh, size = ellipsoids
+    near = narrow_band(bodies, walls).detect(pose, mesh, REACH)
+    true = BruteForceDetector(BruteForceOptions(samples=300), bodies, walls).detect(pose, None, np.inf)
+    exact = dict(zip(zip(true.body_a, true.body_b, strict=True), true.gap, strict=True))
+    difference = near.gap - [exact[pair] for pair in zip(near.body_a, near.body_b, strict=True)]
+    # a radius of curvature is at least b²/a, and each of two surfaces loses h²/(4R) at most
+    assert np.all((difference > -1e-9) & (difference < size**2 / (2 * 0.15**2 / 0.45)))
+
+
+def test_the_whole_domain_gives_the_same_contacts(ellipsoids):
+    bodies, walls, pose, mesh, _ = ellipsoids
+    band = narrow_band(bodies, walls).detect(pose, mesh, REACH)
+    whole = FastMarchingDetector(FastMarchingOptions(), bodies, walls).detect(pose, mesh, REACH)
+    np.testing.assert_allclose(whole.gap, band.gap, rtol=1e-14)
+
+
+def test_threads_give_the_same_bits(ellipsoids):
+    bodies, walls, pose, mesh, _ = ellipsoids
+    one, many = (narrow_band(bodies, walls, threads=count).detect(pose, mesh, REACH) for count in (1, 3))
+    for name in Contacts.__slots__:
+        np.testing.assert_array_equal(getattr(one, name), getattr(many, name))
+
+
+def test_a_detector_goes_on_with_a_mesh_that_moves_and_with_another():
+    bodies, walls = [ball(0.3)], box_walls(np.zeros(2), np.ones(2), 1)
+    detector, pose = narrow_band(bodies, walls), upright([0.5, 0.5])
+    mesh = generate_mesh(bodies, pose, np.zeros(2), np.ones(2), 0.2, 0.02, 0.5)
+    outside = np.clip((np.linalg.norm(mesh.points - 0.5, axis=1) - 0.3) / 0.2, 0.0, 1.0)
+    moved = replace(mesh, points=mesh.points + np.outer(1.0 - outside, [0.0, 0.05]))
+    finer = generate_mesh(bodies, pose, np.zeros(2), np.ones(2), 0.1, 0.01, 0.5)
+    places = [(pose, mesh), (upright([0.5, 0.55]), moved), (pose, finer)]
+    gaps = [detector.detect(*place, np.inf).gap for place in places]
+    np.testing.assert_allclose(gaps, [[0.2] * 4, [0.2, 0.2, 0.25, 0.15], [0.2] * 4], atol=1e-3)
+
+
+def fork():
+    """A body like a U over a floor, from squares: two feet, equally near, and a high bridge between them."""
+    width, height = 11, 6
+    solid = {(x, y) for x in range(2, 9) for y in range(2, 5) if y > 3 or x in (2, 3, 7, 8)}
+    squares = [(x, y) for x in range(width) for y in range(height) if (x, y) not in solid]
+    corners = sorted({(x + i, y + j) for x, y in squares for i in (0, 1) for j in (0, 1)})
+    number = {corner: k for k, corner in enumerate(corners)}
+    cells = [
+        [number[x, y], number[x + 1, y + k], number[x + 1 - k, y + 1]] for x, y in squares for k in (0, 1)
+    ]  # fmt: skip
+    points, cells = np.array(corners, float), np.array(cells)
+    facets = boundary_facets(cells)
+    middle = points[facets].mean(axis=1)
+    inside = np.all((middle > 0) & (middle < [width, height]), axis=1)
+    floor = middle[:, 1] == 0
+    return Mesh(points, cells, facets, np.where(inside, 0, np.where(floor, 3, 1)))
+
+
+def test_a_fork_touches_the_floor_at_both_feet():
+    mesh, body = fork(), ball(4.0)
+    pose, floor = upright([5.5, 3.5]), box_walls(np.zeros(2), np.array([11.0, 6.0]), 1)[2]
+    single = narrow_band([body], [floor]).detect(pose, mesh, 2.2)
+    several = narrow_band([body], [floor], multiple=True).detect(pose, mesh, 2.2)
+    assert len(single) == 1
+    np.testing.assert_allclose(several.gap, [2.0, 2.0], rtol=1e-12)
+    np.testing.assert_array_equal(several.body_b, [3, 3])
+    left, right = np.sort(several.point_b[:, 0])
+    assert 2 <= left <= 4
+    assert 7 <= right <= 9
+
+
+def test_bodies_far_apart_are_not_marched(monkeypatch):
+    import rigidfluid.marching.contacts as contacts
+
+    def refuse(*_):
+        raise AssertionError("marched")
+
+    monkeypatch.setattr(contacts, "march_from", refuse)
+    bodies, walls = [ball(0.1), ball(0.1)], box_walls(np.zeros(2), np.full(2, 2.0), 2)
+    pose = upright([0.6, 0.6], [1.4, 1.4])
+    mesh = generate_mesh(bodies, pose, np.zeros(2), np.full(2, 2.0), 0.3, 0.05, 0.5)
+    assert len(narrow_band(bodies, walls).detect(pose, mesh, 0.4)) == 0
+
+
+def test_a_band_narrower_than_the_range_is_refused():
+    assert narrow_band([], []).sight(0.02) == pytest.approx(0.03)
+    assert narrow_band([], [], band_width=0.1).sight(0.02) == 0.1
+    with pytest.raises(SceneError, match=r"contact.band_width: found 0.01.*at least the range, 0.02"):
+        narrow_band([], [], band_width=0.01).sight(0.02)

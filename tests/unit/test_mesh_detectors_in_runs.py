@@ -1,0 +1,63 @@
+"""Scenes whose detector reads the mesh, from start to end."""
+
+import pytest
+from mesh_tools import ball, ellipsoid
+
+from rigidfluid.core.parts import cheapest_detector
+from rigidfluid.core.run import run
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.system import build_system
+from rigidfluid.errors import SceneError
+
+ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}
+DISK = {"type": "sphere", "radius": 0.08, "density": 1.25, "position": [0.3, 0.105]}
+LAW = {"law": "centre", "range": 0.03, "epsilon": 5e-6}
+
+
+def scene(body, contact, backend="scikit-fem"):
+    return Scene.from_dict(
+        {
+            "scene": {"name": "fall", "dimension": 2},
+            "fluid": {"backend": backend, "density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},
+            "domain": {"lower": [0.0, 0.0], "upper": [0.6, 0.8]},
+            "body": [body],
+            "contact": contact,
+            "mesh": {"size": 0.08, "size_body": 0.02},
+            "time": {"end": 0.02, "step": 0.002},
+            "output": {"every": 0.02},
+        }
+    )
+
+
+@pytest.mark.parametrize("detector", ["narrow_band", "fast_marching"])
+def test_a_disk_is_held_off_a_wall_as_by_the_closed_form(detector):
+    marched = run(scene(DISK, {"detector": detector, **LAW}))
+    closed = run(scene(DISK, {"detector": "sphere", **LAW}))
+    assert marched.summary["smallest_gap"] == pytest.approx(closed.summary["smallest_gap"], rel=0.02)
+    assert marched.summary["rejected_steps"] == closed.summary["rejected_steps"]
+
+
+def test_an_ellipse_falls_and_its_gap_is_recorded_within_the_band():
+    history = run(scene(ELLIPSE, {"detector": "narrow_band", "band_width": 0.12}))
+    true = run(scene(ELLIPSE, {"detector": "brute_force"}))
+    assert history.summary["smallest_gap"] == pytest.approx(true.summary["smallest_gap"], abs=2e-3)
+
+
+def test_without_a_law_or_a_band_nothing_is_measured():
+    assert build_system(scene(ELLIPSE, {"detector": "narrow_band"})).reach == 0.0
+
+
+def test_auto_takes_the_cheapest_detector_that_is_exact():
+    assert build_system(scene(DISK, LAW)).detector.name == "sphere"
+    assert build_system(scene(ELLIPSE, {})).detector.name == "brute_force"
+    assert cheapest_detector([ellipsoid(0.1, 0.05), ball(0.1)], mesh=True)[0] == "narrow_band"
+
+
+def test_a_detector_that_needs_a_mesh_is_refused_without_one():
+    with pytest.raises(SceneError, match=r"contact.detector: found 'narrow_band' without a mesh.*auto"):
+        scene(DISK, {"detector": "narrow_band"}, backend="dry")
+
+
+def test_a_band_narrower_than_the_range_is_refused_at_the_start():
+    with pytest.raises(SceneError, match=r"contact.band_width"):
+        build_system(scene(DISK, {"detector": "narrow_band", "band_width": 0.01, **LAW}))
