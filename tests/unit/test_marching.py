@@ -3,7 +3,9 @@ import pytest
 from marching_meshes import INNER, OUTER, box, naive_distances, shell
 
 from rigidfluid.marching.field import distance_field
+from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology
+from rigidfluid.marching.walk import walk_to_vertex
 from rigidfluid.marching.workspace import new_workspace
 
 SIZE = {2: 0.06, 3: 0.2}
@@ -116,3 +118,36 @@ def test_nearest_facets_are_those_of_the_distance(dimension):
     for vertex, distance, facet in list(zip(field.vertices, field.distance, field.facet, strict=True))[::37]:
         naive = naive_distances(mesh.points[vertex][None], mesh.points, mesh.facets[facet][None])
         assert naive[0] == pytest.approx(distance, abs=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_walk_over_a_convex_surface_ends_on_the_nearest_facet(dimension):
+    mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
+    topology = Topology.of(mesh)
+    seeds, wanted = topology.seeds([INNER])
+    middle = mesh.points[mesh.facets].mean(axis=1)
+    for vertex in range(len(mesh.points))[-1:0:-101]:
+        point = mesh.points[vertex]
+        facing = [facet for facet in seeds if middle[facet] @ point > 0.2 * np.linalg.norm(point) * 0.3]
+        ends = [walk_to_vertex(mesh.points, vertex, topology.surfaces, wanted, facet)[0] for facet in facing]
+        nearest = naive_distances(point[None], mesh.points, mesh.facets[seeds])[0]
+        np.testing.assert_allclose(np.sqrt(ends), nearest, rtol=1e-12)
+
+
+@pytest.mark.parametrize("update", [from_edge, from_triangle])
+def test_a_plane_wave_is_met_exactly_if_it_comes_from_between_the_corners(update):
+    rng = np.random.default_rng(0)
+    corners = 2 if update is from_edge else 3
+    met = 0
+    for _ in range(1000):
+        points = np.concatenate([np.zeros((1, corners)), rng.normal(size=(corners, corners))])
+        wave = rng.normal(size=corners)
+        wave /= np.linalg.norm(wave)
+        weights = np.linalg.solve(points[1:].T, -wave)
+        found = update(points, 0, *range(1, corners + 1), points @ wave)
+        if np.all(weights > 1e-6) and np.all(points[1:] @ wave < 0.0):
+            met += 1
+            assert found == pytest.approx(0.0, abs=1e-9)
+        elif np.any(weights < -1e-6):
+            assert found == np.inf or abs(found) > 1e-9
+    assert met > 20

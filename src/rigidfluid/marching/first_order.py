@@ -60,16 +60,17 @@ def _update(points, cell, other, vertex, work):
         second = cell[i]
         if second == vertex or work.state[second] != KNOWN:
             continue
-        best = min(best, _from_edge(points, other, vertex, second, work.key))
+        best = min(best, from_edge(points, other, vertex, second, work.key))
         for j in range(i):
             third = cell[j]
             if third != vertex and work.state[third] == KNOWN:
-                best = min(best, _from_triangle(points, other, vertex, second, third, work.key))
+                best = min(best, from_triangle(points, other, vertex, second, third, work.key))
     return best
 
 
 @njit(cache=True, nogil=True)
-def _from_edge(points, x, a, b, value):
+def from_edge(points, x, a, b, value):
+    """The value at ``x`` of the plane wave through two vertices, infinite if it does not come from between them."""
     aa, bb, ab = _dot(points, x, a, a), _dot(points, x, b, b), _dot(points, x, a, b)
     det = aa * bb - ab * ab
     if det <= FLAT * aa * bb:
@@ -83,7 +84,8 @@ def _from_edge(points, x, a, b, value):
 
 
 @njit(cache=True, nogil=True)
-def _from_triangle(points, x, a, b, c, value):
+def from_triangle(points, x, a, b, c, value):
+    """The value at ``x`` of the plane wave through three vertices, infinite if it does not come from between them."""
     aa, bb, cc = _dot(points, x, a, a), _dot(points, x, b, b), _dot(points, x, c, c)
     ab, ac, bc = _dot(points, x, a, b), _dot(points, x, a, c), _dot(points, x, b, c)
     # the adjugate of the Gram matrix
