@@ -5,7 +5,7 @@ import numpy as np
 from rigidfluid.core.interfaces import Detector
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.types import FloatArray, Mesh
-from rigidfluid.detectors.fast_marching import FastMarchingDetector, FastMarchingOptions
+from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.testing import Arrangement, DetectorContract
 
@@ -36,7 +36,7 @@ class TestNarrowBandDetector(MarchingContract):
 
 class TestFastMarchingDetector(MarchingContract):
     def make_detector(self, arrangement: Arrangement) -> Detector:
-        return FastMarchingDetector(FastMarchingOptions(), arrangement.bodies, arrangement.walls)
+        return FastMarchingDetector(FastMarchingDetector.Options(), arrangement.bodies, arrangement.walls)
 
 
 class TestFirstOrderNarrowBand(MarchingContract):

@@ -10,7 +10,7 @@ from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.topology import boundary_facets
 from rigidfluid.core.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
-from rigidfluid.detectors.fast_marching import FastMarchingDetector, FastMarchingOptions
+from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.simplices import facet_to_facet
@@ -90,7 +90,7 @@ def test_gaps_agree_with_the_shapes_to_second_order(ellipsoids):
 def test_the_whole_domain_gives_the_same_contacts(ellipsoids):
     bodies, walls, pose, mesh, _ = ellipsoids
     band = narrow_band(bodies, walls).detect(pose, mesh, REACH)
-    whole = FastMarchingDetector(FastMarchingOptions(), bodies, walls).detect(pose, mesh, REACH)
+    whole = FastMarchingDetector(FastMarchingDetector.Options(), bodies, walls).detect(pose, mesh, REACH)
     np.testing.assert_allclose(whole.gap, band.gap, rtol=1e-14)
 
 

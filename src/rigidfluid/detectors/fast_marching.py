@@ -3,24 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Literal
-
-from pydantic import Field
+from typing import ClassVar
 
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
-
-
-class FastMarchingOptions(PartOptions):
-    """Keys of the ``[contact]`` table with detector ``fast_marching``."""
-
-    accuracy: Literal["exact", "first-order"] = Field(
-        default="exact", description="How the distance is marched: `exact` to the facets, or by plane waves"
-    )
-    multiple: bool = Field(
-        default=False, description="Whether a pair that is near at separate places has a contact at each of them"
-    )
-    threads: int = Field(default=0, ge=0, description="Threads that march side by side; 0 for one per core [1]")
+from rigidfluid.marching.options import MarchingOptions
 
 
 class FastMarchingDetector(Detector):
@@ -30,7 +17,7 @@ class FastMarchingDetector(Detector):
 
     Parameters
     ----------
-    options : FastMarchingOptions
+    options : MarchingOptions
         ``accuracy``, ``multiple``, ``threads``.
     bodies : sequence of Body
         Shapes of any kind.
@@ -44,10 +31,10 @@ class FastMarchingDetector(Detector):
 
     name: ClassVar[str] = "fast_marching"
     needs_mesh: ClassVar[bool] = True
-    Options: ClassVar[type[PartOptions]] = FastMarchingOptions
-    options: FastMarchingOptions
+    Options: ClassVar[type[PartOptions]] = MarchingOptions
+    options: MarchingOptions
 
-    def __init__(self, options: FastMarchingOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+    def __init__(self, options: MarchingOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         from rigidfluid.marching.contacts import ContactFinder
 
         super().__init__(options, bodies, walls)

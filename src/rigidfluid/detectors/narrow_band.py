@@ -3,31 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from pydantic import Field
 
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
+from rigidfluid.marching.options import MarchingOptions
 
 BANDS_PER_RANGE = 1.5
 """Width of the band over the range of the law, the paper's."""
 
 
-class NarrowBandOptions(PartOptions):
+class NarrowBandOptions(MarchingOptions):
     """Keys of the ``[contact]`` table with detector ``narrow_band``."""
 
     band_width: float | None = Field(
         default=None, gt=0, description="Gap up to which contacts are looked for; 1.5 range if not given [length]"
     )
-    accuracy: Literal["exact", "first-order"] = Field(
-        default="exact", description="How the distance is marched: `exact` to the facets, or by plane waves"
-    )
-    multiple: bool = Field(
-        default=False, description="Whether a pair that is near at separate places has a contact at each of them"
-    )
-    threads: int = Field(default=0, ge=0, description="Threads that march side by side; 0 for one per core [1]")
 
 
 class NarrowBandDetector(Detector):
