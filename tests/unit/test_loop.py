@@ -101,3 +101,9 @@ def test_meeting_among_many_does_not_shorten_the_step():
     history = rigidfluid.run(dry({"velocity": [0.0, 8.0], "position": [4.2, 5.0]}, *grid, gravity=(0.0, 0.0)))
     assert history.summary["steps"] == 25
     assert np.isfinite(history.bodies["gap"][::37]).any()
+
+
+def test_a_driven_body_has_no_energy_in_the_books():
+    energy = rigidfluid.run(dry({"prescribed": {"amplitude": [0.1, 0.0], "frequency": 2.0}})).summary["energy"]
+    assert energy["kinetic"] == 0.0
+    assert energy["residual"] == 0.0
