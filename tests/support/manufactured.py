@@ -31,7 +31,6 @@ def backend(velocity, density, viscosity, source=None, tolerance=1e-12):
 def step_to(time, points, size, previous_size=None, derivative=None):
     return Step(
         time=time,
-        size=size,
         derivative=derivative_weights(size, previous_size) if derivative is None else derivative,
         extrapolation=extrapolation_weights(size, previous_size),
         pose=NO_POSE,

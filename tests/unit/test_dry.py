@@ -51,7 +51,6 @@ def simulate(bodies: Bodies, pose: Pose, twist: Twist, steps: FloatArray) -> tup
 def uncontrolled(step: float, previous: float | None, pose: Pose, matrix: FloatArray, load: FloatArray) -> Step:
     return Step(
         time=0.0,
-        size=step,
         derivative=derivative_weights(step, previous),
         extrapolation=extrapolation_weights(step, previous),
         pose=pose,
@@ -227,7 +226,6 @@ def test_controlled_bodies_take_the_given_twist() -> None:
     pose = Pose(np.zeros((2, 2)), np.zeros((2, 1)))
     step = Step(
         time=0.0,
-        size=0.1,
         derivative=derivative_weights(0.1, None),
         extrapolation=extrapolation_weights(0.1, None),
         pose=pose,

@@ -39,7 +39,6 @@ class Dry(FluidBackend):
             kinetic_energy=0.0,
             dissipation=0.0,
             boundary_power=0.0,
-            iterations=0,
         )
 
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:

@@ -98,7 +98,6 @@ def _step(
     mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     return Step(
         time=time,
-        size=size,
         derivative=derivative,
         extrapolation=extrapolation_weights(size, state.past_step),
         pose=pose,

@@ -133,7 +133,6 @@ class Step:
     """
 
     time: float
-    size: float
     derivative: FloatArray
     extrapolation: FloatArray
     pose: Pose
@@ -158,7 +157,6 @@ class Advance:
     kinetic_energy: float
     dissipation: float
     boundary_power: float
-    iterations: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ def advance(
     assembled = _assemble(discretisation, fluid, mesh, points, step)
     constraint.place(assembled.node_points, position)
     given = constraint.given(step.time, assembled.node_points, position, step.controlled_twist)
-    reduced, iterations = _solve(discretisation, solver, tolerance, assembled, given, fluid, step)
+    reduced = _solve(discretisation, solver, tolerance, assembled, given, fluid, step)
 
     everything = constraint.operator @ reduced + given
     velocity = everything[: space.nodes * space.dimension].reshape(-1, space.dimension)
@@ -62,7 +62,6 @@ def advance(
         kinetic_energy=kinetic_energy(discretisation.problem, space, points, velocity),
         dissipation=discretisation.dissipation(points, velocity),
         boundary_power=face_power(discretisation, assembled.node_points, velocity, assembled.pressure_load, reaction),
-        iterations=iterations,
     )
 
 
@@ -102,7 +101,7 @@ def _solve(
     given: FloatArray,
     fluid: FluidState,
     step: Step,
-) -> tuple[FloatArray, int]:
+) -> FloatArray:
     """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the extrapolated state onwards."""
     constraint = discretisation.constraint
     twists = slice(constraint.twist_start, constraint.twist_start + step.load[~step.controlled].size)
@@ -123,8 +122,8 @@ def _solve(
     right_side[twists] += step.load[~step.controlled].ravel()
     guess = _guess(discretisation, assembled, fluid, step, twists)
     scale = float(np.linalg.norm(right_side))
-    correction, iterations = solver.solve(apply, matrix, right_side - apply(guess), tolerance * scale)
-    return guess + correction, iterations
+    correction, _ = solver.solve(apply, matrix, right_side - apply(guess), tolerance * scale)
+    return guess + correction
 
 
 def _guess(
