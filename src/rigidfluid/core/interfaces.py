@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from rigidfluid.core.types import (
@@ -77,6 +78,11 @@ class Body(Part):
     def radius(self) -> float | None:
         """The radius if the shape is a ball, else None [length]."""
         return None
+
+    @property
+    def semi_axes(self) -> FloatArray | None:
+        """Semi-axes (d,) along the axes of its frame if the shape is an ellipsoid or a ball, else None [length]."""
+        return None if self.radius is None else np.full(self.dimension, self.radius)
 
     @abstractmethod
     def closest_point(self, points: FloatArray) -> FloatArray:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from rigidfluid.core import broad_phase
+from rigidfluid.core.contacts import select
 from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
-from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
 
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
@@ -42,8 +41,3 @@ def travel(system: System, start: Pose, end: Pose) -> FloatArray:
     moved = np.linalg.norm(end.position - start.position, axis=1)
     reach = np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])
     return np.asarray(moved + reach * angle_between(start.orientation, end.orientation))
-
-
-def select(contacts: Contacts, chosen: BoolArray) -> Contacts:
-    """The contacts where ``chosen`` (m,) is true."""
-    return replace(contacts, **{name: getattr(contacts, name)[chosen] for name in Contacts.__slots__})
