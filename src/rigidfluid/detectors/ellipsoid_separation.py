@@ -25,7 +25,10 @@ import numpy as np
 from numba import njit
 
 FOUND, BEYOND, LOST = 0, 1, 2
-"""What became of a pair: its normal is found, its gap is beyond reach, or no start came to rest."""
+"""What became of a pair: its normal is found, its gap is beyond reach, or the highest climb came to no rest."""
+
+# a vector without a direction becomes NaN, and a pair with NaN is LOST
+_kernel = njit(cache=True, nogil=True, error_model="numpy")
 
 _EPSILON = float(np.finfo(float).eps)
 _MOST_STEPS = 200
@@ -35,7 +38,7 @@ _NEARLY = 1e-11
 _BISECTIONS = 40
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def separate(offset, first, second, half, directions, reach, normal, state):
     """The normals from b to a of pairs of ellipsoids.
 
@@ -63,11 +66,14 @@ def separate(offset, first, second, half, directions, reach, normal, state):
         state[k] = LOST if not found else BEYOND if gap > reach else FOUND
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _widest(c, a, b, directions, reach):
     """The direction of the largest plane gap, that gap, and whether it was found."""
     n, gap, found = (1.0, 0.0, 0.0), -np.inf, False
-    if _dot(c, c) > 0.0:
+    square = _dot(c, c)
+    if not square < np.inf:
+        return n, gap, False
+    if square > 0.0:
         line = _unit(c)
         bound = _plane_gap(line, c, a, b)
         if bound > reach:
@@ -86,7 +92,7 @@ def _widest(c, a, b, directions, reach):
     return n, gap, found
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _climb(n, c, a, b, reach):
     """Newton's method from a direction up to a local maximum of g: the direction there, g, and whether it is one.
 
@@ -97,7 +103,7 @@ def _climb(n, c, a, b, reach):
         gap = _plane_gap(n, c, a, b)
         if gap > reach:
             return n, gap, True
-        slope, step = _newton(n, gap, c, a, b)
+        slope, step = _newton(n, gap, size, c, a, b)
         length = sqrt(_dot(step, step))
         if length <= _NEARLY or _dot(slope, slope) <= (_NEARLY * size) ** 2:
             tried = _unit(_plus(n, 1.0, step))
@@ -117,19 +123,19 @@ def _climb(n, c, a, b, reach):
     return n, gap, False
 
 
-@njit(cache=True, nogil=True)
-def _newton(n, gap, c, a, b):
+@_kernel
+def _newton(n, gap, size, c, a, b):
     """Slope of g across n, and Newton's step; where g curves upwards the step goes up all the same."""
     t, u = _tangents(n)
     apart = _plus(_plus(c, -1.0, _farthest(a, n)), -1.0, _farthest(b, n))
     p, q = _dot(apart, t), _dot(apart, u)
     tt_a, tu_a, uu_a = _radii(a, n, t, u)
     tt_b, tu_b, uu_b = _radii(b, n, t, u)
-    x, y = _turned_solve(tt_a + tt_b + gap, tu_a + tu_b, uu_a + uu_b + gap, p, q)
+    x, y = _turned_solve(tt_a + tt_b + gap, tu_a + tu_b, uu_a + uu_b + gap, p, q, _EPSILON * size)
     return _plus(_times(p, t), q, u), _plus(_times(x, t), y, u)
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _radii(s, n, t, u):
     """Second derivatives of h across n: the radii of curvature of the surface, in the directions t and u."""
     v = _pull(s, n)
@@ -141,9 +147,9 @@ def _radii(s, n, t, u):
     return _dot(w, w) / height, _dot(w, z) / height, _dot(z, z) / height
 
 
-@njit(cache=True, nogil=True)
-def _turned_solve(tt, tu, uu, p, q):
-    """The solution of [[tt, tu], [tu, uu]] (x, y) = (p, q) with both eigenvalues made positive."""
+@_kernel
+def _turned_solve(tt, tu, uu, p, q, least):
+    """The solution of [[tt, tu], [tu, uu]] (x, y) = (p, q) with both eigenvalues made positive, at least ``least``."""
     mean, half = 0.5 * (tt + uu), 0.5 * (tt - uu)
     radius = sqrt(half**2 + tu**2)
     cosine, sine = (half + radius, tu) if half >= 0.0 else (tu, radius - half)
@@ -151,13 +157,12 @@ def _turned_solve(tt, tu, uu, p, q):
     if length == 0.0:
         cosine, sine, length = 1.0, 0.0, 1.0
     cosine, sine = cosine / length, sine / length
-    least = _EPSILON * (abs(mean) + radius)
     along = (cosine * p + sine * q) / max(abs(mean + radius), least)
     across = (cosine * q - sine * p) / max(abs(mean - radius), least)
     return cosine * along - sine * across, sine * along + cosine * across
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _touching_normal(c, a, b):
     """The normal where both, blown up or shrunk by the same factor, touch (Perram and Wertheim's contact function).
 
@@ -176,7 +181,7 @@ def _touching_normal(c, a, b):
     return _unit(y)
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _normal_at(s, u):
     """A vector along the normal of the ellipsoid at its point S u."""
     n = (0.0, 0.0, 0.0)
@@ -186,14 +191,14 @@ def _normal_at(s, u):
     return n
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _least_radius(s):
     """The least radius of curvature of the surface: the square of the shortest semi-axis over the longest."""
     shortest, longest = _extremes(s)
     return shortest**2 / longest
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _extremes(s):
     """The shortest and the longest semi-axis: the lengths of the columns of S."""
     shortest, longest = np.inf, 0.0
@@ -203,13 +208,13 @@ def _extremes(s):
     return shortest, longest
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _plane_gap(n, c, a, b):
     v, w = _pull(a, n), _pull(b, n)
     return _dot(n, c) - sqrt(_dot(v, v)) - sqrt(_dot(w, w))
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _farthest(s, n):
     """The point of the surface that is farthest in direction n, from the centre."""
     v = _unit(_pull(s, n))
@@ -220,7 +225,7 @@ def _farthest(s, n):
     )
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _blend(a, b, share):
     """The six entries of (1 - share) S_a S_aᵀ + share S_b S_bᵀ, by rows."""
     return (
@@ -233,7 +238,7 @@ def _blend(a, b, share):
     )
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _entry(a, b, share, i, k):
     total = 0.0
     for j in range(3):
@@ -241,7 +246,7 @@ def _entry(a, b, share, i, k):
     return total
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _solve(m, c):
     """The solution of a symmetric system of three, up to a positive factor, from its cofactors."""
     xx, xy, xz, yy, yz, zz = m
@@ -253,7 +258,7 @@ def _solve(m, c):
     )
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _tangents(n):
     """Two unit vectors across n and each other; the first lies in the plane z = 0 if n does."""
     x, y, z = abs(n[0]), abs(n[1]), abs(n[2])
@@ -267,7 +272,7 @@ def _tangents(n):
     return t, u
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _pull(s, n):
     """Sᵀn."""
     return (
@@ -277,21 +282,21 @@ def _pull(s, n):
     )
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _dot(u, v):
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _plus(u, factor, v):
     return (u[0] + factor * v[0], u[1] + factor * v[1], u[2] + factor * v[2])
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _times(factor, u):
     return (factor * u[0], factor * u[1], factor * u[2])
 
 
-@njit(cache=True, nogil=True)
+@_kernel
 def _unit(u):
     return _times(1.0 / sqrt(_dot(u, u)), u)
