@@ -14,6 +14,7 @@ from rigidfluid.core.types import Contacts, FloatArray, Pose, Wall
 from rigidfluid.core.unit_sphere import unit_sphere_points
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+from rigidfluid.detectors.ellipsoid_separation import touching_normal
 from rigidfluid.errors import SceneError, StepError
 
 SHAPES = {
@@ -110,6 +111,19 @@ def test_separate_pairs_against_samples_of_both_surfaces(dimension: int, seed: i
         contacts = detect(bodies, pose)
         assert contacts.gap[0] == pytest.approx(sampled_distance(bodies, pose), abs=1e-8)
         check(contacts, bodies, pose, 1e-14)
+
+
+@pytest.mark.parametrize("apart", [(0.4, 2.4), (0.05, 0.5)])
+def test_where_both_touch_when_scaled_the_plane_gap_has_the_sign_of_the_gap(apart: tuple[float, float]) -> None:
+    for seed in range(10):
+        for bodies, pose in random_pairs(3, apart, seed):
+            (one, other), offset = matrices(bodies, pose), pose.position[0] - pose.position[1]
+            n = np.array(touching_normal(tuple(offset), one, other))
+            reached = np.linalg.norm(n @ one) + np.linalg.norm(n @ other)
+            scale = n @ offset / reached
+            on_a, on_b = (half @ half.T @ n / np.linalg.norm(half.T @ n) for half in (one, other))
+            np.testing.assert_allclose(scale * (on_a + on_b), offset, rtol=0, atol=1e-9)
+            assert (scale > 1.0) == (detect(bodies, pose).gap[0] > 0.0)
 
 
 @DIMENSIONS
@@ -293,10 +307,11 @@ def test_without_bodies_there_is_no_contact(dimension: int) -> None:
     assert contacts.normal.shape == (0, dimension)
 
 
-def test_a_pair_without_a_normal_is_named() -> None:
-    pose = Pose(np.array([[0.0, 0.0], [5.0, 0.0], [1e200, 0.0]]), np.zeros((3, 1)))
-    with np.errstate(over="ignore"), pytest.raises(StepError, match=r"bodies 0 and 2: found no common normal"):
-        detect([ellipsoid(1.0, 0.5)] * 3, pose)
+@pytest.mark.parametrize(("place", "angle"), [(1e200, 0.0), (1.6, np.nan)])
+def test_a_pair_without_a_normal_is_named(place: float, angle: float) -> None:
+    pose = Pose(np.array([[0.0, 0.0], [place, 0.0]]), np.array([[0.0], [angle]]))
+    with np.errstate(over="ignore"), pytest.raises(StepError, match=r"bodies 0 and 1: found no common normal"):
+        detect([ellipsoid(1.0, 0.5)] * 2, pose)
 
 
 def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:

@@ -78,15 +78,13 @@ def _widest(c, a, b, directions, reach):
         bound = _plane_gap(line, c, a, b)
         if bound > reach:
             return line, bound, True
-        n, gap, found = _climb(_touching_normal(c, a, b), c, a, b, reach)
+        n, gap, found = _climb(touching_normal(c, a, b), c, a, b, reach)
         if found and gap >= -_least_radius(a) - _least_radius(b):
             return n, gap, True
     for k in range(len(directions)):
         u = (directions[k, 0], directions[k, 1], directions[k, 2])
         for start in (_normal_at(a, u), _normal_at(b, u)):
-            # of two opposite directions the one towards a is better
-            towards = 1.0 if _dot(start, c) >= 0.0 else -1.0
-            other, height, rests = _climb(_unit(_times(towards, start)), c, a, b, reach)
+            other, height, rests = _climb(_unit(start), c, a, b, reach)
             if height > gap:
                 n, gap, found = other, height, rests
     return n, gap, found
@@ -163,7 +161,7 @@ def _turned_solve(tt, tu, uu, p, q, least):
 
 
 @_kernel
-def _touching_normal(c, a, b):
+def touching_normal(c, a, b):
     """The normal where both, blown up or shrunk by the same factor, touch (Perram and Wertheim's contact function).
 
     It is y/|y| with ((1 - λ) S_a S_aᵀ + λ S_b S_bᵀ) y = c and λ such that (1 - λ) h_a(y) = λ h_b(y). There g has the
