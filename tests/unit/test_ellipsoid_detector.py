@@ -1,5 +1,7 @@
 """The closed-form detector of ellipsoids against samples of both surfaces, the naive detector and moved bodies."""
 
+import subprocess
+import sys
 from itertools import product
 
 import numpy as np
@@ -312,6 +314,22 @@ def test_a_pair_without_a_normal_is_named(place: float, angle: float) -> None:
     pose = Pose(np.array([[0.0, 0.0], [place, 0.0]]), np.array([[0.0], [angle]]))
     with np.errstate(over="ignore"), pytest.raises(StepError, match=r"bodies 0 and 1: found no common normal"):
         detect([ellipsoid(1.0, 0.5)] * 2, pose)
+
+
+def test_one_body_and_its_walls_need_no_compiler() -> None:
+    code = """
+import sys
+import numpy as np
+from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.types import Pose, Wall
+from rigidfluid.registry import BODY, DETECTOR, Registry
+shape, detector = Registry.load().get(BODY, "ellipsoid"), Registry.load().get(DETECTOR, "ellipsoid")
+bodies, walls = [shape(shape.Options(semi_axes=[1.0, 0.5]), 2)], [Wall(1, "bottom", np.zeros(2), np.array([0.0, 1.0]))]
+found = detector(PartOptions(), bodies, walls).detect(Pose(np.array([[0.0, 0.8]]), np.zeros((1, 1))), None, np.inf)
+print(len(found), "numba" in sys.modules)
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said == "1 False\n"
 
 
 def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:

@@ -13,7 +13,6 @@ from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.rigid import rotation_matrices
 from rigidfluid.core.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
 from rigidfluid.core.unit_sphere import unit_sphere_points
-from rigidfluid.detectors.ellipsoid_separation import BEYOND, LOST, separate
 from rigidfluid.errors import SceneError, StepError
 
 _STARTS = 16
@@ -112,6 +111,10 @@ def _normals(
 ) -> tuple[FloatArray, IntArray]:
     """Normals (k, d) of the pairs that are in reach, and which pairs (k,) these are."""
     dimension = position.shape[1]
+    if len(body_a) == 0:
+        return np.empty((0, dimension)), body_a
+    from rigidfluid.detectors.ellipsoid_separation import BEYOND, LOST, separate
+
     offset = _in_space(position[body_a] - position[body_b])
     normal, state = np.empty_like(offset), np.empty(len(offset), dtype=np.int64)
     directions = _in_space(unit_sphere_points(_STARTS, dimension))
