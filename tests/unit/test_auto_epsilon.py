@@ -92,6 +92,12 @@ def test_a_driven_body_counts_as_a_wall_that_moves() -> None:
     np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), driven, RANGE), expected)
 
 
+def test_a_driven_body_needs_neither_weight_nor_speed() -> None:
+    held = Loads(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.zeros(2), SMALLEST)
+    law = NormalLaw(NormalLaw.Options(epsilon="auto"), RANGE, held)
+    np.testing.assert_allclose(law.epsilon(contact(0.01)), (RANGE - SMALLEST) ** 2 / 3 / 4.0)
+
+
 def test_two_driven_bodies_hold_nothing() -> None:
     driven = Loads(np.full(2, np.inf), np.zeros(2), np.array([3.0, 1.0]), SMALLEST)
     law = NormalLaw(NormalLaw.Options(epsilon="auto"), RANGE, driven)
