@@ -12,14 +12,18 @@ from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
 
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``."""
+    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``.
+
+    Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
+    """
     count = len(system.bodies)
     near = system.detector.detect(pose, mesh, system.reach)
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, near.gap <= _law_range(system)), gaps
+    inside = paired & (system.assembly[near.body_a] == system.assembly[np.minimum(near.body_b, count - 1)])
+    return select(near, (near.gap <= _law_range(system)) & ~inside), gaps
 
 
 def _law_range(system: System) -> float:
