@@ -1,14 +1,17 @@
-"""Runs the validation scenes and writes docs/validation: a page and a plot for each.
+"""Runs the validation scenes and the studies of kernels, and writes docs/validation: a page and a plot for each.
 
-python docs/make_validation.py [falling_disk] [dfg_cylinder]
+python docs/make_validation.py [falling_disk] [dfg_cylinder] [distance_field] [detectors]
 """
 
 from __future__ import annotations
 
 import datetime
+import shutil
 import sys
+import tempfile
 import time
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +19,8 @@ from matplotlib.figure import Figure
 
 import rigidfluid
 from rigidfluid.core.history import History
+from rigidfluid.studies import load_study, run_study
+from rigidfluid.studies.rows import cells
 
 ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "validation"
@@ -137,7 +142,30 @@ def dfg_cylinder() -> None:
     write_page("dfg_cylinder", "DFG cylinder 2D-1", "python docs/make_validation.py dfg_cylinder", text)
 
 
-CASES = {"falling_disk": falling_disk, "dfg_cylinder": dfg_cylinder}
+def kernel_study(name: str, title: str) -> None:
+    """A study of a kernel: its plot, and its runs in a table."""
+    with tempfile.TemporaryDirectory() as folder:
+        results, _ = run_study(load_study(ROOT / "studies" / f"{name}.toml"), Path(folder), fresh=True)
+        shutil.copy(Path(folder) / "study.png", OUT / f"{name}.png")
+    rows = []
+    for key, settings in zip(results.prints, results.plan, strict=True):
+        outcome, front = results.outcomes.get(key), "yes" if key in results.front else ""
+        figures = ("failed",) * 3 if outcome is None else (
+            f"{outcome.figure:.1e}", f"{outcome.seconds:.1e}", str(outcome.unknowns)
+        )  # fmt: skip
+        rows.append((*cells(results.study.knobs, settings), *figures, front))
+    text = f"Error of the {results.target.of} against {results.target.against}.\n\n"
+    text += table((*results.study.knobs, "error", "seconds", "vertices", "Pareto front"), rows)
+    text += f"\n\nThe same with a page of its own: `rigidfluid study studies/{name}.toml`."
+    write_page(name, title, f"python docs/make_validation.py {name}", text)
+
+
+CASES = {
+    "falling_disk": falling_disk,
+    "dfg_cylinder": dfg_cylinder,
+    "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
+    "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
+}
 
 
 if __name__ == "__main__":

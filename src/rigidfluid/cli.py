@@ -132,7 +132,7 @@ def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> Non
 
 @app.command()
 def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> None:
-    """Run a scene with many settings, and plot the error against the run time."""
+    """Run a scene or a kernel with many settings, and plot the error against the run time."""
     with _reported("The same command goes on with the runs that are not done."):
         from rigidfluid.studies import load_study, run_study
 

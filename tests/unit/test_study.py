@@ -20,7 +20,8 @@ from rigidfluid.core.records import columns
 from rigidfluid.core.summary import FIGURES
 from rigidfluid.errors import OutputError, SceneError
 from rigidfluid.studies import load_study, run_study
-from rigidfluid.studies.figure import read_figure
+from rigidfluid.studies.figure import check_figure, read_figure
+from rigidfluid.studies.kernel_subject import KernelSubject
 from rigidfluid.studies.model import ErrorTable, FigureTable, Settings, StudyTable
 from rigidfluid.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.studies.rows import read_rows
@@ -254,6 +255,9 @@ def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
         ('"left_disk"', '"left_dish"', ("error.figure.body", "'left_dish'", "Did you mean 'left_disk'?")),
         ("at = 0.004", "at = 0.005", ("error.figure.at", "0.005", "time.end, 0.004")),
         ("at = 0.004", 'at = 0.004, extreme = "lowest"', ("error.figure", "one of at and extreme")),
+        ('table = "bodies"', 'table = "energy"', ("error.figure", "body with table bodies or contacts")),
+        ('table = "bodies"', 'table = "contacts"', ("error.figure", "extreme with table contacts")),
+        ('body = "left_disk"', "probe = 0", ("error.figure", "probe with table probes")),
         ("at = 0.004", 'at = 0.004, key = "time"', ("error.figure", "a key path of summary.json, or")),
         ("reference = 0.5", 'reference = "best"', ("error.reference", "'best'", "a valid number", "finest")),
         ("reference = 0.5", "reference = 0\nrelative = true", ("error.reference", "Set relative = false")),
@@ -299,6 +303,17 @@ def test_most_expensive_run() -> None:
     assert most_expensive({"a": Outcome(1, 1.0, 0, 5), "b": Outcome(1, 2.0, 0, 4)}) == "a"
 
 
+def rows_of(table: str, time: float) -> list[Any]:
+    """Rows of one step: kinetic energy t², pressure of probe p (p + 1)t, contacts disk–floor and disk–ball."""
+    values: list[dict[str, Any]] = {
+        "energy": [{"kinetic": time**2}],
+        "probes": [{"probe": probe, "pressure": (probe + 1) * time} for probe in (0, 1)],
+        "contacts": [{"a": "disk", "b": b, "gap": time + gap} for b, gap in (("floor", 0.1), ("ball", 0.2))],
+    }[table]
+    names = columns(2)[table]
+    return [tuple({"time": time, **row}.get(name, 0.0) for name in names) for row in values]
+
+
 @pytest.fixture
 def history() -> History:
     """One body, whose x is the cube of the time."""
@@ -308,6 +323,7 @@ def history() -> History:
         row: list[Any] = [0.0] * len(columns(2)["bodies"])
         row[places("time")], row[places("body")], row[places("x")] = time, "disk", time**3 - time
         history.extend({"bodies": [tuple(row)]})
+        history.extend({name: rows_of(name, time) for name in ("energy", "probes", "contacts")})
         history.summary = {"steps": step, "rest_position": {"disk": [0.25, 0.75]}, "smallest_gap": None}
     return history
 
@@ -321,10 +337,37 @@ def history() -> History:
         ({"table": "bodies", "column": "x", "body": "disk", "extreme": "highest"}, 0.0),
         ("rest_position.disk.1", 0.75),
         ("steps", 5),
+        ({"table": "energy", "column": "kinetic", "at": 0.5}, 0.25),
+        ({"table": "energy", "column": "kinetic", "extreme": "highest"}, 1.0),
+        ({"table": "probes", "column": "pressure", "extreme": "highest"}, 1.0),
+        ({"table": "probes", "column": "pressure", "probe": 1, "at": 0.5}, 1.0),
+        ({"table": "contacts", "column": "gap", "extreme": "lowest"}, 0.1),
+        ({"table": "contacts", "column": "gap", "body": "ball", "extreme": "lowest"}, 0.2),
+        ({"table": "contacts", "column": "gap", "body": "disk", "extreme": "highest"}, 1.2),
     ],
 )
 def test_figures(figure: Any, expected: float, history: History) -> None:
     assert read_figure(FigureTable.model_validate(figure), history) == pytest.approx(expected, rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("figure", "text"),
+    [
+        ({"table": "energy", "column": "kinetik", "extreme": "lowest"}, "Did you mean 'kinetic'"),
+        ({"table": "contacts", "column": "a", "extreme": "lowest"}, "error.figure.column: found 'a'"),
+        ({"table": "probes", "column": "pressure", "extreme": "lowest"}, "error.figure.probe: found 0.*of 0 probes"),
+    ],
+)
+def test_figures_that_a_scene_will_not_have(figure: Any, text: str) -> None:
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml")
+    with pytest.raises(SceneError, match=text):
+        check_figure(FigureTable.model_validate(figure), scene)
+
+
+def test_contacts_that_never_come_are_no_figure() -> None:
+    figure = FigureTable(table="contacts", column="gap", extreme="lowest")
+    with pytest.raises(SceneError, match="nan for gap lowest"):
+        read_figure(figure, History(2))
 
 
 @pytest.mark.parametrize(
@@ -345,6 +388,10 @@ def test_figures_are_keys_of_the_summary() -> None:
 @pytest.mark.parametrize("path", sorted((SCENES.parent / "studies").glob("*.toml")), ids=lambda path: path.stem)
 def test_shipped_studies_can_be_run(path: Path) -> None:
     study = load_study(path)
+    if study.scene is None:
+        kernels = KernelSubject(study)
+        assert [kernels.read(settings) for settings in study.settings()]
+        return
     subject = SceneSubject(study)
     identities = {subject.identity(settings) for settings in study.settings()}
     assert len(identities) == len(study.settings())

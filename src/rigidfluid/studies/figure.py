@@ -1,4 +1,4 @@
-"""One number from a run: a value of its summary, or a column of bodies.csv at a time or its extreme."""
+"""One number from a run: a value of its summary, or a column of one of its tables at a time or its extreme."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigidfluid.core.history import History
 from rigidfluid.core.records import columns
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.summary import FIGURES
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.tables import KINDS
+from rigidfluid.core.types import BoolArray, FloatArray
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 from rigidfluid.studies.model import FigureTable
@@ -38,7 +40,13 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
     if figure.key is not None:
         _refuse_unknown("", figure.key.partition(".")[0], FIGURES)
         return
-    _refuse_unknown(".column", str(figure.column), columns(scene.dimension)["bodies"])
+    names = columns(scene.dimension)[str(figure.table)]
+    _refuse_unknown(".column", str(figure.column), [name for name in names if KINDS.get(name) is not str])
+    if figure.table == "probes" and (figure.probe or 0) >= len(scene.output.probes):
+        allowed = f"the number of one of {len(scene.output.probes)} probes, from 0"
+        raise SceneError(
+            f"{_FIELD}.probe", figure.probe or 0, allowed, "Correct it, or add output.probes to the scene."
+        )
     if figure.body is not None:
         _refuse_unknown(".body", figure.body, [body.name for body in scene.body])
     if figure.at is not None and not 0 <= figure.at <= scene.time.end:
@@ -85,12 +93,25 @@ def _of_summary(path: str, summary: dict[str, Any]) -> Any:
 
 
 def _of_table(figure: FigureTable, history: History) -> float:
-    bodies = history.bodies
-    rows = bodies["body"] == (figure.body or bodies["body"][0])
-    values: FloatArray = bodies[str(figure.column)][rows]
+    table = history.table(str(figure.table))
+    rows = _rows(figure, table)
+    values: FloatArray = table[str(figure.column)][rows]
     if figure.at is not None:
-        return _interpolated(bodies["time"][rows], values, figure.at)
+        return _interpolated(table["time"][rows], values, figure.at)
+    if len(values) == 0:
+        return math.nan
     return float(values.max() if figure.extreme == "highest" else values.min())
+
+
+def _rows(figure: FigureTable, table: dict[str, NDArray[Any]]) -> BoolArray:
+    """Those of one body or one probe; of the contacts those of one body or all."""
+    if figure.table == "bodies":
+        return np.asarray(table["body"] == (figure.body or table["body"][0]))
+    if figure.table == "probes":
+        return np.asarray(table["probe"] == (figure.probe or 0))
+    if figure.body is not None:
+        return np.asarray((table["a"] == figure.body) | (table["b"] == figure.body))
+    return np.ones(len(table["time"]), dtype=bool)
 
 
 def _interpolated(time: FloatArray, values: FloatArray, at: float) -> float:

@@ -40,19 +40,25 @@ class StudyTable(_Table):
     """What is run, and how the settings are put together."""
 
     name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the study; results go to `out/<name>` by default")
-    scene: str = Field(description="Path of the scene file, relative to the study file")
+    scene: str | None = Field(default=None, description="Path of the scene file, relative to the study file")
+    kernel: str | None = Field(default=None, description="Name of a kernel, in place of a scene")
     label: str = Field(default="", description="What the error is of, for the plot; the figure if not given")
     group: str | None = Field(default=None, description="Key of [vary]; the plot has a line for each of its values")
     zip: bool = Field(default=False, description="Take the lists of [vary] side by side, not every combination")
 
 
 class FigureTable(_Table):
-    """A number that a run ends with: a key path of summary.json, or a column of bodies.csv at a time or its extreme."""
+    """A number that a run ends with: a key path of summary.json, or a column of a table at a time or its extreme."""
 
     key: str | None = Field(default=None, description="Key path of summary.json, as `energy.dissipation`")
-    table: Literal["bodies"] | None = Field(default=None, description="Table that holds the column")
+    table: Literal["bodies", "contacts", "energy", "probes"] | None = Field(
+        default=None, description="Table that holds the column"
+    )
     column: str | None = Field(default=None, description="Column of that table")
-    body: str | None = Field(default=None, description="Name of the body; the first if not given")
+    body: str | None = Field(
+        default=None, description="Name of the body, the first if not given; in contacts.csv one of the two, all if not"
+    )
+    probe: int | None = Field(default=None, ge=0, description="Number of the probe; the first if not given")
     at: float | None = Field(default=None, description="Time when the column is read, by cubic interpolation [time]")
     extreme: Literal["highest", "lowest"] | None = Field(default=None, description="Which extreme over time is taken")
 
@@ -65,16 +71,26 @@ class FigureTable(_Table):
     def _is_one_of_two(self) -> FigureTable:
         of_summary = self.key is not None
         of_table = self.table is not None and self.column is not None and (self.at is None) != (self.extreme is None)
-        rest = (self.table, self.column, self.body, self.at, self.extreme)
+        rest = (self.table, self.column, self.body, self.probe, self.at, self.extreme)
         if of_summary == of_table or (of_summary and any(part is not None for part in rest)):
             raise ValueError("a key path of summary.json, or table, column and one of at and extreme")
+        self._refuse_unread()
         return self
+
+    def _refuse_unread(self) -> None:
+        if self.body is not None and self.table not in ("bodies", "contacts"):
+            raise ValueError("body with table bodies or contacts")
+        if self.probe is not None and self.table != "probes":
+            raise ValueError("probe with table probes")
+        if self.at is not None and self.table == "contacts":
+            raise ValueError("extreme with table contacts, which has no row for each step")
 
     def __str__(self) -> str:
         if self.key is not None:
             return self.key
         moment = f"at {self.at:g}" if self.at is not None else str(self.extreme)
-        return " ".join(filter(None, (self.body, self.column, moment)))
+        probe = None if self.probe is None else f"probe {self.probe}"
+        return " ".join(filter(None, (self.body, probe, self.column, moment)))
 
 
 class ErrorTable(_Table):
@@ -92,12 +108,12 @@ class StudyFile(_Table):
 
     study: StudyTable
     set: Annotated[Settings, BeforeValidator(_flat)] = Field(
-        default={}, description="Values that all runs have, by dotted key of the scene"
+        default={}, description="Values that all runs have, by dotted key of the scene, or knob of the kernel"
     )
     vary: Annotated[dict[str, Annotated[list[Any], Field(min_length=1)]], BeforeValidator(_flat)] = Field(
-        min_length=1, description="Lists of values, by dotted key of the scene"
+        min_length=1, description="Lists of values, by dotted key of the scene, or knob of the kernel"
     )
-    error: ErrorTable
+    error: ErrorTable | None = Field(default=None, description="The error; a kernel has its own")
 
 
 @dataclass(frozen=True)
@@ -114,13 +130,13 @@ class Study:
         return self.tables.study.name
 
     @property
-    def scene(self) -> Path:
-        """The scene file."""
-        return self.path.parent / self.tables.study.scene
+    def scene(self) -> Path | None:
+        """The scene file; None in the study of a kernel."""
+        return None if self.tables.study.scene is None else self.path.parent / self.tables.study.scene
 
     @property
     def knobs(self) -> list[str]:
-        """Keys of the scene that vary."""
+        """Keys of the scene, or knobs of the kernel, that vary."""
         return list(self.tables.vary)
 
     def settings(self) -> list[Settings]:
@@ -141,7 +157,7 @@ def load_study(path: str | Path) -> Study:
     Returns
     -------
     Study
-        Validated but for its scene.
+        Validated but for its scene or kernel.
 
     Raises
     ------
@@ -150,10 +166,22 @@ def load_study(path: str | Path) -> Study:
     """
     path = Path(path)
     tables = read_table(StudyFile, read_toml(path, "study"))
+    _check_subject(tables)
     _check_group(tables)
     _check_lengths(tables)
     _check_reference(tables)
     return Study(tables, path, path.read_text(encoding="utf-8"))
+
+
+def _check_subject(tables: StudyFile) -> None:
+    scene, kernel = tables.study.scene, tables.study.kernel
+    if (scene is None) == (kernel is None):
+        found = "neither scene nor kernel" if scene is None else "scene and kernel"
+        raise SceneError("study", found, "one of scene and kernel", "Say what is run by one of them.")
+    if scene is not None and tables.error is None:
+        raise SceneError("error", "nothing", "a table", "Add the table [error].")
+    if kernel is not None and tables.error is not None:
+        raise SceneError("error", "a table", "nothing with study.kernel", "Remove it: a kernel has its own reference.")
 
 
 def _check_group(tables: StudyFile) -> None:
@@ -171,5 +199,5 @@ def _check_lengths(tables: StudyFile) -> None:
 
 
 def _check_reference(tables: StudyFile) -> None:
-    if tables.error.relative and tables.error.reference == 0:
+    if tables.error is not None and tables.error.relative and tables.error.reference == 0:
         raise SceneError("error.reference", 0, "another number with relative = true", "Set relative = false.")

@@ -15,6 +15,8 @@ from rigidfluid.studies.results import Results
 from rigidfluid.studies.rows import text_of
 
 _MARKERS = "osD^vP*X"
+CROWDED = 300.0
+"""Ratio of times from which on only powers of ten have a label, as others would run into each other."""
 
 
 def error_plot(results: Results) -> Figure:
@@ -37,10 +39,11 @@ def error_plot(results: Results) -> Figure:
     _draw_front(axes, results)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
     seconds, errors = zip(*results.points.values(), strict=True)
+    subdivisions = (1.0, 2.0, 5.0) if max(seconds) < CROWDED * min(seconds) else (1.0,)
+    axes.xaxis.set_major_locator(LogLocator(subs=subdivisions))
     axes.set_xlim(*_limits(seconds))
     axes.set_ylim(*_limits(errors))
     axes.set_xlabel("wall time [s]")
@@ -52,21 +55,17 @@ def error_plot(results: Results) -> Figure:
 
 def error_label(results: Results) -> str:
     """What the error is of, and against what."""
-    tables = results.study.tables
-    what = tables.study.label or str(tables.error.figure)
-    against = "the finest run" if tables.error.reference is None else f"{tables.error.reference:g}"
-    return f"{'relative error' if results.is_relative else 'error'} of {what}\nagainst {against}"
+    kind = "relative error" if results.is_relative else "error"
+    return f"{kind} of {results.target.of}\nagainst {results.target.against}"
 
 
 def _series(results: Results) -> dict[str, list[str]]:
     """Fingerprints of the points by value of the group, all in the order of the study file."""
     group = results.study.tables.study.group
-    values = [None] if group is None else results.study.tables.vary[group]
-    series = {}
-    for value in values:
-        keys = [key for key, settings in _settings(results).items() if group is None or settings[group] == value]
-        series["runs" if group is None else _words(group, value)] = keys
-    return {name: keys for name, keys in series.items() if keys}
+    series: dict[str, list[str]] = {}
+    for key, settings in _settings(results).items():
+        series.setdefault("runs" if group is None else _words(group, settings.get(group)), []).append(key)
+    return series
 
 
 def _settings(results: Results) -> dict[str, Settings]:
@@ -81,8 +80,9 @@ def _limits(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _words(knob: str, value: object) -> str:
-    """A setting in few words."""
-    return f"{knob.rpartition('.')[2]} {text_of(value)}"
+    """A setting in few words; None for runs that do not read it."""
+    short = knob.rpartition(".")[2]
+    return f"without {short}" if value is None else f"{short} {text_of(value)}"
 
 
 def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
@@ -97,5 +97,5 @@ def _draw_front(axes: Axes, results: Results) -> None:
     shown = [key for key in results.study.knobs if key != results.study.tables.study.group]
     settings = _settings(results)
     for key in results.front:
-        words = "\n".join(_words(knob, settings[key][knob]) for knob in shown)
+        words = "\n".join(_words(knob, settings[key][knob]) for knob in shown if knob in settings[key])
         axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)

@@ -12,9 +12,10 @@ from rigidfluid.core.summary import versions
 from rigidfluid.core.writer import writing
 from rigidfluid.reports.html import document, grid, picture, table
 from rigidfluid.reports.style import STYLE, save
+from rigidfluid.studies.model import Study
 from rigidfluid.studies.plot import error_label, error_plot
 from rigidfluid.studies.results import Results
-from rigidfluid.studies.rows import text_of
+from rigidfluid.studies.rows import cells
 
 PLOT, PAGE = "study", "study.html"
 
@@ -56,12 +57,17 @@ def _page(results: Results, plots: list[Path]) -> str:
         grid((*study.knobs, "figure", "error", "seconds", "unknowns", "steps", ""), _lines(results)),
         "<h2>Study file</h2>",
         f"<pre>{escape(study.text)}</pre>",
-        "<h2>Scene file</h2>",
-        f"<pre>{escape(study.scene.read_text(encoding='utf-8'))}</pre>",
+        *_scene(study),
         "<h2>Versions</h2>",
         table(versions().items()),
     ]
     return document(study.name, parts)
+
+
+def _scene(study: Study) -> Iterator[str]:
+    if study.scene is not None:
+        yield "<h2>Scene file</h2>"
+        yield f"<pre>{escape(study.scene.read_text(encoding='utf-8'))}</pre>"
 
 
 def _notes(results: Results) -> Iterator[str]:
@@ -70,21 +76,21 @@ def _notes(results: Results) -> Iterator[str]:
         yield f"{len(failures)} of {len(results.plan)} runs failed; the table says why."
     if not results.points:
         yield "No run has an error to draw."
-    if results.study.tables.error.relative and not results.is_relative:
+    if results.target.relative and not results.is_relative:
         yield "The reference is 0, so errors are not relative."
 
 
 def _meaning(results: Results) -> str:
     reference = "not known" if results.reference is None else f"{results.reference:.8g}"
     return (
-        f"Figure: {results.study.tables.error.figure}. Reference: {reference}. "
+        f"Figure: {results.target.figure}. Reference: {reference}. "
         f"Error: {error_label(results).replace(chr(10), ' ')}. Seconds are wall time of one run on this machine."
     )
 
 
 def _lines(results: Results) -> Iterator[list[object]]:
     for settings, key in zip(results.plan, results.prints, strict=True):
-        row, knobs = results.rows[key], map(text_of, settings.values())
+        row, knobs = results.rows[key], cells(results.study.knobs, settings)
         if row.outcome is None:
             yield [*knobs, "", "", "", "", "", f"failed: {row.message}"]
             continue

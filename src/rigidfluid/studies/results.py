@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from rigidfluid.studies.model import Settings, Study
 from rigidfluid.studies.rows import Row
-from rigidfluid.studies.subject import Outcome
+from rigidfluid.studies.subject import Outcome, Target
 
 K = TypeVar("K")
 
@@ -18,10 +18,11 @@ K = TypeVar("K")
 class Results:
     """A study's planned runs and those that are done.
 
-    ``plan`` holds the knobs of each run, ``prints`` its fingerprint; ``rows`` holds what is done, by fingerprint.
+    ``plan`` holds the knobs that each run reads, ``prints`` its fingerprint; ``rows`` what is done, by fingerprint.
     """
 
     study: Study
+    target: Target
     plan: list[Settings]
     prints: list[str]
     rows: dict[str, Row]
@@ -35,19 +36,19 @@ class Results:
     @cached_property
     def finest(self) -> str | None:
         """Fingerprint of the run that is the reference; None if a number is, or if no run is done."""
-        if self.study.tables.error.reference is not None or not self.outcomes:
+        if self.target.reference is not None or not self.outcomes:
             return None
         return most_expensive(self.outcomes)
 
     @property
     def reference(self) -> float | None:
         """What the figure should be; None if that is not known yet."""
-        return self.study.tables.error.reference if self.finest is None else self.outcomes[self.finest].figure
+        return self.target.reference if self.finest is None else self.outcomes[self.finest].figure
 
     @property
     def is_relative(self) -> bool:
         """Whether errors are divided by the reference: if asked for, and if it is not 0."""
-        return self.study.tables.error.relative and self.reference != 0
+        return self.target.relative and self.reference != 0
 
     @cached_property
     def errors(self) -> dict[str, float]:

@@ -42,8 +42,18 @@ def text_of(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
+def cells(knobs: Sequence[str], settings: Settings) -> list[str]:
+    """The values of the knobs; an empty text where a run does not read one."""
+    return [text_of(settings[knob]) if knob in settings else "" for knob in knobs]
+
+
 def write_rows(
-    path: Path, plan: Sequence[Settings], prints: Sequence[str], rows: Mapping[str, Row], errors: Mapping[str, float]
+    path: Path,
+    knobs: Sequence[str],
+    plan: Sequence[Settings],
+    prints: Sequence[str],
+    rows: Mapping[str, Row],
+    errors: Mapping[str, float],
 ) -> None:
     """Write the rows there are, in the order of the settings; a kill at any time leaves the old file or the new one.
 
@@ -51,8 +61,10 @@ def write_rows(
     ----------
     path : Path
         The CSV.
+    knobs : sequence of str
+        Names of the first columns.
     plan : sequence of dict
-        The knobs of each planned run.
+        The knobs that each planned run reads.
     prints : sequence of str
         The fingerprint of each planned run.
     rows : mapping
@@ -68,15 +80,15 @@ def write_rows(
     fresh = path.with_suffix(".part")
     with writing(path), fresh.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow([*plan[0], *_RESULTS])
+        table.writerow([*knobs, *_RESULTS])
         for settings, key in zip(plan, prints, strict=True):
             if key in rows:
-                table.writerow([*map(text_of, settings.values()), *_cells(rows[key], errors.get(key)), key])
+                table.writerow([*cells(knobs, settings), *_results(rows[key], errors.get(key)), key])
     with writing(path):
         fresh.replace(path)
 
 
-def _cells(row: Row, error: float | None) -> list[object]:
+def _results(row: Row, error: float | None) -> list[object]:
     if row.outcome is None:
         return ["", "", "", "", "", row.status, row.message]
     outcome = row.outcome

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rigidfluid.core.writer import writing
 from rigidfluid.errors import RigidfluidError
+from rigidfluid.studies.kernel_subject import KernelSubject
 from rigidfluid.studies.model import Settings, Study
 from rigidfluid.studies.report import write_report
 from rigidfluid.studies.results import Results
@@ -55,7 +56,8 @@ def run_study(
     OutputError
         Where the disk refuses, or the table there cannot be read.
     """
-    results = _results(study, SceneSubject(study), out, fresh, progress or (lambda _: None))
+    subject: Subject = SceneSubject(study) if study.scene is not None else KernelSubject(study)
+    results = _results(study, subject, out, fresh, progress or (lambda _: None))
     return results, [out / TABLE, *write_report(results, out)]
 
 
@@ -64,17 +66,17 @@ def _results(
 ) -> Results:
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
-    plan = study.settings()
-    prints = [fingerprint(subject.identity(settings)) for settings in plan]
+    distinct = {fingerprint(subject.identity(settings)): subject.read(settings) for settings in study.settings()}
+    prints, plan = list(distinct), list(distinct.values())
     rows = {} if fresh else read_rows(out / TABLE)
-    results = Results(study, plan, prints, rows)
+    results = Results(study, subject.target, plan, prints, rows)
     for number, (settings, key) in enumerate(zip(plan, prints, strict=True)):
         if key not in rows:
             show = _shower(progress, number, len(plan), settings)
             show(0.0)
             rows[key] = _tried(subject, settings, show)
-            results = Results(study, plan, prints, rows)
-        write_rows(out / TABLE, plan, prints, rows, results.errors)
+            results = Results(study, subject.target, plan, prints, rows)
+        write_rows(out / TABLE, study.knobs, plan, prints, rows, results.errors)
     return results
 
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
 from rigidfluid.core.overrides import assign
 from rigidfluid.core.run import run
 from rigidfluid.core.scene import Scene, read_toml
-from rigidfluid.errors import RigidfluidError
 from rigidfluid.studies.figure import check_figure, read_figure
-from rigidfluid.studies.model import Settings, Study
-from rigidfluid.studies.subject import Outcome
+from rigidfluid.studies.model import ErrorTable, Settings, Study
+from rigidfluid.studies.subject import Outcome, Target, tried
 
 
 class SceneSubject:
@@ -33,11 +32,19 @@ class SceneSubject:
     """
 
     def __init__(self, study: Study) -> None:
+        assert study.scene is not None
+        assert study.tables.error is not None
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
         self._data = read_toml(study.scene)
         self._is_warm = False
-        check_figure(self._figure, self._first_valid(study.settings()))
+        scenes, _ = tried(study.settings(), self._scene)
+        check_figure(self._figure, scenes[0])
+        self.target = _target(study.tables.study.label, study.tables.error)
+
+    def read(self, settings: Settings) -> Settings:
+        """All: a scene refuses what it does not read."""
+        return settings
 
     def identity(self, settings: Settings) -> str:
         """The scene's tables with these settings, and the figure."""
@@ -46,7 +53,7 @@ class SceneSubject:
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
         """One run from start to end; the time of its set-up but not of the checks of the scene is in the seconds."""
-        scene = Scene.from_dict(self._tables(settings))
+        scene = self._scene(settings)
         self._warm_up(scene)
         history = run(scene, progress=lambda now: progress(now.time / now.end))
         summary = history.summary
@@ -59,18 +66,16 @@ class SceneSubject:
             assign(tables, key, value)
         return tables
 
-    def _first_valid(self, all_settings: Iterable[Settings]) -> Scene:
-        first: RigidfluidError | None = None
-        for settings in all_settings:
-            try:
-                return Scene.from_dict(self._tables(settings))
-            except RigidfluidError as error:
-                first = first or error
-        assert first is not None
-        raise first
+    def _scene(self, settings: Settings) -> Scene:
+        return Scene.from_dict(self._tables(settings))
 
     def _warm_up(self, scene: Scene) -> None:
         """One step that is not measured, so that the first run does not pay for imports and compiled kernels."""
         if not self._is_warm:
             run(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
             self._is_warm = True
+
+
+def _target(label: str, error: ErrorTable) -> Target:
+    against = "the finest run" if error.reference is None else f"{error.reference:g}"
+    return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative)

@@ -10,8 +10,9 @@
             return MyBody(MyOptions(length=1.0), dimension=2)
 """
 
+from rigidfluid.testing.arrangement import Arrangement
 from rigidfluid.testing.body import BodyContract
-from rigidfluid.testing.detector import Arrangement, DetectorContract
+from rigidfluid.testing.detector import DetectorContract
 from rigidfluid.testing.force_law import ForceLawContract
 
 __all__ = ["Arrangement", "BodyContract", "DetectorContract", "ForceLawContract"]

@@ -2,79 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import cache
 from typing import ClassVar
 
 import numpy as np
 import pytest
 
-from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body, Detector
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.interfaces import Detector
+from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
+from rigidfluid.testing.arrangement import (
+    Arrangement,
+    ball_pair,
+    balls_apart,
+    balls_overlapping,
+    random_ellipsoids,
+    single_ball,
+    turn_matrix,
+)
 
-
-@dataclass(frozen=True)
-class Arrangement:
-    """Balls and walls for one test.
-
-    ``radii`` (n,) and ``centres`` (n, d) of the balls [length]; ``wall_points`` and unit ``wall_normals`` (w, d);
-    ``corners`` (2, d), opposite corners of a box that holds them [length]. Surfaces are numbered: the balls, the walls,
-    then any further faces of the box.
-    """
-
-    radii: FloatArray
-    centres: FloatArray
-    wall_points: FloatArray
-    wall_normals: FloatArray
-    corners: FloatArray
-
-    @property
-    def dimension(self) -> int:
-        """2 or 3."""
-        return int(self.centres.shape[1])
-
-    @property
-    def bodies(self) -> tuple[Body, ...]:
-        """The balls."""
-        return tuple(Sphere(SphereOptions(radius=float(radius)), self.dimension) for radius in self.radii)
-
-    @property
-    def walls(self) -> tuple[Wall, ...]:
-        """The walls, numbered after the balls."""
-        rows = zip(self.wall_points, self.wall_normals, strict=True)
-        first = len(self.radii)
-        return tuple(Wall(first + index, f"wall {index}", *row) for index, row in enumerate(rows))
-
-    @property
-    def pose(self) -> Pose:
-        """The balls' positions, not turned."""
-        upright = np.eye(1, 1 if self.dimension == 2 else 4) * (self.dimension == 3)
-        return Pose(self.centres, np.tile(upright, (len(self.radii), 1)))
-
-    def moved(self, rotation: FloatArray, shift: FloatArray, scale: float = 1.0) -> Arrangement:
-        """x → scale · R x + shift, walls and all."""
-        return Arrangement(
-            scale * self.radii,
-            scale * self.centres @ rotation.T + shift,
-            scale * self.wall_points @ rotation.T + shift,
-            self.wall_normals @ rotation.T,
-            scale * self.corners @ rotation.T + shift,
-        )
+Pairs = list[tuple[int, int]]
 
 
 class DetectorContract:
-    """Contacts of balls and flat walls against their closed form.
+    """Contacts of balls against their closed form, of ellipsoids against ``brute_force``, and what holds for any shape.
 
-    Override ``make_detector`` and, for a detector that reads the mesh, ``make_mesh``, the tolerances and ``rotation``.
+    Override ``make_detector``. A detector with ``needs_mesh`` gets a mesh of the fluid between the bodies; its gaps may
+    be larger than those of the shapes by as much as the facets lie below the surfaces, h²/(8R) or so each.
     """
 
     gap_tolerance: ClassVar[float] = 1e-10
-    """Accuracy of gaps, relative to balls of radius 0.25 to 0.4 [length]."""
+    """Accuracy of gaps and of contact points across the surface, among bodies of size 0.06 to 0.45 [length]."""
     point_tolerance: ClassVar[float] = 1e-6
-    """Accuracy of contact points and normals."""
+    """Accuracy of contact points along the surface, and of normals."""
     detects_overlap: ClassVar[bool] = True
     """Whether surfaces that overlap are found, with a negative gap."""
-    reach: ClassVar[float] = 0.3
+    balls_only: ClassVar[bool] = False
+    """Whether other shapes than balls are refused."""
+    reach: ClassVar[float] = 0.5
     """The reach of most tests [length]."""
 
     @pytest.fixture(params=[2, 3])
@@ -82,163 +48,216 @@ class DetectorContract:
         """Both numbers of space dimensions."""
         return int(request.param)
 
+    @pytest.fixture(params=[(2, 0), (2, 1), (3, 0)], ids=["2-first", "2-second", "3"])
+    def ellipsoids(self, request: pytest.FixtureRequest) -> Arrangement:
+        """Ellipsoids in a box; skips where the detector handles balls only."""
+        if self.balls_only:
+            pytest.skip("this detector handles balls only")
+        return random_ellipsoids(*request.param)
+
+    @pytest.fixture(params=["balls", "ellipsoids"])
+    def arrangement(self, request: pytest.FixtureRequest, dimension: int) -> Arrangement:
+        """Balls in the corner of two walls, and ellipsoids in a box where the detector handles them."""
+        if request.param == "balls":
+            return balls_apart(dimension)
+        if self.balls_only:
+            pytest.skip("this detector handles balls only")
+        return random_ellipsoids(dimension, 0)
+
     def make_detector(self, arrangement: Arrangement) -> Detector:
         """The detector under test for these bodies and walls."""
         raise NotImplementedError("override `make_detector`")
 
-    def make_mesh(self, arrangement: Arrangement) -> Mesh | None:
-        """The mesh between these bodies and walls; None for a detector that needs none."""
-        return None
-
-    def rotation(self, dimension: int) -> FloatArray:
-        """The rotation that must not change the gaps (a quarter turn keeps a box a box)."""
-        return _rotation(dimension, angle=0.7)
-
     def detect(self, arrangement: Arrangement, reach: float) -> Contacts:
         """All contacts of an arrangement."""
-        return self.make_detector(arrangement).detect(arrangement.pose, self.make_mesh(arrangement), reach)
+        detector = self.make_detector(arrangement)
+        return detector.detect(arrangement.pose, arrangement.mesh if detector.needs_mesh else None, reach)
+
+    def depths(self, arrangement: Arrangement) -> FloatArray:
+        """How far the detector's surfaces may lie below the true ones, by number of body, and for walls 0 at the end.
+
+        With a mesh that is the depth of the facets, h²/(8R) on a circle of radius R with edges h.
+        """
+        meshed = self.make_detector(arrangement).needs_mesh
+        return np.append(arrangement.depths if meshed else np.zeros(len(arrangement.semi_axes)), 0.0)
 
     def test_gaps_of_balls_and_walls(self, dimension: int) -> None:
-        """Exactly the pairs within reach, each with the closed form's gap."""
-        arrangement = _apart(dimension)
-        expected = _expected_gaps(arrangement, self.reach)
-        contacts = self.detect(arrangement, self.reach)
-        assert list(zip(contacts.body_a, contacts.body_b, strict=True)) == list(expected)
-        np.testing.assert_allclose(contacts.gap, list(expected.values()), rtol=0, atol=self.gap_tolerance)
+        """Exactly the pairs within reach, sorted, each with the closed form's gap."""
+        arrangement = balls_apart(dimension)
+        self._check_gaps(arrangement, _ball_gaps(arrangement), self.reach)
 
-    def test_points_gap_and_normal_agree(self, dimension: int) -> None:
+    def test_reach_may_be_infinite(self, dimension: int) -> None:
+        """Then every pair is found."""
+        arrangement = ball_pair(dimension)
+        self._check_gaps(arrangement, _ball_gaps(arrangement), np.inf)
+
+    def test_gaps_of_ellipsoids_are_those_of_brute_force(self, ellipsoids: Arrangement) -> None:
+        """Aspect ratios up to 5 at random tilts, each other and walls, against a search over both surfaces."""
+        self._check_gaps(ellipsoids, _searched_gaps(ellipsoids, 1.01 * self.reach), self.reach)
+
+    def test_points_are_on_the_surfaces_and_a_gap_apart(self, arrangement: Arrangement) -> None:
         """point_a = point_b + gap · normal, normals of length 1, and both points on their surfaces."""
-        arrangement = _apart(dimension)
         contacts = self.detect(arrangement, self.reach)
+        assert len(contacts) > 0
         self._check_points(arrangement, contacts)
+
+    def test_contacts_are_sorted_and_within_reach(self, arrangement: Arrangement) -> None:
+        """By (body_a, body_b), a body before a body or a wall; no gap beyond reach."""
+        contacts = self.detect(arrangement, self.reach)
+        pairs = _pairs(contacts)
+        assert len(pairs) > 1
+        assert pairs == sorted(pairs)
+        assert np.all(contacts.body_a < len(arrangement.bodies))
+        assert np.all(contacts.body_a < contacts.body_b)
+        assert np.all(contacts.gap <= self.reach)
+
+    def test_nothing_beyond_reach(self, dimension: int) -> None:
+        """A pair is found just within reach and not just beyond."""
+        pair = ball_pair(dimension)
+        (gap,) = _ball_gaps(pair).values()
+        margin = 2 * self.gap_tolerance
+        assert len(self.detect(pair, gap + self.depths(pair).sum() + margin)) == 1
+        _check_empty(self.detect(pair, gap - margin), dimension)
+
+    def test_nothing_near(self, dimension: int) -> None:
+        """A body alone has no contacts, but arrays of the right shape."""
+        _check_empty(self.detect(single_ball(dimension), self.reach), dimension)
 
     def test_overlap_has_a_negative_gap(self, dimension: int) -> None:
         """Two overlapping balls, one of them sunk into a wall."""
         if not self.detects_overlap:
             pytest.skip("this detector does not see overlaps")
-        arrangement = _overlapping(dimension)
-        contacts = self.detect(arrangement, 0.0)
-        expected = _expected_gaps(arrangement, 0.0)
-        assert list(zip(contacts.body_a, contacts.body_b, strict=True)) == list(expected)
-        np.testing.assert_allclose(contacts.gap, list(expected.values()), rtol=0, atol=self.gap_tolerance)
-        self._check_points(arrangement, contacts)
+        arrangement = balls_overlapping(dimension)
+        self._check_gaps(arrangement, _ball_gaps(arrangement), 0.0)
+        self._check_points(arrangement, self.detect(arrangement, 0.0))
 
     def test_radii_of_curvature(self, dimension: int) -> None:
         """Balls have their radius, flat walls an infinite one; NaN says that the detector does not know."""
-        arrangement = _apart(dimension)
+        arrangement = balls_apart(dimension)
         contacts = self.detect(arrangement, self.reach)
-        is_wall = contacts.body_b >= len(arrangement.radii)
-        expected = np.append(arrangement.radii, np.full(len(arrangement.wall_points), np.inf))
+        count = len(arrangement.bodies)
+        is_wall = contacts.body_b >= count
         assert np.all(np.isinf(contacts.radius_b[is_wall]))
-        for body, radius in ((contacts.body_a, contacts.radius_a), (contacts.body_b, contacts.radius_b)):
+        expected = np.append(arrangement.semi_axes[:, 0], np.inf)
+        for surface, radius in ((contacts.body_a, contacts.radius_a), (contacts.body_b, contacts.radius_b)):
             known = ~np.isnan(radius)
-            np.testing.assert_array_equal(radius[known], expected[body][known])
-
-    def test_swapping_two_bodies_flips_the_normal(self, dimension: int) -> None:
-        """The same gap, with a and b exchanged."""
-        pair = _pair(dimension)
-        swapped = replace(pair, radii=pair.radii[::-1], centres=pair.centres[::-1])
-        one, other = self.detect(pair, self.reach), self.detect(swapped, self.reach)
-        np.testing.assert_allclose(one.gap, other.gap, rtol=0, atol=self.gap_tolerance)
-        np.testing.assert_allclose(one.normal, -other.normal, rtol=0, atol=self.point_tolerance)
-        np.testing.assert_allclose(one.point_a, other.point_b, rtol=0, atol=self.point_tolerance)
+            np.testing.assert_array_equal(radius[known], expected[np.minimum(surface, count)][known])
 
     def test_normal_points_from_b_to_a(self, dimension: int) -> None:
-        """For balls it is the line from centre b to centre a."""
-        pair = _pair(dimension)
+        """For balls it is the line n from centre b to centre a.
+
+        Points d below the surfaces are at least the true gap g apart along n and at most g + d_a + d_b in all, so that
+        cos ≥ g/(g + d_a + d_b).
+        """
+        pair = ball_pair(dimension)
         contacts = self.detect(pair, self.reach)
-        line = pair.centres[0] - pair.centres[1]
-        np.testing.assert_allclose(contacts.normal, [line / np.linalg.norm(line)], rtol=0, atol=self.point_tolerance)
+        (gap,), depth = _ball_gaps(pair).values(), self.depths(pair).sum()
+        line = pair.pose.position[0] - pair.pose.position[1]
+        tolerance = self.point_tolerance + np.sqrt(2 * depth / (gap + depth))
+        difference = np.linalg.norm(contacts.normal - line / np.linalg.norm(line), axis=1)
+        assert difference.shape == (1,)
+        assert difference[0] <= tolerance
 
-    def test_moves_with_the_frame(self, dimension: int) -> None:
+    def test_swapping_two_bodies_flips_the_normal(self, arrangement: Arrangement) -> None:
+        """The same gaps and points with a and b exchanged, all bodies in reverse order."""
+        one, other = self.detect(arrangement, self.reach), self.detect(arrangement.reversed(), self.reach)
+        self._check_same(one, _swapped(other, arrangement))
+
+    def test_moves_with_the_frame(self, arrangement: Arrangement) -> None:
         """A rigid motion keeps the gaps and carries points and normals along."""
-        rotation, shift = self.rotation(dimension), np.array([3.0, -2.0, 1.0])[:dimension]
-        contacts = self.detect(_apart(dimension), self.reach)
-        moved = self.detect(_apart(dimension).moved(rotation, shift), self.reach)
-        np.testing.assert_allclose(moved.gap, contacts.gap, rtol=0, atol=self.gap_tolerance)
-        np.testing.assert_allclose(moved.normal, contacts.normal @ rotation.T, rtol=0, atol=self.point_tolerance)
-        np.testing.assert_allclose(
-            moved.point_a, contacts.point_a @ rotation.T + shift, rtol=0, atol=self.point_tolerance
-        )
+        turn = np.array([0.7]) if arrangement.dimension == 2 else 0.7 * np.array([1.0, 2.0, 2.0]) / 3
+        shift, rotation = np.array([3.0, -2.0, 1.0])[: arrangement.dimension], turn_matrix(turn)
+        moved = self.detect(arrangement.moved(turn, shift), self.reach)
+        self._check_same(self.detect(arrangement, self.reach), _placed_back(moved, rotation, shift, 1.0))
 
-    def test_scales_with_the_lengths(self, dimension: int) -> None:
-        """Nothing but ratios of lengths matters: micrometres do as well as metres."""
-        scale = 1e-4
-        small = _apart(dimension).moved(np.eye(dimension), np.zeros(dimension), scale)
-        contacts = self.detect(_apart(dimension), self.reach)
-        scaled = self.detect(small, scale * self.reach)
-        np.testing.assert_allclose(scaled.gap / scale, contacts.gap, rtol=0, atol=self.gap_tolerance)
-        np.testing.assert_allclose(scaled.normal, contacts.normal, rtol=0, atol=self.point_tolerance)
+    def test_scales_with_the_lengths(self, arrangement: Arrangement) -> None:
+        """Nothing but ratios of lengths matters: nanometres do as well as metres."""
+        scale, origin = 1e-9, np.zeros(arrangement.dimension)
+        small = arrangement.moved(np.zeros(1 if arrangement.dimension == 2 else 3), origin, scale)
+        found = _placed_back(self.detect(small, scale * self.reach), np.eye(arrangement.dimension), origin, scale)
+        self._check_same(self.detect(arrangement, self.reach), found)
 
-    def test_nothing_beyond_reach(self, dimension: int) -> None:
-        """A pair is found just within reach and not just beyond."""
-        pair = _pair(dimension)
-        gap = next(iter(_expected_gaps(pair, np.inf).values()))
-        margin = 2 * self.gap_tolerance
-        assert len(self.detect(pair, gap + margin)) == 1
-        nothing = self.detect(pair, gap - margin)
-        assert len(nothing) == 0
-        assert nothing.normal.shape == (0, dimension)
+    def _check_gaps(self, arrangement: Arrangement, expected: dict[tuple[int, int], float], reach: float) -> None:
+        """Every pair that is surely within reach, none that is beyond, each with the expected gap."""
+        contacts = self.detect(arrangement, reach)
+        pairs, depths, slack = _pairs(contacts), self.depths(arrangement), self.gap_tolerance
+        excess = {pair: slack + depths[[min(surface, len(depths) - 1) for surface in pair]].sum() for pair in expected}
+        assert len(pairs) > 0
+        assert pairs == sorted(set(pairs))
+        assert {pair for pair, gap in expected.items() if gap + excess[pair] <= reach} <= set(pairs)
+        assert set(pairs) <= {pair for pair, gap in expected.items() if gap - slack <= reach}
+        difference = contacts.gap - [expected[pair] for pair in pairs]
+        assert np.all(difference >= -slack)
+        assert np.all(difference <= [excess[pair] for pair in pairs])
 
     def _check_points(self, arrangement: Arrangement, contacts: Contacts) -> None:
+        depths, slack = self.depths(arrangement), self.gap_tolerance
         along = contacts.gap[:, None] * contacts.normal
         np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), 1.0, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(contacts.point_a, contacts.point_b + along, rtol=0, atol=self.gap_tolerance)
-        distances_a = _surface_distance(arrangement, contacts.body_a, contacts.point_a)
-        distances_b = _surface_distance(arrangement, contacts.body_b, contacts.point_b)
-        np.testing.assert_allclose(distances_a, 0.0, rtol=0, atol=self.gap_tolerance)
-        np.testing.assert_allclose(distances_b, 0.0, rtol=0, atol=self.gap_tolerance)
+        np.testing.assert_allclose(contacts.point_a, contacts.point_b + along, rtol=0, atol=slack)
+        for surfaces, points in ((contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)):
+            height = arrangement.distances(surfaces, points)
+            assert np.all(height <= slack)
+            assert np.all(height >= -slack - depths[np.minimum(surfaces, len(depths) - 1)])
+
+    def _check_same(self, expected: Contacts, found: Contacts) -> None:
+        assert len(expected) > 0
+        assert _pairs(found) == _pairs(expected)
+        np.testing.assert_allclose(found.gap, expected.gap, rtol=0, atol=self.gap_tolerance)
+        for name in ("normal", "point_a", "point_b"):
+            same = getattr(found, name), getattr(expected, name)
+            np.testing.assert_allclose(*same, rtol=0, atol=self.point_tolerance, err_msg=name)
 
 
-def _apart(dimension: int) -> Arrangement:
-    """Four balls of different size in the corner of two walls, most of them within reach of another."""
-    centres = np.array([[0.62, 0.51, 0.5], [1.45, 0.63, 0.55], [1.1, 1.35, 0.45], [2.9, 2.7, 0.5]])
-    return _arrangement([0.4, 0.3, 0.35, 0.25], centres, np.eye(3)[:2], dimension)
-
-
-def _overlapping(dimension: int) -> Arrangement:
-    return _arrangement([0.4, 0.3], np.array([[1.0, 0.35, 0.1], [1.5, 0.75, 0.2]]), np.eye(3)[1:2], dimension)
-
-
-def _pair(dimension: int) -> Arrangement:
-    return _arrangement([0.4, 0.3], np.array([[0.7, 0.6, 0.5], [1.3, 1.1, 0.8]]), np.zeros((0, 3)), dimension)
-
-
-def _arrangement(radii: list[float], centres: FloatArray, normals: FloatArray, dimension: int) -> Arrangement:
-    """Balls in a box from (0, 0, -1) to (4, 4, 2), all walls through the origin."""
-    corners = np.array([[0.0, 0.0, -1.0], [4.0, 4.0, 2.0]])
-    rows = (centres, np.zeros_like(normals), normals, corners)
-    return Arrangement(np.array(radii), *(row[:, :dimension] for row in rows))
-
-
-def _expected_gaps(arrangement: Arrangement, reach: float) -> dict[tuple[int, int], float]:
-    """The closed form: |x_i - x_j| - r_i - r_j, and height minus radius; by (body_a, body_b), sorted."""
-    count, gaps = len(arrangement.radii), {}
-    for a in range(count):
-        for b in range(a + 1, count):
-            apart = np.linalg.norm(arrangement.centres[a] - arrangement.centres[b])
-            gaps[a, b] = float(apart - arrangement.radii[a] - arrangement.radii[b])
+def _ball_gaps(arrangement: Arrangement) -> dict[tuple[int, int], float]:
+    """The closed form: |x_i - x_j| - r_i - r_j, and height minus radius, by (body_a, body_b)."""
+    radii, centres, gaps = arrangement.semi_axes[:, 0], arrangement.pose.position, {}
+    for a in range(len(radii)):
+        for b in range(a + 1, len(radii)):
+            gaps[a, b] = float(np.linalg.norm(centres[a] - centres[b]) - radii[a] - radii[b])
         for wall in arrangement.walls:
-            gaps[a, wall.surface] = float((arrangement.centres[a] - wall.point) @ wall.normal - arrangement.radii[a])
-    return {pair: gap for pair, gap in gaps.items() if gap <= reach}
+            gaps[a, wall.surface] = float((centres[a] - wall.point) @ wall.normal - radii[a])
+    return gaps
 
 
-def _surface_distance(arrangement: Arrangement, surfaces: IntArray, points: FloatArray) -> FloatArray:
-    """Signed distance of each point to the surface it should be on."""
-    count = len(arrangement.radii)
-    distances = [
-        np.linalg.norm(point - arrangement.centres[surface]) - arrangement.radii[surface]
-        if surface < count
-        else (point - arrangement.walls[surface - count].point) @ arrangement.walls[surface - count].normal
-        for surface, point in zip(surfaces, points, strict=True)
-    ]
-    return np.array(distances, dtype=float)
+@cache
+def _searched_gaps(arrangement: Arrangement, reach: float) -> dict[tuple[int, int], float]:
+    """Gaps up to ``reach`` from a search over the surfaces, by (body_a, body_b)."""
+    oracle = BruteForceDetector(BruteForceOptions(samples=400), arrangement.bodies, arrangement.walls)
+    contacts = oracle.detect(arrangement.pose, None, reach)
+    return dict(zip(_pairs(contacts), contacts.gap.tolist(), strict=True))
 
 
-def _rotation(dimension: int, angle: float) -> FloatArray:
-    """A turn about an axis that is none of the coordinate axes in 3D, in the plane in 2D."""
-    if dimension == 2:
-        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    axis = np.array([1.0, 2.0, 2.0]) / 3
-    skew = np.cross(np.eye(3), axis)
-    return np.asarray(np.eye(3) - np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew)
+def _placed_back(contacts: Contacts, rotation: FloatArray, shift: FloatArray, scale: float) -> Contacts:
+    """Contacts in the frame x of those in the frame scale · R x + shift."""
+    point_a, point_b = ((points - shift) @ rotation / scale for points in (contacts.point_a, contacts.point_b))
+    normal, gap = contacts.normal @ rotation, contacts.gap / scale
+    return replace(contacts, point_a=point_a, point_b=point_b, normal=normal, gap=gap)
+
+
+def _swapped(contacts: Contacts, arrangement: Arrangement) -> Contacts:
+    """Contacts among bodies in reverse order, as they are in the order of the arrangement."""
+    a, b = arrangement.renumbered(contacts.body_a), arrangement.renumbered(contacts.body_b)
+    turned = (a > b)[:, None]
+    swapped = Contacts(
+        body_a=np.minimum(a, b),
+        body_b=np.maximum(a, b),
+        point_a=np.where(turned, contacts.point_b, contacts.point_a),
+        point_b=np.where(turned, contacts.point_a, contacts.point_b),
+        normal=np.where(turned, -contacts.normal, contacts.normal),
+        gap=contacts.gap,
+        radius_a=np.where(turned[:, 0], contacts.radius_b, contacts.radius_a),
+        radius_b=np.where(turned[:, 0], contacts.radius_a, contacts.radius_b),
+    )
+    order = np.lexsort((swapped.body_b, swapped.body_a))
+    return Contacts(*(getattr(swapped, name)[order] for name in Contacts.__slots__))
+
+
+def _check_empty(contacts: Contacts, dimension: int) -> None:
+    for name in Contacts.__slots__:
+        wide = name in ("point_a", "point_b", "normal")
+        assert getattr(contacts, name).shape == ((0, dimension) if wide else (0,)), name
+
+
+def _pairs(contacts: Contacts) -> Pairs:
+    return list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
