@@ -95,7 +95,7 @@ def test_a_band_is_the_full_field_cut_off(dimension, accuracy):
 def test_a_workspace_serves_again_as_if_new(accuracy):
     mesh = shell(2, 0.3, 1.2, 0.06)
     topology = Topology.of(mesh)
-    work = new_workspace(len(mesh.points), len(mesh.facets))
+    work = new_workspace(len(mesh.points))
     distance_field(topology, mesh.points, [OUTER], accuracy=accuracy, workspace=work)
     again = distance_field(topology, mesh.points, [INNER], 0.2, accuracy, work)
     fresh = distance_field(topology, mesh.points, [INNER], 0.2, accuracy)
@@ -124,7 +124,7 @@ def test_nearest_facets_are_those_of_the_distance(dimension):
 def test_a_walk_over_a_convex_surface_ends_on_the_nearest_facet(dimension):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
     topology = Topology.of(mesh)
-    seeds, wanted = topology.seeds([INNER])
+    seeds, wanted, _ = topology.seeds([INNER])
     middle = mesh.points[mesh.facets].mean(axis=1)
     for vertex in range(len(mesh.points))[-1:0:-101]:
         point = mesh.points[vertex]

@@ -87,7 +87,7 @@ def band_rows(refinement: float = 1.0, repeats: int = 5) -> Iterator[BandRow]:
         Topology.of(shell(dimension, INNER_RADIUS, 2 * INNER_RADIUS, INNER_RADIUS / 2))  # compiles
         topology, adjacency_seconds = timed(partial(Topology.of, mesh))
         parts, partition_seconds = timed(partial(split, mesh, _halves(mesh)))
-        work = new_workspace(len(mesh.points), len(mesh.facets))
+        work = new_workspace(len(mesh.points))
         true = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[mesh.markers == INNER]])
         for threshold, (paper_elements, paper_seconds) in table.items():
             one = partial(distance_field, topology, mesh.points, [INNER], threshold, workspace=work)

@@ -36,21 +36,6 @@ def facet_to_facet(points, facets, first, second):
 
 
 @njit(cache=True, nogil=True)
-def boxes_apart(points, facets, first, second):
-    """Squared distance of the boxes around two facets: a lower bound that costs little."""
-    total = 0.0
-    for k in range(points.shape[1]):
-        low = high = points[facets[first, 0], k]
-        other_low = other_high = points[facets[second, 0], k]
-        for i in range(1, points.shape[1]):
-            x, y = points[facets[first, i], k], points[facets[second, i], k]
-            low, high = min(low, x), max(high, x)
-            other_low, other_high = min(other_low, y), max(other_high, y)
-        total += max(low - other_high, other_low - high, 0.0) ** 2
-    return total
-
-
-@njit(cache=True, nogil=True)
 def _corners_to_facet(points, facets, first, second):
     """The nearest of the first facet's corners: squared distance, weights on the first, weights on the second."""
     best = (np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
