@@ -3,6 +3,8 @@
 from itertools import combinations, permutations
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from rigidfluid.bodies.unit_sphere import unit_sphere_points
@@ -82,7 +84,9 @@ def stars(dimension, seed):
     cells = Delaunay(points).simplices.astype(np.int64)
     middle = rng.uniform(0.25, 0.75, (rng.integers(1, 4), dimension))
     waves = rng.normal(size=(len(middle), 5, dimension)) * 4
-    used, cells = np.unique(cells[_depth(points[cells].mean(axis=1), middle, waves).max(axis=0) < 0], return_inverse=True)
+    used, cells = np.unique(
+        cells[_depth(points[cells].mean(axis=1), middle, waves).max(axis=0) < 0], return_inverse=True
+    )
     points, cells = points[used], cells.reshape(-1, dimension + 1)
     facets = boundary_facets(cells)
     faces = [np.all(points[facets, k] == side, axis=1) for k in range(dimension) for side in (0.0, 1.0)]
@@ -121,3 +125,13 @@ def _jittered(rng, points, cells):
 
 def _edges(points, cells):
     return points[cells[:, 1:]] - points[cells[:, :1]]
+
+
+def reachable(mesh, surfaces, inside):
+    """Vertices that edges between vertices that are ``inside`` join to the surfaces, ascending."""
+    edges = mesh.cells[:, list(combinations(range(mesh.cells.shape[1]), 2))].reshape(-1, 2)
+    edges = edges[inside[edges].all(axis=1)]
+    graph = coo_matrix((np.ones(len(edges)), edges.T), (len(mesh.points),) * 2)
+    _, piece = connected_components(graph, directed=False)
+    seeds = mesh.facets[np.isin(mesh.markers, surfaces)]
+    return np.flatnonzero(inside & np.isin(piece, piece[seeds]))

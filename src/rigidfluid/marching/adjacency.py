@@ -71,7 +71,7 @@ def inner_vertices(facets, cells, cell_start, cell_members):
 
 @njit(cache=True, nogil=True)
 def facets_beside(facets, marker, start, members):
-    """The facet of the same surface beyond each ridge, (F, d), ridge i across from corner i; -1 unless it is just one."""
+    """The facet of the same surface beyond each ridge, (F, d), -1 unless it is just one; ridge i is across corner i."""
     beside = np.full(facets.shape, -1, np.int32)
     for facet in range(len(facets)):
         for i in range(facets.shape[1]):
@@ -88,10 +88,11 @@ def facets_beside(facets, marker, start, members):
 
 @njit(cache=True, nogil=True)
 def _share_ridge(facets, facet, i, other):
+    shared = 1
     for k in range(facets.shape[1]):
-        if k != i and not (facets[other] == facets[facet, k]).any():
-            return False
-    return True
+        for corner in facets[other]:
+            shared += k != i and corner == facets[facet, k]
+    return shared == facets.shape[1]
 
 
 @njit(cache=True, nogil=True)

@@ -25,7 +25,7 @@ def in_band(points, neighbours, vertex, distance, width, slack):
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def square_in_band(points, neighbours, vertex, square, width, slack):
     """`in_band` from the squared distance, which mostly needs no root."""
     return square <= width * width or (slack > 0.0 and in_band(points, neighbours, vertex, sqrt(square), width, slack))

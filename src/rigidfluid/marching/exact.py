@@ -43,24 +43,27 @@ def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first,
     Vertices outside the band are marked BEYOND, so that each is measured once, and listed at the end of
     ``work.touched``.
     """
+    # names of their own spare the counting of references at each use
+    state, key, nearest_facet, queue = work.state, work.key, work.facet, work.touched
+    start, members = neighbours.start, neighbours.members
     while first < touched:
-        vertex = work.touched[first]
-        facet = work.facet[vertex]
+        vertex = queue[first]
+        facet = nearest_facet[vertex]
         first += 1
-        for k in range(neighbours.start[vertex], neighbours.start[vertex + 1]):
-            other = neighbours.members[k]
-            if work.state[other] != FAR:
+        for k in range(start[vertex], start[vertex + 1]):
+            other = members[k]
+            if state[other] != FAR:
                 continue
             square, nearest = walk_to_vertex(points, other, surfaces, wanted, facet)
             square, nearest = search_to_vertex(points, other, surfaces.facets, tree, square, nearest)
             if square_in_band(points, neighbours, other, square, width, slack):
-                work.state[other], work.key[other], work.facet[other] = KNOWN, square, nearest
-                work.touched[touched] = other
+                state[other], key[other], nearest_facet[other] = KNOWN, square, nearest
+                queue[touched] = other
                 touched += 1
             else:
                 beyond += 1
-                work.state[other] = BEYOND
-                work.touched[-beyond] = other
+                state[other] = BEYOND
+                queue[-beyond] = other
     return touched, beyond
 
 

@@ -19,7 +19,7 @@ Accuracy = Literal["exact", "first-order"]
 
 
 class Wave(NamedTuple):
-    """How many vertices a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets if it has one."""
+    """How many vertices a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
 
     touched: int
     beyond: int
@@ -111,8 +111,9 @@ def march_from(
     size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
     band = band_width, slack
     if accuracy == "exact":
-        reached = march(points, topology.neighbours, topology.surfaces, seeds.wanted, tree, *band, work, 0, size, 0)
+        surface = topology.surfaces, seeds.wanted, tree
+        touched, beyond = march(points, topology.neighbours, *surface, *band, work, 0, size, 0)
     else:
         cells = topology.cells, topology.cell_rows
-        reached = march_first_order(points, *cells, topology.neighbours, *band, work, size), 0
-    return Wave(*reached, tree)
+        touched, beyond = march_first_order(points, *cells, topology.neighbours, *band, work, size), 0
+    return Wave(touched, beyond, tree)

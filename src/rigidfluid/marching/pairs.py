@@ -19,10 +19,10 @@ from rigidfluid.marching.workspace import KNOWN
 @njit(cache=True, nogil=True)
 def any_near(points, facets, chosen, centre, radius):
     """Whether the bounding box of one of the facets ``chosen`` meets a ball."""
+    nearest = np.inf
     for facet in chosen:
-        if _box_to_point(points, facets[facet], centre) <= radius * radius:
-            return True
-    return False
+        nearest = min(nearest, _box_to_point(points, facets[facet], centre))
+    return nearest <= radius * radius
 
 
 @njit(cache=True, nogil=True)

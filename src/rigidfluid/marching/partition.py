@@ -1,9 +1,9 @@
 """One distance field over a mesh in parts, each with its own workspace: for threads here, for processes elsewhere.
 
 Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
-both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from there,
-until nothing is new. As a vertex gets its distance at its first visit, wherever that comes from, the field is that of
-the whole mesh.
+both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from
+there, until nothing is new. As a vertex gets its distance at its first visit, wherever that comes from, the field is
+that of the whole mesh.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from threading import Barrier, Lock
+from threading import Barrier, BrokenBarrierError, Lock
 
 import numpy as np
 
@@ -86,6 +86,11 @@ def march_part(
     -------
     DistanceField
         In the numbers of the whole mesh, for the vertices of this part.
+
+    Notes
+    -----
+    Only exact: `march_first_order` fixes each vertex once, in the order of the whole mesh, and on obtuse cells its
+    values depend on that order.
     """
     topology, work = part.topology, part.workspace
     seeds = topology.seeds(surfaces)
@@ -113,13 +118,24 @@ def field_in_threads(
     chosen = list(surfaces)
     board = _Board(parts, len(points))
     with ThreadPoolExecutor(len(parts)) as pool:
-        jobs = [
-            pool.submit(march_part, part, points[part.vertices], chosen, band_width, board.exchange_of(part))
-            for part in parts
-        ]
-        fields = [job.result() for job in jobs]
+        jobs = [pool.submit(_march_or_give_up, part, points, chosen, band_width, board) for part in parts]
+    failures = [failure for job in jobs if (failure := job.exception()) is not None]
+    if failures:
+        # those who waited for the part that failed have broken barriers only
+        raise min(failures, key=lambda failure: isinstance(failure, BrokenBarrierError))
+    fields = [job.result() for job in jobs]
     columns = ([getattr(field, name) for field in fields] for name in DistanceField.__slots__)
     return DistanceField(*map(np.concatenate, columns))
+
+
+def _march_or_give_up(
+    part: Part, points: FloatArray, surfaces: Iterable[int], band_width: float, board: _Board
+) -> DistanceField:
+    try:
+        return march_part(part, points[part.vertices], surfaces, band_width, board.exchange_of(part))
+    except BaseException:
+        board.give_up()
+        raise
 
 
 class _Board:

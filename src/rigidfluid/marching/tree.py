@@ -57,36 +57,38 @@ def no_tree(dimension):
     return Tree(np.empty(0, np.int32), np.empty((0, 2, dimension)))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def search_to_vertex(points, vertex, facets, tree, square, facet):
     """``square`` and ``facet``, or what in the tree is nearer to a vertex: least squared distance and where."""
-    node = _leaf(points, (vertex,), tree.boxes, 1, square)
+    order, boxes = tree.order, tree.boxes
+    node = _leaf(points, (vertex,), boxes, 1, square)
     while node > 0:
-        first = (node - len(tree.boxes) // 2) * LEAF
-        for row in range(first, min(first + LEAF, len(tree.order))):
-            new_square = vertex_to_facet(points, vertex, facets, tree.order[row])[0]
+        first = (node - len(boxes) // 2) * LEAF
+        for row in range(first, min(first + LEAF, len(order))):
+            new_square = vertex_to_facet(points, vertex, facets, order[row])[0]
             if new_square < square:
-                square, facet = new_square, tree.order[row]
-        node = _leaf(points, (vertex,), tree.boxes, _after(node), square)
+                square, facet = new_square, order[row]
+        node = _leaf(points, (vertex,), boxes, _after(node), square)
     return square, facet
 
 
 @njit(cache=True, nogil=True)
 def search_to_facet(points, target, facets, tree, square, facet):
     """``square`` and ``facet``, or what in the tree is nearer to the facet ``target``."""
+    order, boxes = tree.order, tree.boxes
     corners = facets[target, 0], facets[target, 1], facets[target, -1]
-    node = _leaf(points, corners, tree.boxes, 1, square)
+    node = _leaf(points, corners, boxes, 1, square)
     while node > 0:
-        first = (node - len(tree.boxes) // 2) * LEAF
-        for row in range(first, min(first + LEAF, len(tree.order))):
-            new_square = facet_to_facet(points, facets, target, tree.order[row])[0]
+        first = (node - len(boxes) // 2) * LEAF
+        for row in range(first, min(first + LEAF, len(order))):
+            new_square = facet_to_facet(points, facets, target, order[row])[0]
             if new_square < square:
-                square, facet = new_square, tree.order[row]
-        node = _leaf(points, corners, tree.boxes, _after(node), square)
+                square, facet = new_square, order[row]
+        node = _leaf(points, corners, boxes, _after(node), square)
     return square, facet
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _leaf(points, corners, boxes, node, square):
     """The next leaf, from ``node`` on, whose box is nearer to that of the corners than ``square``; 0 at the end."""
     leaves = len(boxes) // 2
@@ -100,7 +102,7 @@ def _leaf(points, corners, boxes, node, square):
     return 0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _after(node):
     """The node after this one and all below it."""
     while node & 1:
@@ -108,7 +110,7 @@ def _after(node):
     return node + (node > 0)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _apart(points, corners, boxes, node):
     """Squared distance of the box around some corners and that of a node."""
     total = 0.0
