@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from marching_meshes import INNER, OUTER, box, naive_distances, shell
+from marching_meshes import INNER, OUTER, box, naive_distances, reachable, shell, stars
 
-from rigidfluid.marching.field import distance_field
+from rigidfluid.bench.nearest_facet import nearest_facet_distances
+from rigidfluid.marching.field import distance_field, march_from
 from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.walk import walk_to_vertex
@@ -38,6 +39,32 @@ def test_exact_march_equals_the_nearest_of_all_facets(dimension, shape, surfaces
     found = distance_field(Topology.of(mesh), points, surfaces).everywhere(len(points))
     expected = naive_distances(points, points, mesh.facets[np.isin(mesh.markers, surfaces)])
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("dimension", "seeds"), [(2, 60), (3, 15)])
+def test_exact_march_among_ragged_stars_equals_the_nearest_of_all_facets(dimension, seeds):
+    for number in range(seeds):
+        mesh, surfaces = stars(dimension, number)
+        topology = Topology.of(mesh)
+        expected = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[np.isin(mesh.markers, surfaces)]])
+        for width in (np.inf, np.quantile(expected, 0.4) * (1 + 1e-9)):
+            field = distance_field(topology, mesh.points, surfaces, width)
+            np.testing.assert_allclose(field.distance, expected[field.vertices], rtol=1e-12, atol=0, err_msg=number)
+            np.testing.assert_array_equal(np.sort(field.vertices), reachable(mesh, surfaces, expected <= width))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_tree_is_planted_unless_the_surface_is_convex_from_the_fluid(dimension):
+    mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
+    for points, surfaces, convex in [
+        (mesh.points, [INNER], True),
+        (mesh.points, [OUTER], False),
+        (mesh.points, [INNER, OUTER], False),
+        (star_shaped(mesh), [INNER], False),
+    ]:
+        work = new_workspace(len(points))
+        wave = march_from(Topology.of(mesh), points, surfaces, np.inf, 0.0, "exact", work)
+        assert (len(wave.tree.order) == 0) == convex
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -95,7 +122,7 @@ def test_a_band_is_the_full_field_cut_off(dimension, accuracy):
 def test_a_workspace_serves_again_as_if_new(accuracy):
     mesh = shell(2, 0.3, 1.2, 0.06)
     topology = Topology.of(mesh)
-    work = new_workspace(len(mesh.points), len(mesh.facets))
+    work = new_workspace(len(mesh.points))
     distance_field(topology, mesh.points, [OUTER], accuracy=accuracy, workspace=work)
     again = distance_field(topology, mesh.points, [INNER], 0.2, accuracy, work)
     fresh = distance_field(topology, mesh.points, [INNER], 0.2, accuracy)
@@ -124,7 +151,7 @@ def test_nearest_facets_are_those_of_the_distance(dimension):
 def test_a_walk_over_a_convex_surface_ends_on_the_nearest_facet(dimension):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
     topology = Topology.of(mesh)
-    seeds, wanted = topology.seeds([INNER])
+    seeds, wanted, _ = topology.seeds([INNER])
     middle = mesh.points[mesh.facets].mean(axis=1)
     for vertex in range(len(mesh.points))[-1:0:-101]:
         point = mesh.points[vertex]

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from marching_meshes import naive_distances
+from marching_meshes import naive_distances, stars
 from mesh_tools import ball, box_walls, ellipsoid, upright
 from numba import njit
 
@@ -12,7 +12,12 @@ from rigidfluid.core.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError
+from rigidfluid.marching.exact import measure
+from rigidfluid.marching.field import march_from
+from rigidfluid.marching.pairs import facet_gaps
 from rigidfluid.marching.simplices import facet_to_facet
+from rigidfluid.marching.topology import Topology
+from rigidfluid.marching.workspace import new_workspace
 
 REACH = 0.25
 
@@ -48,6 +53,30 @@ def least(points, facets, first, second):
         for j in second:
             square = min(square, facet_to_facet(points, facets, i, j)[0])
     return np.sqrt(square)
+
+
+@pytest.mark.parametrize("accuracy", ["exact", "first-order"])
+@pytest.mark.parametrize(("dimension", "seeds"), [(2, 20), (3, 4)])
+def test_gaps_from_ragged_stars_are_those_of_all_pairs_of_facets(dimension, seeds, accuracy):
+    found = 0
+    for number in range(seeds):
+        mesh, _ = stars(dimension, number)
+        topology, work = Topology.of(mesh), new_workspace(len(mesh.points))
+        star, wanted, _ = topology.seeds([0])
+        wave = march_from(topology, mesh.points, [0], np.inf, 0.0, accuracy, work)
+        if accuracy == "first-order":
+            measure(mesh.points, topology.surfaces, wanted, wave.tree, work, wave.touched)
+        others = np.flatnonzero(mesh.markers != 0).astype(np.int32)
+        gap, partner = np.empty(len(others)), np.empty(len(others), np.int32)
+        ball = np.zeros(dimension), np.inf
+        surfaces = topology.surfaces
+        facet_gaps(mesh.points, surfaces, wanted, wave.tree, *ball, others, np.inf, True, work, gap, partner)
+        for row in np.flatnonzero(np.isfinite(gap)):
+            assert gap[row] == pytest.approx(
+                least(mesh.points, surfaces.facets, others[row : row + 1], star), rel=1e-12
+            )
+            found += 1
+    assert found > 20 * seeds
 
 
 @pytest.fixture(scope="module", params=[(2, 0), (2, 1), (2, 2), (3, 0)], ids=str)

@@ -41,3 +41,12 @@ def test_parts_give_the_field_of_the_whole(dimension, size, count, owners, surfa
     assert dict(zip(field.vertices, field.distance, strict=True)) == dict(
         zip(again.vertices, again.distance, strict=True)
     )
+
+
+@pytest.mark.parametrize("failing", [0, 2])
+def test_a_part_that_fails_does_not_leave_the_others_waiting(failing):
+    mesh = shell(2, 0.3, 1.2, 0.06)
+    parts = split(mesh, layers(mesh, 3))
+    parts[failing].topology.seeds = lambda _: [][0]
+    with pytest.raises(IndexError, match="list index out of range"):
+        field_in_threads(parts, mesh.points, [INNER])

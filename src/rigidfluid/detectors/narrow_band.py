@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, final
 
 from pydantic import Field
 
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.core.interfaces import PartOptions
 from rigidfluid.errors import SceneError
+from rigidfluid.marching.detector import MarchingDetector
 from rigidfluid.marching.options import MarchingOptions
 
 BANDS_PER_RANGE = 1.5
@@ -24,36 +23,17 @@ class NarrowBandOptions(MarchingOptions):
     )
 
 
-class NarrowBandDetector(Detector):
-    """gap = min |x - y| over the facets x and y of two surfaces of the mesh, from a band around each body.
+@final
+class NarrowBandDetector(MarchingDetector):
+    """Marches a field from each body that has something near, in a band around it.
 
-    The gap is exact to the facets, whose distance to a smooth surface of curvature radius R is at most h²/(8R). The
-    work follows the number of cells in the bands of those bodies that have something near.
-
-    Parameters
-    ----------
-    options : NarrowBandOptions
-        ``band_width`` [length], ``accuracy``, ``multiple``, ``threads``.
-    bodies : sequence of Body
-        Shapes of any kind.
-    walls : sequence of Wall
-        The walls that repel.
-
-    Notes
-    -----
-    Van Landeghem et al., arXiv:2402.19093, whose contact points are vertices of the mesh.
+    The work follows the number of cells in the bands. ``band_width`` [length] is one more option.
     """
 
     name: ClassVar[str] = "narrow_band"
-    needs_mesh: ClassVar[bool] = True
+    whole_domain: ClassVar[bool] = False
     Options: ClassVar[type[PartOptions]] = NarrowBandOptions
     options: NarrowBandOptions
-
-    def __init__(self, options: NarrowBandOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
-        from rigidfluid.marching.contacts import ContactFinder
-
-        super().__init__(options, bodies, walls)
-        self._finder = ContactFinder(bodies, walls, options.accuracy, options.multiple, False, options.threads)
 
     def sight(self, law_range: float) -> float:
         """``band_width``, or 1.5 ``law_range`` [length]; raises SceneError if the band is narrower than the range."""
@@ -65,8 +45,3 @@ class NarrowBandDetector(Detector):
                 "contact.band_width", width, f"at least the range, {law_range}", "Widen it, or leave it out."
             )
         return width
-
-    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the mesh around the bodies."""
-        assert mesh is not None
-        return self._finder.find(pose, mesh, reach)

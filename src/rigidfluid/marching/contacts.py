@@ -13,15 +13,19 @@ import numpy as np
 from rigidfluid.core.broad_phase import near_pairs, near_walls
 from rigidfluid.core.interfaces import Body
 from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
-from rigidfluid.marching.exact import reset
+from rigidfluid.marching.exact import measure, reset
 from rigidfluid.marching.field import Accuracy, march_from
-from rigidfluid.marching.pairs import facet_gaps, longest_edge_near, nearest_points, places
+from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
 from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workers import Workers
 from rigidfluid.marching.workspace import Workspace
 
 ROUNDED_UP = 1.0 + 1e-9
 """Bounding balls are so much larger, as the vertices of a mesh are on the surface only to rounding."""
+
+TO_CORNER = {2: 0.5, 3: 1.0 / sqrt(3.0)}
+"""Dimension → distance from a point of a facet to its nearest corner over the facet's longest edge, at most."""
 
 
 class _Scope(NamedTuple):
@@ -47,8 +51,9 @@ class ContactFinder:
     """Finds gap = min |x - y| over the facets x of surface a and y of surface b, and the points where it is reached.
 
     A field is marched from each body that has something near, and the facets of its neighbours in the band are compared
-    with the body's own. A facet within ``reach`` has a corner within reach + L/2 (in space: + L/√3), L its longest
-    edge; the band is that wide.
+    with the body's own. The band goes to reach + L/2 at a vertex with longest edge L (in space: + L/√3): a point within
+    ``reach`` on an edge or a facet has a corner of it in the band. So the march meets the facets at the end of every
+    straight line of that length through the fluid.
 
     Parameters
     ----------
@@ -105,32 +110,31 @@ class ContactFinder:
 
     def _touches_of(self, scope: _Scope, work: Workspace, near: tuple[int, list[int]]) -> list[_Touch]:
         body, others = near
-        edges = {other: self._longest_edge(scope, body, other) for other in others}
-        others = [other for other in others if edges[other] > 0.0]
+        topology, points, position, reach = scope
+        ball = position[body], self._bounds[body] * ROUNDED_UP
+        facets = topology.surfaces.facets
+        others = [
+            other for other in others if any_near(points, facets, topology.facets_of(other), ball[0], ball[1] + reach)
+        ]
         if not others:
             return []
-        topology, points, _, reach = scope
-        to_corner = 0.5 if points.shape[1] == 2 else 1.0 / sqrt(3.0)
-        width = inf if self._whole_domain else reach + to_corner * max(edges[other] for other in others)
-        touched = march_from(topology, points, [body], width, self._accuracy, work)
-        touches = [touch for other in others for touch in self._between(scope, work, body, other)]
-        reset(work, touched)
+        width = inf if self._whole_domain else reach
+        wave = march_from(topology, points, [body], width, TO_CORNER[points.shape[1]], self._accuracy, work)
+        if self._accuracy != "exact":
+            measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
+        touches = [touch for other in others for touch in self._between(scope, work, wave.tree, ball, body, other)]
+        reset(work, wave.touched, wave.beyond)
         return touches
 
-    def _longest_edge(self, scope: _Scope, body: int, other: int) -> float:
-        """Of the facets of ``other`` near the bounding ball of ``body``; 0 if there are none."""
-        topology, points, position, reach = scope
-        radius = self._bounds[body] * ROUNDED_UP + reach
+    def _between(
+        self, scope: _Scope, work: Workspace, tree: Tree, ball: tuple[FloatArray, float], body: int, other: int
+    ) -> list[_Touch]:
+        topology, points, _, reach = scope
         chosen = topology.facets_of(other)
-        return float(longest_edge_near(points, topology.surfaces.facets, chosen, position[body], radius))
-
-    def _between(self, scope: _Scope, work: Workspace, body: int, other: int) -> list[_Touch]:
-        topology, points, position, reach = scope
-        chosen = topology.facets_of(other)
-        ball = position[body], self._bounds[body] * ROUNDED_UP
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
-        _, wanted = topology.seeds([body])
-        facet_gaps(points, topology.surfaces, wanted, *ball, chosen, reach, self._several, work, gap, partner)
+        wanted = topology.seeds([body]).wanted
+        several = self._several
+        facet_gaps(points, topology.surfaces, wanted, tree, *ball, chosen, reach, several, work, gap, partner)
         facets = topology.surfaces.facets
         touches = []
         for row in self._best_rows(facets, chosen, gap):

@@ -1,4 +1,9 @@
-"""The march that carries the nearest facet along, so that each distance is exact. Arrays in, arrays out."""
+"""The wave that carries the nearest facet along, so that each distance is exact. Arrays in, arrays out.
+
+A vertex starts from the nearest facet of a neighbour and walks over the surface. On a convex body that ends on the
+nearest facet of all; on any other surface a tree of all facets is asked as well. So no vertex needs a second visit, and
+the wave takes the vertices in the order in which it meets them, without a heap.
+"""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
@@ -7,78 +12,86 @@ from __future__ import annotations
 
 from numba import njit
 
-from rigidfluid.marching.heap import lower, pop, push
-from rigidfluid.marching.walk import try_around, walk_to_vertex
-from rigidfluid.marching.workspace import FAR, KNOWN, TRIAL
+from rigidfluid.marching.band import square_in_band
+from rigidfluid.marching.convex import is_convex
+from rigidfluid.marching.tree import no_tree, plant, search_to_vertex
+from rigidfluid.marching.walk import walk_to_vertex
+from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 
 
 @njit(cache=True, nogil=True)
-def seed(surfaces, seeds, work):
-    """Give the vertices of the facets ``seeds`` distance zero and put them into the heap; how many there are."""
-    size = 0
-    for facet in seeds:
-        for i in range(surfaces.facets.shape[1]):
-            vertex = surfaces.facets[facet, i]
-            if work.state[vertex] == FAR:
-                work.state[vertex], work.key[vertex], work.facet[vertex] = TRIAL, 0.0, facet
-                work.touched[size] = vertex
-                size = push(work.heap, work.heap_key, work.place, size, vertex, 0.0)
-    return size
+def seed(points, surfaces, seeds, whole, work):
+    """Give the vertices of the facets ``seeds`` distance zero; how many there are, and the tree if one is needed.
 
-
-@njit(cache=True, nogil=True)
-def march(points, neighbours, surfaces, wanted, limit, work, size, touched):
-    """Spread the nearest facet from the ``size`` vertices in the heap; how many vertices are touched now.
-
-    A vertex taken from the heap hands its facet to its neighbours, which walk on from there to a nearer one. A vertex
-    that is KNOWN and yet gets a nearer facet goes back into the heap. Squared distances above ``limit`` are left FAR.
+    ``whole`` says whether the facets are a closed surface in one piece.
     """
-    while size > 0:
-        vertex = pop(work.heap, work.heap_key, work.place, size)
-        size -= 1
-        work.state[vertex] = KNOWN
-        if work.concave[work.facet[vertex]] and work.key[vertex] > 0.0:
-            square, facet = try_around(points, vertex, surfaces, wanted, work.key[vertex], work.facet[vertex])
-            work.key[vertex], work.facet[vertex] = square, facet
-        facet = work.facet[vertex]
-        for k in range(neighbours.start[vertex], neighbours.start[vertex + 1]):
-            other = neighbours.members[k]
-            state = work.state[other]
-            if state != FAR and (work.facet[other] == facet or work.key[other] == 0.0):
+    touched = 0
+    for facet in seeds:
+        for vertex in surfaces.facets[facet]:
+            if work.state[vertex] == FAR:
+                work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, 0.0, facet
+                work.touched[touched] = vertex
+                touched += 1
+    convex = whole and is_convex(points, surfaces, seeds)
+    return touched, no_tree(points.shape[1]) if convex else plant(points, surfaces.facets, seeds)
+
+
+@njit(cache=True, nogil=True)
+def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond):
+    """Spread the nearest facet from ``work.touched[first:touched]``; how many vertices are touched, how many beyond.
+
+    Vertices outside the band are marked BEYOND, so that each is measured once, and listed at the end of
+    ``work.touched``.
+    """
+    # names of their own spare the counting of references at each use
+    state, key, nearest_facet, queue = work.state, work.key, work.facet, work.touched
+    start, members = neighbours.start, neighbours.members
+    while first < touched:
+        vertex = queue[first]
+        facet = nearest_facet[vertex]
+        first += 1
+        for k in range(start[vertex], start[vertex + 1]):
+            other = members[k]
+            if state[other] != FAR:
                 continue
             square, nearest = walk_to_vertex(points, other, surfaces, wanted, facet)
-            if square > limit or (state != FAR and square >= work.key[other]):
-                continue
-            work.key[other], work.facet[other] = square, nearest
-            if state == TRIAL:
-                lower(work.heap, work.heap_key, work.place, other, square)
-                continue
-            if state == FAR:
-                work.touched[touched] = other
+            square, nearest = search_to_vertex(points, other, surfaces.facets, tree, square, nearest)
+            if square_in_band(points, neighbours, other, square, width, slack):
+                state[other], key[other], nearest_facet[other] = KNOWN, square, nearest
+                queue[touched] = other
                 touched += 1
-            work.state[other] = TRIAL
-            size = push(work.heap, work.heap_key, work.place, size, other, square)
+            else:
+                beyond += 1
+                state[other] = BEYOND
+                queue[-beyond] = other
+    return touched, beyond
+
+
+@njit(cache=True, nogil=True)
+def accept(vertices, key, facet, work, touched):
+    """Take in the vertices that others have reached; how many are touched now."""
+    for k in range(len(vertices)):
+        vertex = vertices[k]
+        if work.state[vertex] == FAR and facet[k] >= 0:
+            work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, key[k], facet[k]
+            work.touched[touched] = vertex
+            touched += 1
     return touched
 
 
 @njit(cache=True, nogil=True)
-def accept(vertices, key, facet, limit, work, touched):
-    """Put into the empty heap the vertices that others know to be nearer; its size, and how many are touched now."""
-    size = 0
-    for k in range(len(vertices)):
-        vertex, state = vertices[k], work.state[vertices[k]]
-        if key[k] > limit or (state != FAR and key[k] >= work.key[vertex]):
-            continue
-        if state == FAR:
-            work.touched[touched] = vertex
-            touched += 1
-        work.state[vertex], work.key[vertex], work.facet[vertex] = TRIAL, key[k], facet[k]
-        size = push(work.heap, work.heap_key, work.place, size, vertex, key[k])
-    return size, touched
+def measure(points, surfaces, wanted, tree, work, touched):
+    """Put the exact squared distance in place of any other key that the touched vertices have."""
+    for vertex in work.touched[:touched]:
+        square, facet = walk_to_vertex(points, vertex, surfaces, wanted, work.facet[vertex])
+        square, facet = search_to_vertex(points, vertex, surfaces.facets, tree, square, facet)
+        work.key[vertex], work.facet[vertex] = square, facet
 
 
 @njit(cache=True, nogil=True)
-def reset(work, touched):
-    """Make all touched vertices FAR again."""
+def reset(work, touched, beyond):
+    """Make all vertices FAR again."""
     for k in range(touched):
         work.state[work.touched[k]] = FAR
+    for k in range(1, beyond + 1):
+        work.state[work.touched[-k]] = FAR

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from rigidfluid.core.types import FloatArray
-from rigidfluid.marching.concave import mark_concave
 from rigidfluid.marching.exact import march, reset, seed
 from rigidfluid.marching.first_order import march_first_order
 from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 Accuracy = Literal["exact", "first-order"]
+
+
+class Wave(NamedTuple):
+    """How many vertices a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
+
+    touched: int
+    beyond: int
+    tree: Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +85,12 @@ def distance_field(
     Sethian's fast marching (1996), DOI 10.1073/pnas.93.4.1591, in the narrow band of Van Landeghem et al.,
     arXiv:2402.19093; that the nearest facet travels along is ours.
     """
-    work = workspace or new_workspace(topology.vertices, len(topology.surfaces.facets))
-    touched = march_from(topology, points, surfaces, band_width, accuracy, work)
-    vertices = work.touched[:touched].copy()
+    work = workspace or new_workspace(topology.vertices)
+    wave = march_from(topology, points, surfaces, band_width, 0.0, accuracy, work)
+    vertices = work.touched[: wave.touched].copy()
     distance = work.key[vertices]
     facet = work.facet[vertices]
-    reset(work, touched)
+    reset(work, wave.touched, wave.beyond)
     return DistanceField(vertices, np.sqrt(distance) if accuracy == "exact" else distance, facet)
 
 
@@ -91,14 +99,21 @@ def march_from(
     points: FloatArray,
     surfaces: Iterable[int],
     band_width: float,
+    slack: float,
     accuracy: Accuracy,
     work: Workspace,
-) -> int:
-    """March and leave the field in ``work``, to be reset by the caller; how many vertices it reached."""
-    seeds, wanted = topology.seeds(surfaces)
-    size = seed(topology.surfaces, seeds, work)
+) -> Wave:
+    """March and leave the field in ``work``, to be reset by the caller.
+
+    The band are the vertices with D ≤ ``band_width`` + ``slack`` L, L the longest edge of the vertex.
+    """
+    seeds = topology.seeds(surfaces)
+    size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
+    band = band_width, slack
     if accuracy == "exact":
-        mark_concave(points, topology.surfaces, wanted, seeds, work.concave)
-        limit = band_width * band_width
-        return int(march(points, topology.neighbours, topology.surfaces, wanted, limit, work, size, size))
-    return int(march_first_order(points, topology.cells, topology.cell_rows, band_width, work, size, size))
+        surface = topology.surfaces, seeds.wanted, tree
+        touched, beyond = march(points, topology.neighbours, *surface, *band, work, 0, size, 0)
+    else:
+        cells = topology.cells, topology.cell_rows
+        touched, beyond = march_first_order(points, *cells, topology.neighbours, *band, work, size), 0
+    return Wave(touched, beyond, tree)

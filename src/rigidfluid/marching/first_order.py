@@ -15,6 +15,7 @@ from math import sqrt
 import numpy as np
 from numba import njit
 
+from rigidfluid.marching.band import in_band
 from rigidfluid.marching.heap import lower, pop, push
 from rigidfluid.marching.workspace import KNOWN, TRIAL
 
@@ -23,11 +24,14 @@ FLAT = 1e-12
 
 
 @njit(cache=True, nogil=True)
-def march_first_order(points, cells, cell_rows, limit, work, size, touched):
-    """Spread the distance from the ``size`` vertices in the heap; how many vertices are touched now.
+def march_first_order(points, cells, cell_rows, neighbours, width, slack, work, touched):
+    """Spread the distance from the first ``touched`` vertices of ``work.touched``; how many there are then.
 
-    Each vertex also gets the facet of the corner that its wave comes from. Distances above ``limit`` are left FAR.
+    Each vertex also gets the facet of the corner that its wave comes from. Vertices outside the band are left FAR.
     """
+    size = 0
+    for k in range(touched):
+        size = push(work.heap, work.heap_key, work.place, size, work.touched[k], work.key[work.touched[k]])
     while size > 0:
         vertex = pop(work.heap, work.heap_key, work.place, size)
         size -= 1
@@ -39,7 +43,9 @@ def march_first_order(points, cells, cell_rows, limit, work, size, touched):
                 if state == KNOWN:
                     continue
                 value = _update(points, cell, other, vertex, work)
-                if value > limit or (state == TRIAL and value >= work.key[other]):
+                if state == TRIAL and value >= work.key[other]:
+                    continue
+                if not in_band(points, neighbours, other, value, width, slack):
                     continue
                 work.key[other], work.facet[other] = value, work.facet[vertex]
                 if state == TRIAL:

@@ -11,24 +11,22 @@ import numpy as np
 from numba import njit
 
 from rigidfluid.marching.simplices import facet_to_facet
-from rigidfluid.marching.walk import walk_to_facet, walk_to_vertex
-from rigidfluid.marching.workspace import FAR
+from rigidfluid.marching.tree import search_to_facet
+from rigidfluid.marching.walk import walk_to_facet
+from rigidfluid.marching.workspace import KNOWN
 
 
 @njit(cache=True, nogil=True)
-def longest_edge_near(points, facets, chosen, centre, radius):
-    """Longest edge of those facets of ``chosen`` whose bounding box meets a ball; 0 where none does."""
-    longest = 0.0
+def any_near(points, facets, chosen, centre, radius):
+    """Whether the bounding box of one of the facets ``chosen`` meets a ball."""
+    nearest = np.inf
     for facet in chosen:
-        if _box_to_point(points, facets[facet], centre) <= radius * radius:
-            for i in range(facets.shape[1]):
-                for j in range(i):
-                    longest = max(longest, _length(points, facets[facet, i], facets[facet, j]))
-    return longest
+        nearest = min(nearest, _box_to_point(points, facets[facet], centre))
+    return nearest <= radius * radius
 
 
 @njit(cache=True, nogil=True)
-def facet_gaps(points, surfaces, wanted, centre, radius, chosen, reach, all_places, work, gap, partner):
+def facet_gaps(points, surfaces, wanted, tree, centre, radius, chosen, reach, all_places, work, gap, partner):
     """Distance of each facet of ``chosen`` to the surfaces ``wanted``, inside a ball, whose field is in ``work``.
 
     ``gap`` (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above that of another facet), and
@@ -36,52 +34,54 @@ def facet_gaps(points, surfaces, wanted, centre, radius, chosen, reach, all_plac
     its distance to the ball, or its corners' distances less its edges, show to be too far.
     """
     bound = gap
-    nearest_corner = np.inf
+    first, nearest_corner = 0, np.inf
     for row in range(len(chosen)):
         bound[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
-        if bound[row] > reach:
-            continue
-        by_corners, corner_gap = _bounds(points, surfaces, wanted, chosen[row], work)
-        bound[row] = max(bound[row], by_corners)
-        nearest_corner = min(nearest_corner, corner_gap)
+        if bound[row] <= reach:
+            by_corners, corner_gap = _bounds(points, surfaces.facets[chosen[row]], work)
+            bound[row] = max(bound[row], by_corners)
+            if corner_gap < nearest_corner:
+                first, nearest_corner = row, corner_gap
     limit = reach if all_places else min(reach, nearest_corner)
-    for row in range(len(chosen)):
-        if bound[row] <= limit:
-            gap[row], partner[row] = _facet_gap(points, surfaces, wanted, chosen[row], work)
-            if not all_places:
-                limit = min(limit, gap[row])
+    # the most promising one first, so that few others are left
+    for k in range(-1, len(chosen)):
+        row = first if k < 0 else k
         if bound[row] > limit:
             gap[row] = np.inf
+        elif k != first:
+            gap[row], partner[row] = _facet_gap(points, surfaces, wanted, tree, chosen[row], work)
+            if gap[row] > limit:
+                gap[row] = np.inf
+            elif not all_places:
+                limit = gap[row]
 
 
 @njit(cache=True, nogil=True)
-def _bounds(points, surfaces, wanted, facet, work):
+def _bounds(points, corners, work):
     """A lower bound of a facet's distance, and that of its nearest corner; infinite without a corner in the band."""
     least, nearest = np.inf, np.inf
-    for corner in surfaces.facets[facet]:
-        if work.state[corner] != FAR:
-            square, _ = walk_to_vertex(points, corner, surfaces, wanted, work.facet[corner])
+    for corner in corners:
+        if work.state[corner] == KNOWN:
+            distance = sqrt(work.key[corner])
             edge = 0.0
-            for other in surfaces.facets[facet]:
+            for other in corners:
                 edge = max(edge, _length(points, corner, other))
-            bound = max(sqrt(square) - edge, 0.0)
+            bound = max(distance - edge, 0.0)
             least = bound if least == np.inf else max(least, bound)
-            nearest = min(nearest, sqrt(square))
+            nearest = min(nearest, distance)
     return least, nearest
 
 
 @njit(cache=True, nogil=True)
-def _facet_gap(points, surfaces, wanted, facet, work):
-    """The distance of a facet, and the facet where it is reached, walking from those nearest to its corners."""
-    least, partner, before = np.inf, -1, -1
+def _facet_gap(points, surfaces, wanted, tree, facet, work):
+    """The distance of a facet, and the facet where it is reached, walking from the one nearest to a corner."""
+    nearest, start = np.inf, -1
     for corner in surfaces.facets[facet]:
-        if work.state[corner] == FAR or work.facet[corner] == before:
-            continue
-        before = work.facet[corner]
-        square, found = walk_to_facet(points, facet, surfaces, wanted, before)
-        if sqrt(square) < least:
-            least, partner = sqrt(square), found
-    return least, partner
+        if work.state[corner] == KNOWN and work.key[corner] < nearest:
+            nearest, start = work.key[corner], work.facet[corner]
+    square, partner = walk_to_facet(points, facet, surfaces, wanted, start)
+    square, partner = search_to_facet(points, facet, surfaces.facets, tree, square, partner)
+    return sqrt(square), partner
 
 
 @njit(cache=True, nogil=True)

@@ -1,9 +1,9 @@
 """One distance field over a mesh in parts, each with its own workspace: for threads here, for processes elsewhere.
 
 Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
-both. A part marches until its heap is empty, then the parts exchange what they found on their borders and march on from
-what has improved, until nothing does. As a vertex takes the least of all the distances it is offered, in whatever
-order, the field is that of the whole mesh.
+both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from
+there, until nothing is new. As a vertex gets its distance at its first visit, wherever that comes from, the field is
+that of the whole mesh.
 """
 
 from __future__ import annotations
@@ -11,19 +11,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from threading import Barrier, Lock
+from threading import Barrier, BrokenBarrierError, Lock
 
 import numpy as np
 
 from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
-from rigidfluid.marching.concave import mark_concave
 from rigidfluid.marching.exact import accept, march, reset, seed
 from rigidfluid.marching.field import DistanceField
 from rigidfluid.marching.topology import Numbers, Topology
-from rigidfluid.marching.workspace import FAR, Workspace, new_workspace
+from rigidfluid.marching.workspace import KNOWN, Workspace, new_workspace
+
+NOT_REACHED = np.int32(-1)
+"""In place of a facet, where a part has not come to a vertex of its border."""
 
 Exchange = Callable[[FloatArray, Numbers], tuple[FloatArray, Numbers] | None]
-"""From squared distance and facet at a part's border to the least of all parts'; None once nothing improves."""
+"""From squared distance and facet at a part's border to those of any part that has come there; None if none is new."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,8 @@ def split(mesh: Mesh, owner: IntArray) -> list[Part]:
     holders = np.zeros(len(mesh.points), dtype=np.int64)
     for cells in groups:
         holders[np.unique(cells)] += 1
-    return [_part(mesh, cells, holders > 1) for cells in groups]
+    across = Topology.of(mesh).surfaces.across.astype(np.int64)
+    return [_part(mesh, cells, holders > 1, across) for cells in groups]
 
 
 def march_part(
@@ -83,21 +86,28 @@ def march_part(
     -------
     DistanceField
         In the numbers of the whole mesh, for the vertices of this part.
+
+    Notes
+    -----
+    Only exact: `march_first_order` fixes each vertex once, in the order of the whole mesh, and on obtuse cells its
+    values depend on that order.
     """
-    topology, work, limit = part.topology, part.workspace, band_width * band_width
-    seeds, wanted = topology.seeds(surfaces)
-    mark_concave(points, topology.surfaces, wanted, seeds, work.concave)
-    size = touched = seed(topology.surfaces, seeds, work)
+    topology, work = part.topology, part.workspace
+    seeds = topology.seeds(surfaces)
+    touched, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
+    first = beyond = 0
     while True:
-        touched = march(points, topology.neighbours, topology.surfaces, wanted, limit, work, size, touched)
-        known = np.where(work.state[part.border] == FAR, np.inf, work.key[part.border])
-        found = exchange(known, work.facet[part.border])
+        surface = topology.surfaces, seeds.wanted, tree
+        counts = first, touched, beyond
+        touched, beyond = march(points, topology.neighbours, *surface, band_width, 0.0, work, *counts)
+        reached = work.state[part.border] == KNOWN
+        found = exchange(work.key[part.border], np.where(reached, work.facet[part.border], NOT_REACHED))
         if found is None:
             break
-        size, touched = accept(part.border, *found, limit, work, touched)
+        first, touched = touched, accept(part.border, *found, work, touched)
     local = work.touched[:touched].copy()
     field = DistanceField(part.vertices[local].astype(np.int32), np.sqrt(work.key[local]), work.facet[local])
-    reset(work, touched)
+    reset(work, touched, beyond)
     return field
 
 
@@ -108,22 +118,33 @@ def field_in_threads(
     chosen = list(surfaces)
     board = _Board(parts, len(points))
     with ThreadPoolExecutor(len(parts)) as pool:
-        jobs = [
-            pool.submit(march_part, part, points[part.vertices], chosen, band_width, board.exchange_of(part))
-            for part in parts
-        ]
-        fields = [job.result() for job in jobs]
+        jobs = [pool.submit(_march_or_give_up, part, points, chosen, band_width, board) for part in parts]
+    failures = [failure for job in jobs if (failure := job.exception()) is not None]
+    if failures:
+        # those who waited for the part that failed have broken barriers only
+        raise min(failures, key=lambda failure: isinstance(failure, BrokenBarrierError))
+    fields = [job.result() for job in jobs]
     columns = ([getattr(field, name) for field in fields] for name in DistanceField.__slots__)
     return DistanceField(*map(np.concatenate, columns))
+
+
+def _march_or_give_up(
+    part: Part, points: FloatArray, surfaces: Iterable[int], band_width: float, board: _Board
+) -> DistanceField:
+    try:
+        return march_part(part, points[part.vertices], surfaces, band_width, board.exchange_of(part))
+    except BaseException:
+        board.give_up()
+        raise
 
 
 class _Board:
     """Where parts in one process leave what they know of their borders; all wait for all before they read."""
 
     def __init__(self, parts: Sequence[Part], count: int) -> None:
-        self._key, self._facet = np.full(count, np.inf), np.zeros(count, np.int32)
+        self._key, self._facet = np.zeros(count), np.full(count, NOT_REACHED)
         self._lock, self._barrier = Lock(), Barrier(len(parts))
-        self._improved = False
+        self._new = False
 
     def exchange_of(self, part: Part) -> Exchange:
         """The callback of one part."""
@@ -131,27 +152,34 @@ class _Board:
 
         def exchange(key: FloatArray, facet: Numbers) -> tuple[FloatArray, Numbers] | None:
             self._barrier.wait()
-            self._improved = False
+            self._new = False
             self._barrier.wait()
             with self._lock:
                 self._post(border, key, facet)
             self._barrier.wait()
-            return (self._key[border], self._facet[border]) if self._improved else None
+            return (self._key[border], self._facet[border]) if self._new else None
 
         return exchange
 
+    def give_up(self) -> None:
+        """Let nobody wait for a part that has failed."""
+        self._barrier.abort()
+
     def _post(self, border: IntArray, key: FloatArray, facet: Numbers) -> None:
-        better: BoolArray = key < self._key[border]
+        known = self._facet[border]
+        self._new |= bool(np.any((known < 0) & (facet >= 0)))
+        # of equally near facets the last, whoever comes first
+        better = facet > known
         self._key[border[better]], self._facet[border[better]] = key[better], facet[better]
-        self._improved |= bool(better.any())
 
 
-def _part(mesh: Mesh, cells: IntArray, shared: BoolArray) -> Part:
+def _part(mesh: Mesh, cells: IntArray, shared: BoolArray, across: IntArray) -> Part:
     """Cells with the vertices of all facets; a vertex of a facet that is in no cell of the part is just a point."""
     inside = np.unique(cells)
-    vertices = np.concatenate([inside, np.setdiff1d(mesh.facets, inside)])
+    vertices = np.concatenate([inside, np.setdiff1d(np.append(mesh.facets, across), inside)])
     number = np.full(len(mesh.points), -1)
     number[vertices] = np.arange(len(vertices))
-    topology = Topology(number[cells], number[mesh.facets], mesh.markers, len(vertices))
+    seen_from = number[across].astype(np.int32)
+    topology = Topology(number[cells], number[mesh.facets], mesh.markers, len(vertices), seen_from)
     border = np.flatnonzero(shared[inside]).astype(np.int32)
-    return Part(topology, vertices, border, new_workspace(len(vertices), len(mesh.facets)))
+    return Part(topology, vertices, border, new_workspace(len(vertices)))

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def vertex_to_facet(points, vertex, facets, facet):
     """Squared distance of a vertex to a facet, bits of the corners that carry weight, the three weights."""
     if points.shape[1] == 2:
@@ -36,21 +36,6 @@ def facet_to_facet(points, facets, first, second):
 
 
 @njit(cache=True, nogil=True)
-def boxes_apart(points, facets, first, second):
-    """Squared distance of the boxes around two facets: a lower bound that costs little."""
-    total = 0.0
-    for k in range(points.shape[1]):
-        low = high = points[facets[first, 0], k]
-        other_low = other_high = points[facets[second, 0], k]
-        for i in range(1, points.shape[1]):
-            x, y = points[facets[first, i], k], points[facets[second, i], k]
-            low, high = min(low, x), max(high, x)
-            other_low, other_high = min(other_low, y), max(other_high, y)
-        total += max(low - other_high, other_low - high, 0.0) ** 2
-    return total
-
-
-@njit(cache=True, nogil=True)
 def _corners_to_facet(points, facets, first, second):
     """The nearest of the first facet's corners: squared distance, weights on the first, weights on the second."""
     best = (np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -61,7 +46,7 @@ def _corners_to_facet(points, facets, first, second):
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _vertex_to_segment(points, vertex, a, b):
     abx, aby = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     apx, apy = points[vertex, 0] - points[a, 0], points[vertex, 1] - points[a, 1]
@@ -76,7 +61,7 @@ def _vertex_to_segment(points, vertex, a, b):
     return cross * cross / length, 3, 1.0 - t, t, 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _vertex_to_triangle(points, vertex, a, b, c):
     """By the region of the triangle's plane that the vertex projects to: a corner's, an edge's or the inside."""
     d1 = _dot(points, a, b, a, vertex)
@@ -107,7 +92,7 @@ def _vertex_to_triangle(points, vertex, a, b, c):
     return _at(points, vertex, a, b, c, 7, va / total, vb / total, vc / total)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _dot(points, a, b, c, d):
     """(x_b - x_a)·(x_d - x_c) in space."""
     total = 0.0
@@ -116,7 +101,7 @@ def _dot(points, a, b, c, d):
     return total
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _at(points, vertex, a, b, c, bits, p, q, r):
     """The squared distance from the residual itself, which loses nothing to cancellation."""
     square = 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.types import BoolArray, IntArray, Mesh
-from rigidfluid.marching.adjacency import inner_vertices, neighbours_of, rows_of
+from rigidfluid.marching.adjacency import facets_beside, inner_vertices, is_whole, neighbours_of, rows_of
 
 Numbers = NDArray[np.int32]
 
@@ -25,14 +25,24 @@ class Rows(NamedTuple):
 class Surfaces(NamedTuple):
     """The boundary facets of a mesh: ``facets`` (F, d), the ``marker`` (F,) of each, the facets at each vertex.
 
-    ``across`` (F,) is the vertex of the facet's cell that is not on the facet.
+    ``across`` (F,) is the vertex of the facet's cell that is not on the facet, ``beside`` (F, d) the facet of the same
+    surface beyond each ridge, or -1 if there is not just one.
     """
 
     facets: Numbers
     marker: Numbers
     across: Numbers
+    beside: Numbers
     start: Numbers
     members: Numbers
+
+
+class Seeds(NamedTuple):
+    """Facets that a march starts from, whether each surface is ``wanted``, whether all are one closed piece."""
+
+    facets: Numbers
+    wanted: BoolArray
+    whole: bool
 
 
 class Topology:
@@ -48,16 +58,23 @@ class Topology:
         The surface that each facet lies on.
     vertices : int
         How many vertices there are.
+    across : (F,) array, optional
+        The vertex across from each facet, for a part of a mesh that does not have all the facets' cells.
     """
 
-    def __init__(self, cells: IntArray, facets: IntArray, markers: IntArray, vertices: int) -> None:
+    def __init__(
+        self, cells: IntArray, facets: IntArray, markers: IntArray, vertices: int, across: Numbers | None = None
+    ) -> None:
         self.vertices = vertices
+        self._seeds: dict[tuple[int, ...], Seeds] = {}
         self.cells: Numbers = np.ascontiguousarray(cells, np.int32)
         self.cell_rows = Rows(*rows_of(self.cells, vertices))
         self.neighbours = Rows(*neighbours_of(self.cells, *self.cell_rows))
-        corners = np.ascontiguousarray(facets, np.int32)
-        across = inner_vertices(corners, self.cells, *self.cell_rows)
-        self.surfaces = Surfaces(corners, markers.astype(np.int32), across, *rows_of(corners, vertices))
+        corners, marker = np.ascontiguousarray(facets, np.int32), markers.astype(np.int32)
+        if across is None:
+            across = inner_vertices(corners, self.cells, *self.cell_rows)
+        rows = rows_of(corners, vertices)
+        self.surfaces = Surfaces(corners, marker, across, facets_beside(corners, marker, *rows), *rows)
 
     @classmethod
     def of(cls, mesh: Mesh) -> Topology:
@@ -73,9 +90,15 @@ class Topology:
         start, members = self._facets_by_surface
         return members[start[surface] : start[surface + 1]] if 0 <= surface < len(start) - 1 else members[:0]
 
-    def seeds(self, surfaces: Iterable[int]) -> tuple[Numbers, BoolArray]:
-        """Facets of several surfaces, and for each surface number whether it is among them."""
-        chosen = sorted(set(surfaces))
+    def seeds(self, surfaces: Iterable[int]) -> Seeds:
+        """What a march from several surfaces starts from."""
+        chosen = tuple(sorted(set(surfaces)))
+        if chosen not in self._seeds:
+            self._seeds[chosen] = self._seeds_of(chosen)
+        return self._seeds[chosen]
+
+    def _seeds_of(self, chosen: tuple[int, ...]) -> Seeds:
         wanted = np.zeros(len(self._facets_by_surface.start) - 1, dtype=bool)
         wanted[[surface for surface in chosen if 0 <= surface < len(wanted)]] = True
-        return np.concatenate([self.facets_of(surface) for surface in chosen]), wanted
+        facets = np.concatenate([self.facets_of(surface) for surface in chosen])
+        return Seeds(facets, wanted, len(facets) == 0 or bool(is_whole(self.surfaces.beside, facets)))

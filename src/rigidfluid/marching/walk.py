@@ -1,7 +1,8 @@
 """Steps from facet to facet of a surface until none near by is nearer. Arrays in, numbers out.
 
-On a convex surface seen from outside the facet where such a walk ends is the nearest of all; elsewhere it is the
-nearest of its surroundings, and the march compares the walks that arrive from all sides.
+On the surface of a convex body, seen from outside, the facet where such a walk ends is the nearest of all; elsewhere
+it is the nearest of its surroundings. A nearest point inside a facet is the end; from one on an edge or a corner the
+other facets there are tried.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -11,77 +12,62 @@ from __future__ import annotations
 
 from numba import njit
 
-from rigidfluid.marching.simplices import boxes_apart, facet_to_facet, vertex_to_facet
+from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def walk_to_vertex(points, vertex, surfaces, wanted, facet):
-    """Squared distance of a vertex to the surfaces ``wanted`` near ``facet``, and the facet it is found on.
-
-    Where the nearest point is inside a facet it is nearest in its surroundings; where it is on an edge or a corner, the
-    other facets there are tried.
-    """
-    square, bits, _, _, _ = vertex_to_facet(points, vertex, surfaces.facets, facet)
+    """Squared distance of a vertex to the surfaces ``wanted`` near ``facet``, and the facet it is found on."""
+    facets, marker, start, members = surfaces.facets, surfaces.marker, surfaces.start, surfaces.members
+    square, bits, _, _, _ = vertex_to_facet(points, vertex, facets, facet)
     inside = (1 << points.shape[1]) - 1
     while bits != inside:
-        shared = bits
-        corner = surfaces.facets[facet, 0 if bits & 1 else (1 if bits & 2 else 2)]
-        at = facet
-        for k in range(surfaces.start[corner], surfaces.start[corner + 1]):
-            other = surfaces.members[k]
-            if other == at or not wanted[surfaces.marker[other]] or not _holds(surfaces.facets, at, shared, other):
-                continue
-            new_square, new_bits, _, _, _ = vertex_to_facet(points, vertex, surfaces.facets, other)
-            if new_square < square:
-                square, bits, facet = new_square, new_bits, other
+        at, shared = facet, bits
+        corner = _first_corner(facets, at, shared)
+        for k in range(start[corner], start[corner + 1]):
+            other = members[k]
+            if other != at and wanted[marker[other]] and _holds(facets, at, shared, other):
+                new_square, new_bits, _, _, _ = vertex_to_facet(points, vertex, facets, other)
+                if new_square < square:
+                    square, bits, facet = new_square, new_bits, other
         if facet == at:
             break
     return square, facet
 
 
 @njit(cache=True, nogil=True)
-def try_around(points, vertex, surfaces, wanted, square, facet):
-    """What `walk_to_vertex` found, or what is nearer among all facets that touch ``facet``, and so on from there.
-
-    Seen from a concave side a walk ends on every facet that faces the vertex, so that the next must be tried as well.
-    """
-    while True:
-        at = facet
-        for i in range(points.shape[1]):
-            corner = surfaces.facets[at, i]
-            for k in range(surfaces.start[corner], surfaces.start[corner + 1]):
-                other = surfaces.members[k]
-                if other == at or not wanted[surfaces.marker[other]]:
-                    continue
-                new_square = vertex_to_facet(points, vertex, surfaces.facets, other)[0]
-                if new_square < square:
-                    square, facet = new_square, other
-        if facet == at:
-            return square, facet
-
-
-@njit(cache=True, nogil=True)
 def walk_to_facet(points, target, surfaces, wanted, facet):
     """Squared distance of the facet ``target`` to the surfaces ``wanted`` near ``facet``, and where it is found."""
-    square = facet_to_facet(points, surfaces.facets, target, facet)[0]
-    while True:
-        at = facet
-        for i in range(points.shape[1]):
-            corner = surfaces.facets[at, i]
-            for k in range(surfaces.start[corner], surfaces.start[corner + 1]):
-                other = surfaces.members[k]
-                if other == at or not wanted[surfaces.marker[other]]:
-                    continue
-                if boxes_apart(points, surfaces.facets, target, other) >= square:
-                    continue
-                new_square = facet_to_facet(points, surfaces.facets, target, other)[0]
+    facets, marker, start, members = surfaces.facets, surfaces.marker, surfaces.start, surfaces.members
+    square, bits = _facet_to_facet(points, facets, target, facet)
+    inside = (1 << points.shape[1]) - 1
+    while bits != inside:
+        at, shared = facet, bits
+        corner = _first_corner(facets, at, shared)
+        for k in range(start[corner], start[corner + 1]):
+            other = members[k]
+            if other != at and wanted[marker[other]] and _holds(facets, at, shared, other):
+                new_square, new_bits = _facet_to_facet(points, facets, target, other)
                 if new_square < square:
-                    square, facet = new_square, other
+                    square, bits, facet = new_square, new_bits, other
         if facet == at:
-            return square, facet
+            break
+    return square, facet
 
 
 @njit(cache=True, nogil=True)
+def _facet_to_facet(points, facets, target, facet):
+    """Squared distance of two facets, and bits of the corners of the second that carry weight."""
+    square, _, _, _, p, q, r = facet_to_facet(points, facets, target, facet)
+    return square, (p > 0.0) | (q > 0.0) << 1 | (r > 0.0) << 2
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _first_corner(facets, facet, bits):
+    return facets[facet, 0 if bits & 1 else (1 if bits & 2 else 2)]
+
+
+@njit(cache=True, nogil=True, forceinline=True)
 def _holds(facets, facet, bits, other):
     """Whether ``other`` holds all corners of ``facet`` that ``bits`` name."""
     for i in range(facets.shape[1]):

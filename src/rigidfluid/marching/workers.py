@@ -44,7 +44,7 @@ class Workers:
         """All results of ``work`` for all items, in no particular order."""
         count = max(1, min(self._threads, len(items) // FEWEST))
         while len(self._workspaces) < count:
-            self._workspaces.append(new_workspace(self._topology.vertices, len(self._topology.surfaces.facets)))
+            self._workspaces.append(new_workspace(self._topology.vertices))
 
         def share(number: int) -> list[Result]:
             space = self._workspaces[number]

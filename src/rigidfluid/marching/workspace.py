@@ -1,6 +1,6 @@
 """What one march writes on: arrays as long as the mesh has vertices, kept from march to march.
 
-A march leaves them as it found them, except for the vertices that it lists in ``touched``; `reset` puts those back.
+A march leaves ``state`` as it found it, except for the vertices that it lists in ``touched``; `reset` puts those back.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.types import BoolArray, FloatArray
+from rigidfluid.core.types import FloatArray
 
-FAR, TRIAL, KNOWN = np.int8(0), np.int8(1), np.int8(2)
-"""States of a vertex: not reached, in the heap, taken out of it."""
+FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
+"""States of a vertex: not reached, in the heap, reached for good, measured and outside the band."""
 
 
 class Workspace(NamedTuple):
     """Per vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet`` nearest so far.
 
-    ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices that are not FAR.
-    ``concave`` says of each facet that a march starts from whether one that touches it rises above it into the fluid.
+    ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band and from its end
+    those that are BEYOND.
     """
 
     state: NDArray[np.int8]
@@ -30,11 +30,10 @@ class Workspace(NamedTuple):
     heap: NDArray[np.int32]
     heap_key: FloatArray
     touched: NDArray[np.int32]
-    concave: BoolArray
 
 
-def new_workspace(vertices: int, facets: int) -> Workspace:
-    """Space for marches over a mesh of so many ``vertices`` and ``facets``."""
+def new_workspace(vertices: int) -> Workspace:
+    """Space for marches over a mesh of so many ``vertices``."""
     numbers = [np.empty(vertices, np.int32) for _ in range(4)]
     facet, place, heap, touched = numbers
     return Workspace(
@@ -45,5 +44,4 @@ def new_workspace(vertices: int, facets: int) -> Workspace:
         heap,
         np.empty(vertices),
         touched,
-        np.empty(facets, np.bool_),
     )

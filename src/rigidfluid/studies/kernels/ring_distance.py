@@ -61,7 +61,7 @@ class RingDistance(Kernel):
         width = np.inf if self.band_width is None else self.band_width
         if self.threads > 1 and self.accuracy == "exact":
             return partial(field_in_threads, split(mesh, _sectors(mesh, self.threads)), mesh.points, [INNER], width)
-        work = new_workspace(len(mesh.points), len(mesh.facets))
+        work = new_workspace(len(mesh.points))
         return partial(distance_field, Topology.of(mesh), mesh.points, [INNER], width, self.accuracy, work)
 
 

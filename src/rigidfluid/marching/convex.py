@@ -1,0 +1,56 @@
+"""Whether a surface is that of one convex body, seen from outside. Arrays in, answers out."""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def is_convex(points, surfaces, seeds):
+    """Whether no facet of ``seeds`` has a neighbour that rises above its plane into the fluid.
+
+    A closed surface in one piece that is convex at each of its ridges is that of a convex body.
+    """
+    normal = np.empty(points.shape[1])
+    for facet in seeds:
+        if surfaces.across[facet] < 0:
+            return False  # no cell tells the fluid's side
+        _towards_fluid(points, surfaces, facet, normal)
+        corners = surfaces.facets[facet]
+        for i in range(len(corners)):
+            # the corner of the facet beyond the ridge that is not on the ridge
+            vertex = corners[i]
+            for k in range(len(corners)):
+                vertex += surfaces.facets[surfaces.beside[facet, i], k] - corners[k]
+            if _height(points, vertex, corners[0], normal) > 0.0:
+                return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _towards_fluid(points, surfaces, facet, normal):
+    """Write a vector across the facet, of any length, towards the cell it belongs to."""
+    corners = surfaces.facets[facet]
+    a, b = corners[0], corners[1]
+    if len(normal) == 2:
+        normal[0], normal[1] = points[a, 1] - points[b, 1], points[b, 0] - points[a, 0]
+    else:
+        c = corners[2]
+        for k in range(3):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            normal[k] = (points[b, i] - points[a, i]) * (points[c, j] - points[a, j])
+            normal[k] -= (points[b, j] - points[a, j]) * (points[c, i] - points[a, i])
+    if _height(points, surfaces.across[facet], a, normal) < 0.0:
+        normal *= -1.0
+
+
+@njit(cache=True, nogil=True)
+def _height(points, vertex, origin, normal):
+    total = 0.0
+    for k in range(len(normal)):
+        total += (points[vertex, k] - points[origin, k]) * normal[k]
+    return total

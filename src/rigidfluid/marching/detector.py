@@ -1,0 +1,50 @@
+"""What the detectors that march over the mesh have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, final
+
+from rigidfluid.core.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.marching.options import MarchingOptions
+
+
+class MarchingDetector(Detector):
+    """gap = min |x - y| over the facets x and y of two surfaces of the mesh, from a distance field of each body.
+
+    The gap is exact to the facets, whose distance to a smooth surface of curvature radius R is at most h²/(8R).
+
+    Parameters
+    ----------
+    options : MarchingOptions
+        ``accuracy``, ``multiple``, ``threads``.
+    bodies : sequence of Body
+        Shapes of any kind.
+    walls : sequence of Wall
+        The walls that repel.
+
+    Notes
+    -----
+    Van Landeghem et al., arXiv:2402.19093, whose contact points are vertices of the mesh.
+    """
+
+    needs_mesh: ClassVar[bool] = True
+    whole_domain: ClassVar[bool]
+    """Whether the fields go on to the end of the mesh."""
+    Options: ClassVar[type[PartOptions]] = MarchingOptions
+    options: MarchingOptions
+
+    @final
+    def __init__(self, options: MarchingOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        from rigidfluid.marching.contacts import ContactFinder
+
+        super().__init__(options, bodies, walls)
+        how = options.accuracy, options.multiple, self.whole_domain, options.threads
+        self._finder = ContactFinder(bodies, walls, *how)
+
+    @final
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the mesh around the bodies."""
+        assert mesh is not None
+        return self._finder.find(pose, mesh, reach)

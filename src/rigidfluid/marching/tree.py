@@ -1,0 +1,142 @@
+"""A tree of boxes around facets, to find the nearest of them all. Arrays in, numbers out.
+
+The facets lie along a curve that stays near itself (Morton, 1966). Four in a row are a leaf, and node n of the full
+binary tree above holds nodes 2n and 2n + 1, from the root 1 on. So the walk through the tree needs no stack: after a
+right child comes the parent's sibling.
+"""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from rigidfluid.core.types import FloatArray
+from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
+from rigidfluid.marching.topology import Numbers
+
+LEAF = 4
+"""Facets in a leaf."""
+
+
+class Tree(NamedTuple):
+    """``order`` of the facets along the curve, ``boxes`` (nodes, 2, d), the lower and upper corner of each [length]."""
+
+    order: Numbers
+    boxes: FloatArray
+
+
+@njit(cache=True, nogil=True)
+def plant(points, facets, chosen):
+    """The tree of the facets ``chosen``."""
+    order = chosen[np.argsort(_curve(points, facets, chosen))]
+    leaves = 1
+    while leaves * LEAF < len(order):
+        leaves *= 2
+    boxes = np.empty((2 * leaves, 2, points.shape[1]))
+    boxes[:, 0], boxes[:, 1] = np.inf, -np.inf
+    for row in range(len(order)):
+        box = boxes[leaves + row // LEAF]
+        for corner in facets[order[row]]:
+            for k in range(points.shape[1]):
+                box[0, k], box[1, k] = min(box[0, k], points[corner, k]), max(box[1, k], points[corner, k])
+    for node in range(leaves - 1, 0, -1):
+        for k in range(points.shape[1]):
+            boxes[node, 0, k] = min(boxes[2 * node, 0, k], boxes[2 * node + 1, 0, k])
+            boxes[node, 1, k] = max(boxes[2 * node, 1, k], boxes[2 * node + 1, 1, k])
+    return Tree(order, boxes)
+
+
+@njit(cache=True, nogil=True)
+def no_tree(dimension):
+    """A tree of no facets, in which nothing is found."""
+    return Tree(np.empty(0, np.int32), np.empty((0, 2, dimension)))
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def search_to_vertex(points, vertex, facets, tree, square, facet):
+    """``square`` and ``facet``, or what in the tree is nearer to a vertex: least squared distance and where."""
+    order, boxes = tree.order, tree.boxes
+    node = _leaf(points, (vertex,), boxes, 1, square)
+    while node > 0:
+        first = (node - len(boxes) // 2) * LEAF
+        for row in range(first, min(first + LEAF, len(order))):
+            new_square = vertex_to_facet(points, vertex, facets, order[row])[0]
+            if new_square < square:
+                square, facet = new_square, order[row]
+        node = _leaf(points, (vertex,), boxes, _after(node), square)
+    return square, facet
+
+
+@njit(cache=True, nogil=True)
+def search_to_facet(points, target, facets, tree, square, facet):
+    """``square`` and ``facet``, or what in the tree is nearer to the facet ``target``."""
+    order, boxes = tree.order, tree.boxes
+    corners = facets[target, 0], facets[target, 1], facets[target, -1]
+    node = _leaf(points, corners, boxes, 1, square)
+    while node > 0:
+        first = (node - len(boxes) // 2) * LEAF
+        for row in range(first, min(first + LEAF, len(order))):
+            new_square = facet_to_facet(points, facets, target, order[row])[0]
+            if new_square < square:
+                square, facet = new_square, order[row]
+        node = _leaf(points, corners, boxes, _after(node), square)
+    return square, facet
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _leaf(points, corners, boxes, node, square):
+    """The next leaf, from ``node`` on, whose box is nearer to that of the corners than ``square``; 0 at the end."""
+    leaves = len(boxes) // 2
+    while node > 0 and leaves > 0:
+        if _apart(points, corners, boxes, node) >= square:
+            node = _after(node)
+        elif node >= leaves:
+            return node
+        else:
+            node *= 2
+    return 0
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _after(node):
+    """The node after this one and all below it."""
+    while node & 1:
+        node >>= 1
+    return node + (node > 0)
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _apart(points, corners, boxes, node):
+    """Squared distance of the box around some corners and that of a node."""
+    total = 0.0
+    for k in range(points.shape[1]):
+        low = high = points[corners[0], k]
+        for corner in corners:
+            low, high = min(low, points[corner, k]), max(high, points[corner, k])
+        total += max(low - boxes[node, 1, k], boxes[node, 0, k] - high, 0.0) ** 2
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _curve(points, facets, chosen):
+    """Place of each facet along the curve: the bits of its coordinates in turn."""
+    dimension = points.shape[1]
+    middle = np.zeros((len(chosen), dimension))
+    for row in range(len(chosen)):
+        for corner in facets[chosen[row]]:
+            for k in range(dimension):
+                middle[row, k] += points[corner, k]
+    code = np.zeros(len(chosen), np.int64)
+    for k in range(dimension):
+        low, high = middle[:, k].min(), middle[:, k].max()
+        scale = 1023.0 / (high - low) if high > low else 0.0
+        for row in range(len(chosen)):
+            number = int((middle[row, k] - low) * scale)
+            for bit in range(10):
+                code[row] |= (number >> bit & 1) << (bit * dimension + k)
+    return code
