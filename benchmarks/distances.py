@@ -19,15 +19,18 @@ from rigidfluid.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.bench.shells import INNER, shell
 from rigidfluid.bench.timing import fastest
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
+from rigidfluid.core.interfaces import PartOptions
 from rigidfluid.core.rigid import rotation_matrices
 from rigidfluid.core.types import FloatArray, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
+from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.marching.field import distance_field
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace
 
 RADIUS, OUTER, SIZE = 0.1, 2.0, 0.01
 PAIRS = 50
+CLOUD = 200
 
 
 def ring_fields(mesh: Mesh) -> dict[str, tuple[int, Callable[[], object], FloatArray, FloatArray]]:
@@ -83,13 +86,26 @@ def pair_table() -> None:
     places = np.stack([np.zeros((PAIRS, 3)), rng.normal(size=(PAIRS, 3))], axis=1)
     places[:, 1] *= 2.2 / np.linalg.norm(places[:, 1], axis=1, keepdims=True)
     queries = [partial(_coal_gap, *pair) for pair in zip(axes, places, turns, strict=True)]
+    exact = [partial(_exact_gap, *pair) for pair in zip(axes, places, turns, strict=True)]
     naive = [partial(_naive_gap, *pair) for pair in zip(axes, places, turns, strict=True)]
     true = np.array([query() for query in naive])
-    error = np.abs([query() for query in queries] - true).max()
+    error, ours = (np.abs([call() for call in calls] - true).max() for calls in (queries, exact))
     print("\n| gap of two ellipsoids | seconds for a pair | largest error |\n|---|---|---|")
-    for name, calls, worst in (("coal", queries, error), ("rigidfluid, brute_force", naive, 0.0)):
+    rows = [("coal", queries, error), ("rigidfluid, `ellipsoid`, a call for each", exact, ours)]
+    for name, calls, worst in (*rows, ("rigidfluid, `brute_force`", naive, 0.0)):
         seconds = fastest(lambda calls=calls: [call() for call in calls], 1) / PAIRS
         print(f"| {name} | {seconds:.2g} | {f'{worst:.1e}' if worst else 'the reference'} |")
+    seconds = _seconds_of_a_cloud()
+    print(f"| rigidfluid, `ellipsoid`, {CLOUD} bodies in a call | {seconds:.2g} | |")
+
+
+def _seconds_of_a_cloud() -> float:
+    """Of one pair, when all pairs of many ellipsoids are asked for at once."""
+    rng, pairs = np.random.default_rng(1), CLOUD * (CLOUD - 1) // 2
+    bodies = [Ellipsoid(EllipsoidOptions(semi_axes=axes.tolist()), 3) for axes in rng.uniform(0.2, 1.0, (CLOUD, 3))]
+    turns = rng.normal(size=(CLOUD, 4))
+    pose = Pose(rng.uniform(0, 20, (CLOUD, 3)), turns / np.linalg.norm(turns, axis=1, keepdims=True))
+    return fastest(lambda: EllipsoidDetector(PartOptions(), bodies, []).detect(pose, None, np.inf), 5) / pairs
 
 
 def _coal_gap(axes: FloatArray, places: FloatArray, turns: FloatArray) -> float:
@@ -98,6 +114,11 @@ def _coal_gap(axes: FloatArray, places: FloatArray, turns: FloatArray) -> float:
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     coal.distance(shapes[0], poses[0], shapes[1], poses[1], request, result)
     return float(result.min_distance)
+
+
+def _exact_gap(axes: FloatArray, places: FloatArray, turns: FloatArray) -> float:
+    bodies = [Ellipsoid(EllipsoidOptions(semi_axes=semi_axes.tolist()), 3) for semi_axes in axes]
+    return float(EllipsoidDetector(PartOptions(), bodies, []).detect(Pose(places, turns), None, np.inf).gap[0])
 
 
 def _naive_gap(axes: FloatArray, places: FloatArray, turns: FloatArray) -> float:

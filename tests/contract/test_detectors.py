@@ -4,9 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rigidfluid.core.contacts import select
 from rigidfluid.core.interfaces import Detector, PartOptions
-from rigidfluid.core.types import Contacts, IntArray
+from rigidfluid.core.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
+from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
@@ -28,6 +30,14 @@ class TestBruteForceDetector(DetectorContract):
 
     def make_detector(self, arrangement: Arrangement) -> Detector:
         return BruteForceDetector(BruteForceOptions(samples=200), arrangement.bodies, arrangement.walls)
+
+
+class TestEllipsoidDetector(DetectorContract):
+    gap_tolerance = 1e-14
+    point_tolerance = 1e-13
+
+    def make_detector(self, arrangement: Arrangement) -> Detector:
+        return EllipsoidDetector(PartOptions(), arrangement.bodies, arrangement.walls)
 
 
 class TestNarrowBandDetector(DetectorContract):
@@ -68,16 +78,12 @@ def test_facets_of_a_circle_and_a_sphere_are_as_deep_as_theory_says():
 Fault = Callable[[Contacts], Contacts]
 
 
-def rows(contacts: Contacts, chosen: IntArray) -> Contacts:
-    return Contacts(*(getattr(contacts, name)[chosen] for name in Contacts.__slots__))
-
-
 def flipped(contacts: Contacts) -> Contacts:
     return replace(contacts, normal=-contacts.normal)
 
 
 def dropped(contacts: Contacts) -> Contacts:
-    return rows(contacts, np.arange(1, len(contacts)))
+    return select(contacts, np.arange(1, len(contacts)))
 
 
 def enlarged(contacts: Contacts) -> Contacts:
@@ -85,7 +91,7 @@ def enlarged(contacts: Contacts) -> Contacts:
 
 
 def unsorted(contacts: Contacts) -> Contacts:
-    return rows(contacts, np.arange(len(contacts))[::-1])
+    return select(contacts, np.arange(len(contacts))[::-1])
 
 
 def off_the_surface(contacts: Contacts) -> Contacts:
@@ -102,7 +108,7 @@ def exchanged(contacts: Contacts) -> Contacts:
 
 
 def doubled(contacts: Contacts) -> Contacts:
-    return rows(contacts, np.repeat(np.arange(len(contacts)), 2))
+    return select(contacts, np.repeat(np.arange(len(contacts)), 2))
 
 
 def flat(contacts: Contacts) -> Contacts:

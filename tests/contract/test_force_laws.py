@@ -1,11 +1,47 @@
+import numpy as np
 import pytest
 
 from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.forces.centre import CentreLaw, CentreOptions
+from rigidfluid.core.repulsion import Repulsion
+from rigidfluid.core.types import Loads
+from rigidfluid.forces.barrier import BarrierLaw
+from rigidfluid.forces.centre import CentreLaw
+from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
+from rigidfluid.forces.normal import NormalLaw
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 from rigidfluid.testing import ForceLawContract
 
+RANGE = 0.02
+LOADS = Loads(np.array([2.0, 3.0]), np.array([5.0, 0.0]), np.array([1.0, 4.0]), smallest_gap=0.3 * RANGE)
+EPSILONS = {
+    "one epsilon": {"epsilon": 5e-6},
+    "wall epsilon": {"epsilon": 5e-6, "epsilon_wall": 2e-6},
+    "auto": {"epsilon": "auto"},
+    "auto at walls": {"epsilon": 5e-6, "epsilon_wall": "auto"},
+}
 
-class TestCentreLaw(ForceLawContract):
-    @pytest.fixture(params=[None, 2e-6], ids=["one epsilon", "wall epsilon"])
+
+class TestRepulsions(ForceLawContract):
+    @pytest.fixture(params=[CentreLaw, ContactLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
+    def part(self, request: pytest.FixtureRequest) -> type[Repulsion]:
+        return request.param
+
+    @pytest.fixture(params=EPSILONS.values(), ids=EPSILONS)
+    def law(self, part: type[Repulsion], request: pytest.FixtureRequest) -> ForceLaw:
+        return part(part.Options(**request.param), RANGE, LOADS)
+
+
+class TestSpringDashpot(ForceLawContract):
+    @pytest.fixture(
+        params=[{"restitution": 0.6, "friction": 0.4}, {"damping": 30.0, "friction": 0.1, "tangential_damping": 0.5}],
+        ids=["restitution", "damping"],
+    )
     def law(self, request: pytest.FixtureRequest) -> ForceLaw:
-        return CentreLaw(CentreOptions(epsilon=5e-6, epsilon_wall=request.param), range=0.02)
+        return SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, **request.param), RANGE)
+
+
+class TestLubrication(ForceLawContract):
+    @pytest.fixture
+    def law(self) -> ForceLaw:
+        return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), RANGE)

@@ -5,9 +5,9 @@ from itertools import combinations, permutations
 import numpy as np
 from scipy.spatial import Delaunay
 
-from rigidfluid.bodies.unit_sphere import unit_sphere_points
 from rigidfluid.core.topology import boundary_facets
 from rigidfluid.core.types import Mesh
+from rigidfluid.core.unit_sphere import unit_sphere_points
 
 INNER, OUTER = 0, 1
 

@@ -23,6 +23,9 @@ _LAW = """
         def energy(self, contacts):
             return (self.range - contacts.gap) ** 2 / 2
 
+        def stiffness(self, contacts):
+            return np.ones_like(contacts.gap)
+
     @hookimpl
     def rigidfluid_force_laws():
         return [Springy]

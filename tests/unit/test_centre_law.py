@@ -1,20 +1,12 @@
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from touching import contact
 
-from rigidfluid.core.types import Contacts
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 RANGE, EPSILON = 0.02, 5e-6
-
-
-def contact(gap: float, radius_a: float, radius_b: float) -> Contacts:
-    normal = np.array([[0.6, 0.8]])
-    return Contacts(
-        np.array([0]), np.array([1]), gap * normal, np.zeros((1, 2)), normal,
-        np.array([gap]), np.array([radius_a]), np.array([radius_b]),
-    )  # fmt: skip
 
 
 def law(epsilon_wall: float | None = None) -> CentreLaw:
@@ -34,6 +26,12 @@ def test_force_is_the_vector_of_the_centres(gap: float) -> None:
     found = contact(gap, 0.5, 0.3)
     centre_a, centre_b = found.point_a + 0.5 * found.normal, found.point_b - 0.3 * found.normal
     np.testing.assert_allclose(law().force(found), (centre_a - centre_b) * (RANGE - gap) ** 2 / EPSILON)
+
+
+@pytest.mark.parametrize(("radius_b", "touching"), [(0.3, 0.8), (np.inf, 1.0)], ids=["ball", "wall"])
+def test_steepest_at_contact(radius_b: float, touching: float) -> None:
+    expected = RANGE * (2 * touching - RANGE) / EPSILON
+    np.testing.assert_allclose(law().stiffness(contact(0.0, 0.5, radius_b)), expected)
 
 
 def test_wall_has_its_own_stiffness() -> None:

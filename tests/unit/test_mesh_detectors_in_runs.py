@@ -3,6 +3,7 @@
 import pytest
 from mesh_tools import ball, ellipsoid
 
+from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.parts import cheapest_detector
 from rigidfluid.core.run import run
 from rigidfluid.core.scene import Scene
@@ -41,6 +42,8 @@ def test_an_ellipse_falls_and_its_gap_is_recorded_within_the_band():
     history = run(scene(ELLIPSE, {"detector": "narrow_band", "band_width": 0.12}))
     true = run(scene(ELLIPSE, {"detector": "brute_force"}))
     assert history.summary["smallest_gap"] == pytest.approx(true.summary["smallest_gap"], abs=2e-3)
+    exact = run(scene(ELLIPSE, {"detector": "ellipsoid"}))
+    assert exact.summary["smallest_gap"] == pytest.approx(true.summary["smallest_gap"], abs=1e-10)
 
 
 def test_without_a_law_or_a_band_nothing_is_measured():
@@ -49,8 +52,17 @@ def test_without_a_law_or_a_band_nothing_is_measured():
 
 def test_auto_takes_the_cheapest_detector_that_is_exact():
     assert build_system(scene(DISK, LAW)).detector.name == "sphere"
-    assert build_system(scene(ELLIPSE, {})).detector.name == "brute_force"
-    assert cheapest_detector([ellipsoid(0.1, 0.05), ball(0.1)], mesh=True)[0] == "narrow_band"
+    chosen = build_system(scene(ELLIPSE, {}))
+    assert (chosen.detector.name, chosen.detector_why) == ("ellipsoid", "chosen as all bodies are balls or ellipsoids")
+    bodies = [ellipsoid(0.1, 0.05), ball(0.1)]
+    assert [cheapest_detector(bodies, mesh)[0] for mesh in (True, False)] == ["ellipsoid"] * 2
+
+    class Cross(Sphere):
+        name = "cross"
+        radius = None
+
+    bodies.append(Cross(Cross.Options(radius=0.1), 2))
+    assert [cheapest_detector(bodies, mesh)[0] for mesh in (True, False)] == ["narrow_band", "brute_force"]
 
 
 def test_a_detector_that_needs_a_mesh_is_refused_without_one():

@@ -23,7 +23,7 @@ def test_built_in_parts_are_there() -> None:
     registry = Registry.load()
     assert registry.unloaded == ()
     assert {"dry", "scikit-fem"} <= set(registry.names(FLUID_BACKEND))
-    assert {"sphere", "brute_force"} <= set(registry.names(DETECTOR))
+    assert {"sphere", "ellipsoid", "brute_force"} <= set(registry.names(DETECTOR))
     assert {"centre"} <= set(registry.names(FORCE_LAW))
     assert {"sphere", "ellipsoid"} <= set(registry.names(BODY))
 

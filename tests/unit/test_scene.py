@@ -298,7 +298,7 @@ def test_defaults() -> None:
 
 
 def test_detector_for_other_shapes() -> None:
-    assert build_system(Scene.from_dict(changed({"body.1": ELLIPSE, "contact": {}}))).detector.name == "brute_force"
+    assert build_system(Scene.from_dict(changed({"body.1": ELLIPSE, "contact": {}}))).detector.name == "ellipsoid"
 
 
 def test_a_law_for_balls_refuses_other_shapes() -> None:

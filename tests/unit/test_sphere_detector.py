@@ -70,5 +70,5 @@ def test_common_centre_still_has_a_unit_normal() -> None:
 
 def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:
     bodies = [Sphere(SphereOptions(radius=1.0), 2), Ellipsoid(EllipsoidOptions(semi_axes=[1.0, 2.0]), 2)]
-    with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "ellipsoid".*fast_marching'):
+    with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "ellipsoid".*auto'):
         SphereDetector(PartOptions(), bodies, [])

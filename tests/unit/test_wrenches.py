@@ -43,7 +43,7 @@ def test_bodies_among_themselves_gain_no_momentum(dimension: int) -> None:
     assert np.linalg.norm(wrench.torque, axis=1).min() > 0.1
 
 
-def test_each_side_takes_force_and_moment_at_its_own_point() -> None:
+def test_both_sides_take_force_and_moment_half_way_between_their_points() -> None:
     here = np.array([[1.0, 0.0]])
     there = np.array([[2.0, 0.0]])
     one = np.array([1.0])
@@ -51,7 +51,15 @@ def test_each_side_takes_force_and_moment_at_its_own_point() -> None:
     pose = Pose(np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 1)))
     wrench = contact_wrench(contacts, np.array([[0.0, 10.0]]), pose)
     np.testing.assert_allclose(wrench.force, [[0.0, 10.0], [0.0, -10.0]])
-    np.testing.assert_allclose(wrench.torque, [[10.0], [30.0]])
+    np.testing.assert_allclose(wrench.torque, [[15.0], [35.0]])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_forces_along_the_surfaces_turn_nothing_on_the_whole(dimension: int) -> None:
+    contacts, pose = contacts_of([0, 0, 1], [1, 2, 2], dimension), pose_of(dimension)
+    wrench = contact_wrench(contacts, np.random.default_rng(3).normal(size=(3, dimension)), pose)
+    about_origin = moment(pose.position, wrench.force) + wrench.torque
+    np.testing.assert_allclose(about_origin.sum(axis=0), 0.0, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

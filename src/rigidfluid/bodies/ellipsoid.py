@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.ellipsoid_distance import closest_point
-from rigidfluid.bodies.unit_sphere import unit_sphere_points
 from rigidfluid.core.interfaces import Body, PartOptions
 from rigidfluid.core.types import FloatArray
+from rigidfluid.core.unit_sphere import unit_sphere_points
 from rigidfluid.errors import SceneError
 
 
@@ -54,7 +54,12 @@ class Ellipsoid(Body):
                 f"a list of {dimension} lengths",
                 "Give half of each full axis, one per dimension.",
             )
-        self.semi_axes = np.array(options.semi_axes)
+        self._semi_axes = np.array(options.semi_axes)
+
+    @property
+    def semi_axes(self) -> FloatArray:
+        """Half of each full axis (d,) [length]."""
+        return self._semi_axes
 
     @property
     def volume(self) -> float:

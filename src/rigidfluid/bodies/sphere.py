@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.bodies.unit_sphere import unit_sphere_points
 from rigidfluid.core.interfaces import Body, PartOptions
 from rigidfluid.core.types import FloatArray
+from rigidfluid.core.unit_sphere import unit_sphere_points
 
 
 class SphereOptions(PartOptions):

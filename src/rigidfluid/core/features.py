@@ -71,6 +71,8 @@ def _contact(system: System) -> Iterator[Feature]:
     else:
         yield Feature("contact forces", True, f"law {system.law.name!r} below a gap of {system.law.range}")
         yield Feature("repelling walls", bool(system.walls), names)
+        parts = np.bincount(system.assembly, minlength=1)[system.assembly] > 1
+        yield _count("components that do not repel each other", parts, "parts of an articulated body")
     yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
     yield _measured(system.reach)
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from rigidfluid.core.types import (
@@ -21,7 +22,9 @@ from rigidfluid.core.types import (
     FloatArray,
     FluidProblem,
     FluidState,
+    Loads,
     Mesh,
+    Motion,
     Pose,
     Step,
     Twist,
@@ -78,6 +81,11 @@ class Body(Part):
         """The radius if the shape is a ball, else None [length]."""
         return None
 
+    @property
+    def semi_axes(self) -> FloatArray | None:
+        """Semi-axes (d,) along the axes of its frame if the shape is an ellipsoid or a ball, else None [length]."""
+        return None if self.radius is None else np.full(self.dimension, self.radius)
+
     @abstractmethod
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the surface, (N, d) for ``points`` (N, d) [length]."""
@@ -127,7 +135,9 @@ class Detector(Part):
 
 
 class ForceLaw(Part):
-    """A short-range repulsion.
+    """A short-range force between two surfaces: one that an energy gives, and one that takes energy out.
+
+    All forces act on ``body_a``, half-way between the contact points; ``core/wrenches`` applies the reaction.
 
     Parameters
     ----------
@@ -135,21 +145,39 @@ class ForceLaw(Part):
         The law's own keys of the ``[contact]`` table.
     range : float
         The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold, for laws that choose their strength by it.
     """
 
     balls_only: ClassVar[bool] = False
+    conservative: ClassVar[bool] = True
+    """Whether it has an energy; else force, energy and stiffness are zero."""
+    dissipative: ClassVar[bool] = False
+    """Whether it has damping; else damping is zero."""
+    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "repels"
+    """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
+    StepRejected."""
 
-    def __init__(self, options: PartOptions, range: float) -> None:
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         self.options = options
         self.range = range
+        self.loads = loads
 
     @abstractmethod
     def force(self, contacts: Contacts) -> FloatArray:
-        """Force on ``body_a`` at ``point_a``, (m, d) [force]."""
+        """Force F = -dU/dgap · n on ``body_a``, (m, d) [force]."""
 
     @abstractmethod
     def energy(self, contacts: Contacts) -> FloatArray:
-        """Potential energy of each contact, (m,), zero at range [energy]."""
+        """Potential energy U of each contact, (m,), zero at range [energy]."""
+
+    @abstractmethod
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """-d(F·n)/dgap of each contact, (m,) [force/length]."""
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
+        return np.zeros_like(contacts.normal)
 
 
 class FluidBackend(Part):

@@ -86,14 +86,16 @@ def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
     Returns
     -------
     str, str
-        The name, and the reason: ``sphere`` for balls alone; else ``narrow_band``, exact to the facets, on a mesh, and
-        ``brute_force`` without.
+        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids; else
+        ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"
+    if all(body.semi_axes is not None for body in bodies):
+        return "ellipsoid", "all bodies are balls or ellipsoids"
     if mesh:
-        return "narrow_band", "not all bodies are balls, and there is a mesh and a law"
-    return "brute_force", "not all bodies are balls, and there is no mesh or no law"
+        return "narrow_band", "not all bodies are ellipsoids, and there is a mesh and a law"
+    return "brute_force", "not all bodies are ellipsoids, and there is no mesh or no law"
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:

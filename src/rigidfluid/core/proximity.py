@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from rigidfluid.core import broad_phase
+from rigidfluid.core.contacts import select
 from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
-from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
 
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``."""
+    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``.
+
+    Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
+    """
     count = len(system.bodies)
     near = system.detector.detect(pose, mesh, system.reach)
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, near.gap <= _law_range(system)), gaps
+    inside = paired & (system.assembly[near.body_a] == system.assembly[np.minimum(near.body_b, count - 1)])
+    return select(near, (near.gap <= _law_range(system)) & ~inside), gaps
 
 
 def _law_range(system: System) -> float:
@@ -42,8 +45,3 @@ def travel(system: System, start: Pose, end: Pose) -> FloatArray:
     moved = np.linalg.norm(end.position - start.position, axis=1)
     reach = np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])
     return np.asarray(moved + reach * angle_between(start.orientation, end.orientation))
-
-
-def select(contacts: Contacts, chosen: BoolArray) -> Contacts:
-    """The contacts where ``chosen`` (m,) is true."""
-    return replace(contacts, **{name: getattr(contacts, name)[chosen] for name in Contacts.__slots__})

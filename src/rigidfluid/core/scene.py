@@ -125,6 +125,9 @@ class BodyTable(_OpenTable):
     angular_velocity: Angular | None = Field(
         default=None, description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"
     )
+    part_of: str | None = Field(
+        default=None, description="Name of the articulated body it is a part of; parts of one body do not repel"
+    )
     fixed: bool = Field(default=False, description="Whether the body is held in place")
     prescribed: PrescribedTable | None = Field(default=None, description="A motion that the fluid cannot change")
 

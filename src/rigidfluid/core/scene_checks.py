@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.boundary import face_table, face_velocity, faces, inward_normal
 from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.interfaces import FluidBackend
@@ -41,6 +42,7 @@ def check_tables(scene: Scene) -> None:
     for number, body in enumerate(scene.body):
         _check_body(scene, body, f"body.{number}")
     _check_names(scene)
+    _check_assemblies(scene)
     _check_contact(scene)
     _check_sizes(scene)
 
@@ -153,6 +155,16 @@ def _check_names(scene: Scene) -> None:
         if count > 1:
             last = len(names) - 1 - names[::-1].index(name)
             raise SceneError(f"body.{last}.name", repr(name), "a name that no other body or face has", "Rename it.")
+
+
+def _check_assemblies(scene: Scene) -> None:
+    """A name that only one body gives is a slip of the pen."""
+    wholes = [body.part_of for body in scene.body]
+    for number, whole in enumerate(wholes):
+        if whole is not None and wholes.count(whole) == 1:
+            others = sorted({name for name in wholes if name is not None and name != whole})
+            remedy = suggestion(whole, others) or "Give it to the other parts too, or remove it."
+            raise SceneError(f"body.{number}.part_of", repr(whole), "a name that at least two bodies give", remedy)
 
 
 def _check_contact(scene: Scene) -> None:

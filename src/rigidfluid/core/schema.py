@@ -9,7 +9,7 @@ from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Entry,
 
 _TABLES = {FLUID_BACKEND: "FluidTable", BODY: "BodyTable", DETECTOR: "ContactTable", FORCE_LAW: "ContactTable"}
 # The parts that a table means where it names none.
-_UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "brute_force"), BODY: (), FORCE_LAW: ()}
+_UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "ellipsoid", "brute_force"), BODY: (), FORCE_LAW: ()}
 
 
 def json_schema() -> dict[str, Any]:

@@ -13,7 +13,7 @@ from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.parts import Parts, resolve
 from rigidfluid.core.prescribed import prescribed_motion
 from rigidfluid.core.scene import Scene
-from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, FluidProblem, Pose, Twist, Wall
+from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, FluidProblem, IntArray, Pose, Twist, Wall
 
 _MOST_PAIRS = 1000
 
@@ -25,6 +25,7 @@ class System:
     ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
     ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²], ``weight`` (n, d) submerged,
     (m - ρV)g [force]. ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
+    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     """
@@ -40,6 +41,7 @@ class System:
     weight: FloatArray
     pose: Pose
     twist: Twist
+    assembly: IntArray
     controlled: BoolArray
     controlled_twist: Callable[[float], FloatArray]
     backend: FluidBackend
@@ -86,6 +88,7 @@ def build_system(scene: Scene) -> System:
         weight=_submerged_weight(scene, parts.bodies, mass),
         pose=pose,
         twist=_initial_twist(scene, controlled, motion(0.0)),
+        assembly=_assemblies(scene),
         controlled=controlled,
         controlled_twist=motion,
         backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
@@ -94,6 +97,12 @@ def build_system(scene: Scene) -> System:
         reach=_reach(detector, law),
         law=law,
     )
+
+
+def _assemblies(scene: Scene) -> IntArray:
+    """A number for each body, the same for parts of one articulated body (n,)."""
+    wholes: list[str | int] = [body.part_of or number for number, body in enumerate(scene.body)]
+    return np.array([wholes.index(whole) for whole in wholes], dtype=np.int64)
 
 
 def _initial_pose(scene: Scene) -> Pose:

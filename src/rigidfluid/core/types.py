@@ -69,6 +69,32 @@ class Contacts:
 
 
 @dataclass(frozen=True, slots=True)
+class Motion:
+    """How the surfaces of each contact move, for forces that depend on it.
+
+    ``velocity`` (m, d) of a relative to b, both as rigid bodies, half-way between the contact points [length/time];
+    ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass].
+    """
+
+    velocity: FloatArray
+    mass: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Loads:
+    """What the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
+
+    Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
+    submerged weight [force]; ``speed`` (n,), expected at the impact [length/time].
+    """
+
+    mass: FloatArray
+    weight: FloatArray
+    speed: FloatArray
+    smallest_gap: float
+
+
+@dataclass(frozen=True, slots=True)
 class Wall:
     """A flat wall that repels: ``surface`` number, a ``point`` (d,) on it, unit ``normal`` (d,) into the fluid."""
 

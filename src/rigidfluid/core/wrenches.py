@@ -9,14 +9,16 @@ from rigidfluid.core.types import Contacts, FloatArray, IntArray, Pose, Wrench
 
 
 def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wrench:
-    """Net wrench of all contacts on each body, +F at point_a on a and -F at point_b on b, torque (point - x) × F.
+    """Net wrench of all contacts on each body, +F on a and -F on b, both at X = (X_a + X_b)/2, torque (X - x) × F.
+
+    At one point, so that forces along the surfaces as well leave the total angular momentum as it is.
 
     Parameters
     ----------
     contacts : Contacts
         The m contacts.
     force_on_a : (m, d) array
-        Force F on ``body_a`` at ``point_a`` [force].
+        Force F on ``body_a`` [force].
     pose : Pose
         Pose of the n bodies, x the positions.
 
@@ -27,9 +29,9 @@ def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wr
     """
     count, dimension = pose.position.shape
     wrench = Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
-    on_body = contacts.body_b < count
-    _apply(wrench, pose, contacts.body_a, contacts.point_a, force_on_a)
-    _apply(wrench, pose, contacts.body_b[on_body], contacts.point_b[on_body], -force_on_a[on_body])
+    point, on_body = 0.5 * (contacts.point_a + contacts.point_b), contacts.body_b < count
+    _apply(wrench, pose, contacts.body_a, point, force_on_a)
+    _apply(wrench, pose, contacts.body_b[on_body], point[on_body], -force_on_a[on_body])
     return wrench
 
 

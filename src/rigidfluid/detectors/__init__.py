@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.core.interfaces import Detector
 from rigidfluid.detectors.brute_force import BruteForceDetector
+from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.detectors.sphere import SphereDetector
@@ -13,4 +14,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_detectors() -> list[type[Detector]]:
     """The built-in detectors."""
-    return [SphereDetector, NarrowBandDetector, FastMarchingDetector, BruteForceDetector]
+    return [SphereDetector, EllipsoidDetector, NarrowBandDetector, FastMarchingDetector, BruteForceDetector]

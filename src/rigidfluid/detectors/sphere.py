@@ -8,8 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.broad_phase import near_pairs
+from rigidfluid.core.contacts import in_order, select
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
 
 
@@ -48,7 +49,7 @@ class SphereDetector(Detector):
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the positions alone."""
         found = [_ball_contacts(pose.position, self._radii, reach)]
         found += [_wall_contacts(pose.position, self._radii, wall, reach) for wall in self.walls]
-        return _sorted(found)
+        return in_order(found)
 
 
 def _radius(index: int, body: Body) -> float:
@@ -58,7 +59,7 @@ def _radius(index: int, body: Body) -> float:
         "contact.detector",
         f'"sphere" with body.{index} of type "{body.name}"',
         "balls only",
-        'Use detector = "fast_marching", or "brute_force", for this shape.',
+        'Use detector = "auto", which takes one for these shapes.',
     )
 
 
@@ -78,7 +79,7 @@ def _ball_contacts(position: FloatArray, radii: FloatArray, reach: float) -> Con
         radius_a=radii[body_a],
         radius_b=radii[body_b],
     )
-    return _take(contacts, gap <= reach)
+    return select(contacts, gap <= reach)
 
 
 def _wall_contacts(position: FloatArray, radii: FloatArray, wall: Wall, reach: float) -> Contacts:
@@ -94,19 +95,10 @@ def _wall_contacts(position: FloatArray, radii: FloatArray, wall: Wall, reach: f
         radius_a=radii,
         radius_b=np.full(len(radii), np.inf),
     )
-    return _take(contacts, contacts.gap <= reach)
+    return select(contacts, contacts.gap <= reach)
 
 
 def _unit(line: FloatArray, distance: FloatArray) -> FloatArray:
     """Directions; the first axis for balls with a common centre, where any direction will do."""
     together = (distance == 0)[:, None]
     return np.where(together, np.eye(1, line.shape[1]), line / np.where(together, 1.0, distance[:, None]))
-
-
-def _take(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
-    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
-
-
-def _sorted(parts: Sequence[Contacts]) -> Contacts:
-    merged = Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
-    return _take(merged, np.lexsort((merged.body_b, merged.body_a)))

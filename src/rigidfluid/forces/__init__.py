@@ -1,13 +1,18 @@
-"""The repulsion laws that come with rigidfluid."""
+"""The force laws that come with rigidfluid."""
 
 from __future__ import annotations
 
 from rigidfluid.core.interfaces import ForceLaw
+from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
+from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.lubrication import LubricationLaw
+from rigidfluid.forces.normal import NormalLaw
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 from rigidfluid.hookspecs import hookimpl
 
 
 @hookimpl
 def rigidfluid_force_laws() -> list[type[ForceLaw]]:
     """The built-in force laws."""
-    return [CentreLaw]
+    return [CentreLaw, ContactLaw, NormalLaw, BarrierLaw, SpringDashpotLaw, LubricationLaw]

@@ -104,6 +104,14 @@ class BodyContract:
         expected = np.linalg.norm(points, axis=1) - body.radius
         np.testing.assert_allclose(body.signed_distance(points), expected, rtol=0, atol=self._length(body))
 
+    def test_semi_axes_are_given_for_ellipsoids_alone(self, body: Body) -> None:
+        """Semi-axes a mean Σ (x_i/a_i)² = 1 on the surface."""
+        if body.semi_axes is None:
+            return
+        assert body.semi_axes.shape == (body.dimension,)
+        scaled = np.linalg.norm(body.sample_surface(200) / body.semi_axes, axis=1)
+        np.testing.assert_allclose(scaled, 1.0, rtol=0, atol=self.tolerance * np.ptp([0.0, *1 / body.semi_axes]))
+
     def test_cad_shape_is_the_same_shape(self, body: Body) -> None:
         """The CAD shape has the exact volume and centre, and its mesh has its boundary on the surface."""
         occ = pytest.importorskip("netgen.occ")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import ClassVar
 
@@ -9,18 +10,26 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.types import Contacts, FloatArray, IntArray
+from rigidfluid.core.rigid import moment
+from rigidfluid.core.types import Contacts, FloatArray, IntArray, Motion, Pose
+from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.errors import StepRejected
+
+Column = Callable[[Contacts], FloatArray]
 
 
 class ForceLawContract:
-    """A repulsion that is zero beyond its range and has an energy.
+    """A short-range force that an energy gives, with or without damping, or damping alone.
 
     Override the fixture ``law``. Where a law needs other contacts than two balls and a ball at a wall, override
-    ``make_contacts``.
+    ``make_contacts``; both balls are bodies 0 and 1, the wall is surface 2. What a law does in overlap, and whether it
+    has an energy and damping at all, it declares itself: ``overlap``, ``conservative``, ``dissipative``.
     """
 
     gap_fractions: ClassVar[tuple[float, ...]] = (0.03, 0.2, 0.5, 0.8, 0.97)
     """The gaps, as parts of the range, at which the law is evaluated."""
+    overlap_fractions: ClassVar[tuple[float, ...]] = (-0.02, -0.3)
+    """The gaps in overlap, as parts of the range."""
 
     @pytest.fixture
     def law(self) -> ForceLaw:
@@ -37,13 +46,15 @@ class ForceLawContract:
         return _ball_contacts(np.tile(gap, 2), np.repeat([0.4, np.inf], len(gap)), dimension)
 
     def test_zero_beyond_range(self, law: ForceLaw, dimension: int) -> None:
-        """No force and no energy from the range on."""
+        """No force of any kind, no energy and no stiffness from the range on."""
         contacts = self.make_contacts(law.range * np.array([1.0, 1.001, 2.0, 1e6]), dimension)
-        assert not law.force(contacts).any()
-        assert not law.energy(contacts).any()
+        for column in (law.force, law.energy, law.stiffness):
+            assert not column(contacts).any()
+        assert not law.damping(contacts, _motion(contacts)).any()
 
     def test_continuous_at_range(self, law: ForceLaw, dimension: int) -> None:
         """Force and energy fade out as the gap grows to the range."""
+        _needs_energy(law)
         force = np.linalg.norm(law.force(self._contacts_of(law, (0.5, 1 - 1e-9), dimension)), axis=1)
         energy = law.energy(self._contacts_of(law, (0.5, 1 - 1e-9), dimension))
         assert np.all(force[1::2] < 1e-6 * force[::2])
@@ -51,46 +62,140 @@ class ForceLawContract:
 
     def test_repels_along_the_normal(self, law: ForceLaw, dimension: int) -> None:
         """The force on a points along the normal, away from b."""
+        _needs_energy(law)
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
-        force = law.force(contacts)
-        along = np.sum(force * contacts.normal, axis=1)
+        along = _along(law, contacts)
         assert np.all(along > 0)
-        np.testing.assert_allclose(force, along[:, None] * contacts.normal, rtol=0, atol=1e-12 * along.max())
+        np.testing.assert_allclose(
+            law.force(contacts), along[:, None] * contacts.normal, rtol=0, atol=1e-12 * along.max()
+        )
 
     def test_force_is_minus_the_slope_of_the_energy(self, law: ForceLaw, dimension: int) -> None:
         """F = -dU/dgap, by a central difference of fourth order."""
-        contacts = self._contacts_of(law, self.gap_fractions, dimension)
-        along = np.sum(law.force(contacts) * contacts.normal, axis=1)
-        step = 1e-3 * law.range
-        near = law.energy(_moved(contacts, step)) - law.energy(_moved(contacts, -step))
-        wide = law.energy(_moved(contacts, 2 * step)) - law.energy(_moved(contacts, -2 * step))
-        np.testing.assert_allclose(along, -(8 * near - wide) / (12 * step), rtol=1e-6)
+        contacts = self._contacts_of(law, self._finite_fractions(law), dimension)
+        np.testing.assert_allclose(_along(law, contacts), -_slope(law.energy, contacts, law.range), rtol=1e-6)
 
-    def test_turns_with_the_frame(self, law: ForceLaw, dimension: int) -> None:
-        """Turning the contacts turns the force and leaves the energy."""
+    def test_stiffness_is_minus_the_slope_of_the_force(self, law: ForceLaw, dimension: int) -> None:
+        """Stiffness = -dF/dgap, by a central difference of fourth order."""
+        contacts = self._contacts_of(law, self._finite_fractions(law), dimension)
+        slope = _slope(lambda moved: _along(law, moved), contacts, law.range)
+        found = law.stiffness(contacts)
+        np.testing.assert_allclose(found, -slope, rtol=1e-6, atol=1e-9 * np.abs(found).max())
+
+    def test_does_in_overlap_what_it_declares(self, law: ForceLaw, dimension: int) -> None:
+        """Repels or attracts, in either case without a jump at contact, or has an infinite energy and refuses."""
+        _needs_energy(law)
+        overlapping = self._contacts_of(law, self.overlap_fractions, dimension)
+        if law.overlap == "unbounded":
+            assert np.all(np.isposinf(law.energy(overlapping)))
+            for column in (law.force, law.stiffness):
+                with pytest.raises(StepRejected):
+                    column(overlapping)
+            near = law.energy(self._contacts_of(law, (1e-2, 1e-4, 1e-8, 1e-16), dimension)).reshape(-1, 4)
+            assert np.all(np.diff(near, axis=1) > 0)
+            return
+        sign = 1 if law.overlap == "repels" else -1
+        assert np.all(sign * _along(law, overlapping) > 0)
+        both = (-1e-9, 1e-9)
+        for column in (law.energy, law.stiffness, lambda contacts: _along(law, contacts)):
+            before, after = column(self._contacts_of(law, both, dimension)).reshape(-1, 2).T
+            largest = np.abs(column(self._contacts_of(law, self.gap_fractions, dimension))).max()
+            np.testing.assert_allclose(before, after, rtol=0, atol=1e-6 * largest)
+
+    def test_has_the_kinds_of_force_that_it_declares(self, law: ForceLaw, dimension: int) -> None:
+        """An energy if conservative, damping if dissipative, one of both at least, and zeros where it has none."""
+        assert law.conservative or law.dissipative
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
+        for column in (law.force, law.energy, law.stiffness):
+            assert column(contacts).any() == law.conservative
+        assert law.damping(contacts, _motion(contacts)).any() == law.dissipative
+
+    def test_damping_never_adds_energy(self, law: ForceLaw, dimension: int) -> None:
+        """Damping · velocity ≤ 0 whatever the velocity, and no damping at rest."""
+        contacts = self._contacts_of(law, self._finite_fractions(law), dimension)
+        for seed in range(20):
+            motion = _motion(contacts, seed)
+            power = np.sum(law.damping(contacts, motion) * motion.velocity, axis=1)
+            assert np.all(power <= 1e-12 * np.abs(power).max())
+        still = replace(motion, velocity=np.zeros_like(motion.velocity))
+        assert not law.damping(contacts, still).any()
+
+    def test_turns_and_moves_with_the_frame(self, law: ForceLaw, dimension: int) -> None:
+        """Turning the contacts turns the forces, and nothing else changes; where they are changes nothing."""
+        contacts = self._contacts_of(law, self.gap_fractions, dimension)
+        motion = _motion(contacts)
         rotation = np.linalg.qr(np.random.default_rng(5).normal(size=(dimension, dimension)))[0]
+        shift = np.random.default_rng(6).normal(size=dimension)
         turned = replace(
             contacts,
-            point_a=contacts.point_a @ rotation.T,
-            point_b=contacts.point_b @ rotation.T,
+            point_a=contacts.point_a @ rotation.T + shift,
+            point_b=contacts.point_b @ rotation.T + shift,
             normal=contacts.normal @ rotation.T,
         )
-        force = law.force(contacts)
-        np.testing.assert_allclose(law.force(turned), force @ rotation.T, rtol=0, atol=1e-12 * np.abs(force).max())
-        np.testing.assert_allclose(law.energy(turned), law.energy(contacts), rtol=1e-12)
+        turned_motion = replace(motion, velocity=motion.velocity @ rotation.T)
+        _assert_close(law.force(turned), law.force(contacts) @ rotation.T)
+        _assert_close(law.damping(turned, turned_motion), law.damping(contacts, motion) @ rotation.T)
+        _assert_close(law.energy(turned), law.energy(contacts))
+        _assert_close(law.stiffness(turned), law.stiffness(contacts))
+
+    def test_swapping_the_pair_turns_the_force_round(self, law: ForceLaw, dimension: int) -> None:
+        """Which of two bodies is called a makes no difference."""
+        contacts = self._pairs_of(law, dimension)
+        motion = _motion(contacts)
+        swapped = Contacts(
+            body_a=contacts.body_b,
+            body_b=contacts.body_a,
+            point_a=contacts.point_b,
+            point_b=contacts.point_a,
+            normal=-contacts.normal,
+            gap=contacts.gap,
+            radius_a=contacts.radius_b,
+            radius_b=contacts.radius_a,
+        )
+        _assert_close(law.force(swapped), -law.force(contacts))
+        _assert_close(law.damping(swapped, replace(motion, velocity=-motion.velocity)), -law.damping(contacts, motion))
+        _assert_close(law.energy(swapped), law.energy(contacts))
+        _assert_close(law.stiffness(swapped), law.stiffness(contacts))
+
+    def test_a_pair_gains_no_momentum(self, law: ForceLaw, dimension: int) -> None:
+        """With ``core/wrenches``, all forces of the law have no resultant and no moment about any point."""
+        contacts = self._pairs_of(law, dimension)
+        count = 1 + int(max(contacts.body_a.max(), contacts.body_b.max()))
+        position = np.random.default_rng(8).normal(size=(count, dimension))
+        pose = Pose(position, np.tile(np.eye(1, 1 if dimension == 2 else 4), (len(position), 1)))
+        force = law.force(contacts) + law.damping(contacts, _motion(contacts))
+        wrench = contact_wrench(contacts, force, pose)
+        about = np.random.default_rng(9).normal(size=dimension)
+        turning = wrench.torque + moment(position - about, wrench.force)
+        scale = np.abs(force).max()
+        np.testing.assert_allclose(wrench.force.sum(axis=0), 0.0, rtol=0, atol=1e-12 * scale)
+        np.testing.assert_allclose(turning.sum(axis=0), 0.0, rtol=0, atol=1e-11 * scale)
 
     def test_contacts_do_not_influence_each_other(self, law: ForceLaw, dimension: int) -> None:
         """The order and the number of contacts change nothing, and none at all is allowed."""
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
+        motion = _motion(contacts)
         order = np.random.default_rng(7).permutation(len(contacts))[: len(contacts) // 2]
-        np.testing.assert_allclose(law.force(_taken(contacts, order)), law.force(contacts)[order], rtol=1e-14)
-        nothing = _taken(contacts, order[:0])
-        assert law.force(nothing).shape == (0, dimension)
-        assert law.energy(nothing).shape == (0,)
+        for chosen in (order, order[:0]):
+            some, moving = _taken(contacts, chosen), Motion(motion.velocity[chosen], motion.mass[chosen])
+            for column in (law.force, law.energy, law.stiffness):
+                np.testing.assert_allclose(column(some), column(contacts)[chosen], rtol=1e-14)
+            np.testing.assert_allclose(law.damping(some, moving), law.damping(contacts, motion)[chosen], rtol=1e-14)
 
     def _contacts_of(self, law: ForceLaw, fractions: tuple[float, ...], dimension: int) -> Contacts:
         return self.make_contacts(law.range * np.array(fractions), dimension)
+
+    def _finite_fractions(self, law: ForceLaw) -> tuple[float, ...]:
+        return self.gap_fractions if law.overlap == "unbounded" else (*self.gap_fractions, *self.overlap_fractions)
+
+    def _pairs_of(self, law: ForceLaw, dimension: int) -> Contacts:
+        contacts = self._contacts_of(law, self.gap_fractions, dimension)
+        return _taken(contacts, np.flatnonzero(~np.isinf(contacts.radius_b)))
+
+
+def _needs_energy(law: ForceLaw) -> None:
+    if not law.conservative:
+        pytest.skip("the law has no energy")
 
 
 def _ball_contacts(gap: FloatArray, radius_b: FloatArray, dimension: int) -> Contacts:
@@ -110,9 +215,31 @@ def _ball_contacts(gap: FloatArray, radius_b: FloatArray, dimension: int) -> Con
     )
 
 
-def _moved(contacts: Contacts, distance: float) -> Contacts:
-    return replace(contacts, point_a=contacts.point_a + distance * contacts.normal, gap=contacts.gap + distance)
+def _motion(contacts: Contacts, seed: int = 3) -> Motion:
+    random = np.random.default_rng(seed)
+    return Motion(random.normal(size=contacts.normal.shape), random.uniform(0.1, 10.0, len(contacts)))
+
+
+def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
+    return np.asarray(np.sum(law.force(contacts) * contacts.normal, axis=1))
+
+
+def _slope(column: Column, contacts: Contacts, law_range: float) -> FloatArray:
+    """d/dgap by a central difference of fourth order, with steps that are short beside the way to contact and range."""
+    step = 1e-3 * np.minimum(np.abs(contacts.gap), law_range - contacts.gap)
+    near = column(_moved(contacts, step)) - column(_moved(contacts, -step))
+    wide = column(_moved(contacts, 2 * step)) - column(_moved(contacts, -2 * step))
+    return np.asarray((8 * near - wide) / (12 * step))
+
+
+def _moved(contacts: Contacts, distance: FloatArray) -> Contacts:
+    point_a = contacts.point_a + distance[:, None] * contacts.normal
+    return replace(contacts, point_a=point_a, gap=contacts.gap + distance)
 
 
 def _taken(contacts: Contacts, chosen: IntArray) -> Contacts:
     return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
+
+
+def _assert_close(found: FloatArray, expected: FloatArray) -> None:
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

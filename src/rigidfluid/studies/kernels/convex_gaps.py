@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.bodies.unit_sphere import unit_sphere_points
 from rigidfluid.core.rigid import rotation_matrices
 from rigidfluid.core.types import FloatArray, Pose
+from rigidfluid.core.unit_sphere import unit_sphere_points
 
 FINEST = 1e-9
 """Step of the directions at the end; the gap's error goes with its square."""

@@ -1,0 +1,81 @@
+"""A law for any shape that no finite energy overcomes."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.errors import StepRejected
+
+
+class BarrierOptions(RepulsionOptions):
+    """Keys of the ``[contact]`` table with law ``barrier``; ε is in length/force."""
+
+
+class BarrierLaw(Repulsion):
+    """U = -(1/ε)(gap - range)² ln(gap/range) for 0 < gap ≤ range, infinite at contact.
+
+    With w = range - gap and l = ln(range/gap), F = [2 w l + w²/gap]/ε along the normal and the stiffness is
+    [2 l + 4 w/gap + w²/gap²]/ε: U has two continuous derivatives at range.
+
+    Parameters
+    ----------
+    options : BarrierOptions
+        ``epsilon`` and ``epsilon_wall`` [length/force].
+    range : float
+        The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold; needed by ``auto``.
+
+    Raises
+    ------
+    SceneError
+        If ``auto`` cannot be computed.
+    StepRejected
+        By force and stiffness where the gap is not positive.
+
+    Notes
+    -----
+    The barrier of incremental potential contact: Li et al., ACM Trans. Graph. 39 (2020) 49,
+    doi:10.1145/3386569.3392425.
+    """
+
+    name: ClassVar[str] = "barrier"
+    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "unbounded"
+    Options: ClassVar[type[PartOptions]] = BarrierOptions
+
+    def unit_force(self, contacts: Contacts) -> FloatArray:
+        """2 w l + w²/gap, (m,) [length]."""
+        _refuse_overlap(contacts)
+        closeness = self.closeness(contacts)
+        # log1p, since the logarithm of a ratio near one loses digits
+        return closeness * (2.0 * np.log1p(closeness / contacts.gap) + closeness / contacts.gap)
+
+    def unit_energy(self, contacts: Contacts) -> FloatArray:
+        """w² l, (m,), infinite where the gap is not positive [length²]."""
+        closeness = self.closeness(contacts)
+        ratio = np.full(len(contacts), np.inf)
+        np.divide(closeness, contacts.gap, out=ratio, where=contacts.gap > 0.0)
+        return np.asarray(closeness**2 * np.log1p(ratio))
+
+    def unit_stiffness(self, contacts: Contacts) -> FloatArray:
+        """2 l + 4 w/gap + w²/gap², (m,) [1]."""
+        _refuse_overlap(contacts)
+        ratio = self.closeness(contacts) / contacts.gap
+        return 2.0 * np.log1p(ratio) + ratio * (4.0 + ratio)
+
+
+def _refuse_overlap(contacts: Contacts) -> None:
+    if np.all(contacts.gap > 0.0):
+        return
+    first = int(np.argmin(contacts.gap))
+    raise StepRejected(
+        f"surfaces {contacts.body_a[first]} and {contacts.body_b[first]}",
+        f"a gap of {contacts.gap[first]:.3e}",
+        "a positive gap with the barrier law",
+        "Shorten the step.",
+    )

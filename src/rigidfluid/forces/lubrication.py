@@ -1,0 +1,100 @@
+"""The resistance of a film that is too thin for the mesh."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from rigidfluid.core.balls import require_balls
+from rigidfluid.core.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.types import Contacts, FloatArray, Loads, Motion
+from rigidfluid.errors import SceneError
+
+
+class LubricationOptions(PartOptions):
+    """Keys of the ``[contact]`` table with law ``lubrication``.
+
+    ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
+    grows no further [length].
+    """
+
+    viscosity: float = Field(gt=0, description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]")
+    cutoff: float = Field(gt=0, description="Gap below which the resistance grows no further [length]")
+
+
+class LubricationLaw(ForceLaw):
+    """F = -6πμ R² v_n (1/h - 1/range) n in 3D, -3√2 πμ v_n [(R/h)^(3/2) - (R/range)^(3/2)] n in 2D, for gap < range.
+
+    h = max(gap, cutoff), R = r_a r_b/(r_a + r_b), the ball's radius at a flat wall, and v_n the relative velocity along
+    the normal. The terms are the leading ones of a squeezed film; what they give at range is taken off, as the mesh
+    resolves a film as thick as that: range is to be the gap where the mesh begins to fail. The force takes energy out
+    and holds nothing at rest, so its own force, energy and stiffness are zero.
+
+    Parameters
+    ----------
+    options : LubricationOptions
+        ``viscosity`` and ``cutoff``.
+    range : float
+        The gap above which the mesh resolves the film [length].
+    loads : Loads, optional
+        Not read.
+
+    Raises
+    ------
+    SceneError
+        If the cutoff is not below the range, or a surface is neither a ball nor a flat wall.
+
+    Notes
+    -----
+    3D: Cox, Int. J. Multiphase Flow 1 (1974) 343, doi:10.1016/0301-9322(74)90019-6. 2D: the limit of a small gap of
+    Jeffrey and Onishi, Q. J. Mech. Appl. Math. 34 (1981) 129, doi:10.1093/qjmam/34.2.129.
+    """
+
+    name: ClassVar[str] = "lubrication"
+    balls_only: ClassVar[bool] = True
+    conservative: ClassVar[bool] = False
+    dissipative: ClassVar[bool] = True
+    Options: ClassVar[type[PartOptions]] = LubricationOptions
+    options: LubricationOptions
+
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        super().__init__(options, range, loads)
+        if self.options.cutoff >= range:
+            allowed = f"a length below contact.range = {range}"
+            raise SceneError("contact.cutoff", self.options.cutoff, allowed, "Shorten it, or widen the range.")
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Zero, (m, d): a film at rest pushes nothing [force]."""
+        return np.zeros_like(contacts.normal)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Zero, (m,) [energy]."""
+        return np.zeros_like(contacts.gap)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """Zero, (m,) [force/length]."""
+        return np.zeros_like(contacts.gap)
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """The resistance of the film to squeezing and parting, on ``body_a``, (m, d) [force]."""
+        dimension = contacts.normal.shape[1]
+        film = np.clip(contacts.gap, self.options.cutoff, self.range)
+        radius = _effective_radius(contacts)
+        beyond_mesh = _resistance(radius, film, dimension) - _resistance(radius, self.range, dimension)
+        speed = np.sum(motion.velocity * contacts.normal, axis=1)
+        return np.asarray(-(self.options.viscosity * beyond_mesh * speed)[:, None] * contacts.normal)
+
+
+def _resistance(radius: FloatArray, film: FloatArray | float, dimension: int) -> FloatArray:
+    """Force over μ v_n, (m,) [length in 3D, 1 in 2D]."""
+    if dimension == 2:
+        return np.asarray(3.0 * np.sqrt(2.0) * np.pi * (radius / film) ** 1.5)
+    return np.asarray(6.0 * np.pi * radius**2 / film)
+
+
+def _effective_radius(contacts: Contacts) -> FloatArray:
+    """R = 1/(1/r_a + 1/r_b), (m,) [length]."""
+    require_balls(contacts, LubricationLaw.name)
+    return np.asarray(1.0 / (1.0 / contacts.radius_a + 1.0 / contacts.radius_b))

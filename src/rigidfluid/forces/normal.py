@@ -1,0 +1,53 @@
+"""A law for any shape that grows all the way: a force along the unit normal."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.types import Contacts, FloatArray
+
+
+class NormalOptions(RepulsionOptions):
+    """Keys of the ``[contact]`` table with law ``normal``; ε is in length²/force."""
+
+
+class NormalLaw(Repulsion):
+    """F = (1/ε)(range - gap)² n for gap ≤ range, and on in overlap.
+
+    With w = range - gap, U = w³/(3 ε) and the stiffness is 2 w/ε.
+
+    Parameters
+    ----------
+    options : NormalOptions
+        ``epsilon`` and ``epsilon_wall`` [length²/force].
+    range : float
+        The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold; needed by ``auto``.
+
+    Raises
+    ------
+    SceneError
+        If ``auto`` cannot be computed.
+
+    Notes
+    -----
+    The laws of Van Landeghem et al., arXiv 2402.19093, with a vector of length one in place of theirs.
+    """
+
+    name: ClassVar[str] = "normal"
+    Options: ClassVar[type[PartOptions]] = NormalOptions
+
+    def unit_force(self, contacts: Contacts) -> FloatArray:
+        """w², (m,) [length²]."""
+        return self.closeness(contacts) ** 2
+
+    def unit_energy(self, contacts: Contacts) -> FloatArray:
+        """w³/3, (m,) [length³]."""
+        return self.closeness(contacts) ** 3 / 3
+
+    def unit_stiffness(self, contacts: Contacts) -> FloatArray:
+        """2 w, (m,) [length]."""
+        return 2.0 * self.closeness(contacts)

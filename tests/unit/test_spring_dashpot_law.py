@@ -1,0 +1,81 @@
+import numpy as np
+import pytest
+from pydantic import ValidationError
+from scipy.integrate import solve_ivp
+from touching import NORMAL, contact
+
+from rigidfluid.core.types import FloatArray, Motion
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
+
+RANGE, STIFFNESS, GAP = 0.02, 1e4, 0.005
+ALONG = np.array([[-0.8, 0.6]])
+
+
+def law(**options: float) -> SpringDashpotLaw:
+    return SpringDashpotLaw(SpringDashpotOptions(stiffness=STIFFNESS, **options), RANGE)
+
+
+def push(law: SpringDashpotLaw, velocity: FloatArray, mass: float = 1.0) -> FloatArray:
+    return law.damping(contact(GAP), Motion(velocity, np.array([mass])))
+
+
+def speed_after(law: SpringDashpotLaw, mass: float, speed: float) -> float:
+    """Of a dry head-on impact, from the integrated equation of motion."""
+
+    def rate(_: float, state: FloatArray) -> list[float]:
+        touching = contact(state[0])
+        force = law.force(touching) + law.damping(touching, Motion(state[1] * NORMAL, np.array([mass])))
+        return [state[1], float(force[0] @ NORMAL[0]) / mass]
+
+    def parted(_: float, state: FloatArray) -> float:
+        return float(state[0] - RANGE)
+
+    parted.terminal, parted.direction = True, 1  # type: ignore[attr-defined]
+    end = 10 * np.sqrt(mass / STIFFNESS)
+    # from just inside, as the dashpot does not act outside
+    start = [RANGE * (1 - 1e-12), -speed]
+    found = solve_ivp(rate, (0, end), start, method="DOP853", rtol=1e-11, atol=1e-14, events=parted)
+    return float(found.y_events[0][0, 1])
+
+
+@pytest.mark.parametrize("restitution", [0.05, 0.5, 0.9, 1.0])
+@pytest.mark.parametrize(("mass", "speed"), [(1.0, 1.0), (1e-3, 0.1), (40.0, 0.03)])
+def test_impact_ends_with_the_restitution_asked_for(restitution: float, mass: float, speed: float) -> None:
+    assert speed_after(law(restitution=restitution), mass, speed) == pytest.approx(restitution * speed, rel=1e-7)
+
+
+def test_the_given_coefficient_is_taken() -> None:
+    np.testing.assert_allclose(push(law(damping=7.0), 3.0 * NORMAL, mass=5.0), -21.0 * NORMAL)
+
+
+def test_without_a_dashpot_nothing_is_taken_out() -> None:
+    assert not push(law(friction=0.5), NORMAL + ALONG).any()
+
+
+def test_friction_is_viscous_where_it_is_slow_and_coulomb_where_it_is_fast() -> None:
+    rough = law(damping=7.0, friction=0.3, tangential_damping=0.5)
+    np.testing.assert_allclose(push(rough, 2.0 * ALONG), -0.5 * 7.0 * 2.0 * ALONG)
+    np.testing.assert_allclose(push(rough, 1e6 * ALONG), -0.3 * STIFFNESS * (RANGE - GAP) * ALONG)
+
+
+@pytest.mark.parametrize("approach", [-2.0, 2.0, 200.0])
+def test_friction_is_limited_by_the_whole_normal_force(approach: float) -> None:
+    rough = law(damping=7.0, friction=0.3)
+    pressing = abs(STIFFNESS * (RANGE - GAP) - 7.0 * approach)
+    expected = -7.0 * approach * NORMAL - 0.3 * pressing * ALONG
+    np.testing.assert_allclose(push(rough, approach * NORMAL + 1e6 * ALONG), expected)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"restitution": 0.0},
+        {"restitution": 1.1},
+        {"damping": -1.0},
+        {"friction": -0.1},
+        {"restitution": 0.5, "damping": 1.0},
+    ],
+)
+def test_options_refuse_what_has_no_meaning(keys: dict[str, float]) -> None:
+    with pytest.raises(ValidationError):
+        SpringDashpotOptions(stiffness=1.0, **keys)
