@@ -92,7 +92,9 @@ def test_band_and_threads_keep_the_error() -> None:
     everywhere = error_of(RingDistance, size=0.05, norm="mean")
     assert error_of(RingDistance, size=0.05, norm="mean", threads=3) == pytest.approx(everywhere, rel=1e-12)
     assert error_of(RingDistance, size=0.05, band_width=0.2) <= error_of(RingDistance, size=0.05)
-    assert error_of(RingDistance, size=0.05, norm="mean", band_width=0.2) != everywhere
+    band = {"size": 0.05, "norm": "mean", "band_width": 0.2}
+    assert error_of(RingDistance, **band) != everywhere
+    assert error_of(RingDistance, **band, threads=3) == pytest.approx(error_of(RingDistance, **band), rel=1e-12)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

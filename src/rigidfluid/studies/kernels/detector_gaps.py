@@ -101,7 +101,7 @@ class DetectorGaps(Kernel):
         bounds, errors = semi_axes.max(axis=1), []
         for a, b in combinations(range(len(semi_axes)), 2):
             apart = np.linalg.norm(pose.position[a] - pose.position[b]) - bounds[a] - bounds[b]
-            true = true_gap(semi_axes, pose, a, b) if apart <= self.reach or (a, b) in found else np.inf
+            true = true_gap(semi_axes, pose, a, b) if apart <= self.reach else np.inf
             if true <= self.reach or (a, b) in found:
                 errors.append(abs(found.get((a, b), self.reach) - min(true, self.reach)))
         return errors
