@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
+from rigidfluid.core.contacts import select
 from rigidfluid.core.proximity import surroundings
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.system import build_system
@@ -35,6 +36,7 @@ def chain(*wholes, x=(0.2, 0.41, 0.62), mesh=False, **contact):
 def pairs(scene):
     system = build_system(scene)
     contacts, gaps = surroundings(system, system.pose, None)
+    contacts = select(contacts, contacts.gap <= system.law.range)
     return list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True)), gaps
 
 

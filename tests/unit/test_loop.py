@@ -58,7 +58,7 @@ def test_all_levels_are_tried(monkeypatch):
     tried = []
 
     def refuse(*arguments):
-        tried.append(arguments[-1])
+        tried.append(arguments[-2])
         raise StepRejected("x", "y", "z", "Mend it.")
 
     monkeypatch.setattr(loop, "attempt", refuse)

@@ -9,7 +9,7 @@ from rigidfluid.backends.scikit_fem.constraint import Constraint, rigid_velocity
 from rigidfluid.backends.scikit_fem.discretisation import kinetic_energy, mass_times
 from rigidfluid.backends.scikit_fem.space import TaylorHood
 from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.step import predicted
+from rigidfluid.core.time_scheme import predict_pose
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
@@ -44,7 +44,9 @@ def test_both_levels_are_carried_over(spinning):
     problem = spinning.system.backend.problem
     energy = kinetic_energy(problem, space, before.mesh.points, before.fluid["velocity"])
     spinning.mover._asks = lambda *_: True
-    after = spinning.mover.adapted(before, predicted(before, 0.004))
+    after = spinning.mover.adapted(
+        before, predict_pose(before.pose, before.twist, before.past_twist, 0.004, before.past_step)
+    )
     assert after.mesh is not before.mesh
     new = on(spinning, after.mesh)
     levels = (

@@ -12,13 +12,22 @@ from rigidfluid.core.types import FloatArray, Pose, Twist
 
 @dataclass(frozen=True, slots=True)
 class Power:
-    """Rates at one time [energy/time]: of gravity, of what enters by the faces, of the hands that drive controlled
-    bodies, and of viscous dissipation."""
+    """Rates at one time [energy/time]: of what enters by the faces, of what drives bodies through the fluid, and of
+    viscous dissipation."""
 
-    gravity: float = 0.0
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """Done in one step [energy]: by gravity, by what drives bodies against contacts, and what the dampers of contacts
+    took."""
+
+    gravity: float = 0.0
+    control: float = 0.0
+    contact_loss: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +35,8 @@ class Ledger:
     """Sums since the start [energy], and what is stored now.
 
     Stored: ``kinetic`` (fluid and bodies), ``contact``. In: ``gravity``, ``boundary``, ``control``. Out:
-    ``dissipation``, ``transfer_loss`` (by re-meshing). ``initial`` was stored at the start; ``power`` is now's.
+    ``dissipation``, ``contact_loss`` (by dampers of contacts), ``transfer_loss`` (by re-meshing).
+    ``initial`` was stored at the start; ``power`` is now's.
     """
 
     kinetic: float
@@ -36,6 +46,7 @@ class Ledger:
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
+    contact_loss: float = 0.0
     transfer_loss: float = 0.0
     power: Power = Power()
 
@@ -43,7 +54,8 @@ class Ledger:
     def residual(self) -> float:
         """What the balance does not account for: in - out - (stored now - stored at the start)."""
         incoming = self.gravity + self.boundary + self.control
-        return incoming - self.dissipation - self.transfer_loss - (self.kinetic + self.contact - self.initial)
+        outgoing = self.dissipation + self.contact_loss + self.transfer_loss
+        return incoming - outgoing - (self.kinetic + self.contact - self.initial)
 
     @property
     def relative_residual(self) -> float:
@@ -51,7 +63,7 @@ class Ledger:
         passed = max(abs(self.gravity) + abs(self.boundary) + abs(self.control), self.kinetic, self.initial)
         return self.residual / passed if passed > 0 else 0.0
 
-    def after(self, step: float, power: Power, kinetic: float, contact: float) -> Ledger:
+    def after(self, step: float, power: Power, work: Work, kinetic: float, contact: float) -> Ledger:
         """The ledger one step later, rates integrated by the trapezoidal rule."""
 
         def total(name: str) -> float:
@@ -62,10 +74,11 @@ class Ledger:
             self,
             kinetic=kinetic,
             contact=contact,
-            gravity=total("gravity"),
+            gravity=self.gravity + work.gravity,
             boundary=total("boundary"),
-            control=total("control"),
+            control=total("control") + work.control,
             dissipation=total("dissipation"),
+            contact_loss=self.contact_loss + work.contact_loss,
             power=power,
         )
 

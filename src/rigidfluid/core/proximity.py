@@ -8,11 +8,12 @@ from rigidfluid.core import broad_phase
 from rigidfluid.core.contacts import select
 from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.errors import StepRejected
 
 
 def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts within the law's range, and each body's nearest gap (n,), infinite beyond ``system.reach``.
+    """The contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
 
     Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
     """
@@ -22,12 +23,25 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    inside = paired & (system.assembly[near.body_a] == system.assembly[np.minimum(near.body_b, count - 1)])
-    return select(near, (near.gap <= _law_range(system)) & ~inside), gaps
+    return select(near, may_repel(system, near)), gaps
 
 
-def _law_range(system: System) -> float:
-    return system.law.range if system.law else 0.0
+def may_repel(system: System, contacts: Contacts) -> BoolArray:
+    """Which contacts (m,) are not between parts of one articulated body."""
+    count = len(system.bodies)
+    other = system.assembly[np.minimum(contacts.body_b, count - 1)]
+    return np.asarray((contacts.body_b >= count) | (system.assembly[contacts.body_a] != other))
+
+
+def refuse_overlap(surface: str, gap: float) -> None:
+    """Raise StepRejected if the ``gap`` of a body [length] is none."""
+    if gap <= 0.0:
+        raise StepRejected(
+            f"body {surface}",
+            f"a gap of {gap:.3e}",
+            "a positive gap to every other surface",
+            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
+        )
 
 
 def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:

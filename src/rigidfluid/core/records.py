@@ -14,7 +14,10 @@ Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]
 """Rows by table name."""
 
-LEDGER_COLUMNS = ("kinetic", "contact", "gravity", "boundary", "control", "dissipation", "transfer_loss", "residual")
+LEDGER_COLUMNS = (
+    *("kinetic", "contact", "gravity", "boundary", "control"),
+    *("dissipation", "contact_loss", "transfer_loss", "residual"),
+)
 
 
 def columns(dimension: int) -> dict[str, tuple[str, ...]]:
@@ -71,7 +74,7 @@ def _body_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
 
 def _contact_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     near = state.contacts
-    for i in range(len(near)):
+    for i in np.flatnonzero(near.gap <= system.law.range) if system.law else ():
         names = (system.surfaces[near.body_a[i]], system.surfaces[near.body_b[i]])
         vectors = np.concatenate([near.point_a[i], near.point_b[i], near.normal[i]]).tolist()
         yield (*stamp, *names, *vectors, float(near.gap[i]))

@@ -132,6 +132,11 @@ def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
     return np.asarray(rotation @ inertia @ np.swapaxes(rotation, -1, -2))
 
 
+def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
+    """Inverse inertia in the lab frame, (R I Rᵀ)⁻¹ = R I⁻¹ Rᵀ, (n, k, k), arguments as for `lab_inertia`."""
+    return lab_inertia(np.asarray(np.linalg.inv(inertia), dtype=np.float64), orientation)
+
+
 def _planar_matrices(angle: FloatArray) -> FloatArray:
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)

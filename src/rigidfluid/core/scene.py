@@ -140,6 +140,11 @@ class ContactTable(_OpenTable):
     )
     law: str | None = Field(default=None, description="Name of a force law; no contact force if not given")
     range: Positive | None = Field(default=None, description="Gap above which the law is zero [length]")
+    substeps: int | None = Field(
+        default=None,
+        ge=1,
+        description="Substeps of contacts in each step; as many as they need, and no more, if not given [1]",
+    )
 
 
 class MeshTable(_Table):

@@ -6,14 +6,15 @@ import json
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.energy import Ledger, Power
+from rigidfluid.core.contact_path import BodiesPath, answered, follow
+from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
 from rigidfluid.core.mesh_adaptation import Mover, reference_of
 from rigidfluid.core.proximity import least_gaps, surroundings, travel
@@ -21,13 +22,20 @@ from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.state import State
-from rigidfluid.core.step import CLOSEST_APPROACH, attempt, bodies_energy, contact_energy, gravity_power, predicted
+from rigidfluid.core.step import CLOSEST_APPROACH, attempt, bodies_energy, contact_energy
 from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.summary import summarise
 from rigidfluid.core.system import System, build_system
-from rigidfluid.core.types import Wrench
+from rigidfluid.core.types import Pose
+from rigidfluid.core.wrenches import nothing
 from rigidfluid.core.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.errors import OutputError, StepError, StepRejected
+
+MOST_CORRECTIONS = 3
+"""A step with a blow is tried so many times to learn how much fluid moves with the body."""
+
+INERTNESS_TOLERANCE = 0.1
+"""Relative error of that mass which is good enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,35 +129,53 @@ class Simulation:
 
     def _advance(self) -> None:
         """One accepted step: the longest that is allowed, halved until it succeeds."""
-        level = self._first_level()
+        level, path = self._first_level()
         while True:
             try:
-                self.state = self._tried(level)
+                path = path or self._path(level)
+                self.state = self._tried(level, path)
             except StepRejected as rejection:
                 self.rejected += 1
-                level += 1
+                level, path = level + 1, None
                 if level > self.clock.levels:
                     raise self._stuck(rejection) from rejection
             else:
                 return
 
-    def _tried(self, level: int) -> State:
+    def _tried(self, level: int, path: BodiesPath) -> State:
         with self.watch("mesh"):
-            state = self.mover.adapted(self.state, predicted(self.state, self.clock.size(level)))
+            state = self.mover.adapted(self.state, path.pose)
             self.remeshes += state is not self.state
             self.state = state
-        return attempt(self.system, self.clock, self.mover, self.watch, self.state, level)
+        for _ in range(MOST_CORRECTIONS):
+            candidate = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
+            inertness = answered(self.system, self.state, path, candidate.twist)
+            if np.allclose(inertness, self.state.inertness, rtol=INERTNESS_TOLERANCE):
+                break
+            self.state = replace(self.state, inertness=inertness)
+            path = self._path(level)
+        return candidate
 
-    def _first_level(self) -> int:
-        """The longest step on the clock's grid that does not close a gap too fast."""
+    def _path(self, level: int) -> BodiesPath:
+        with self.watch("contact"):
+            return follow(self.system, self.state, self.clock.time(self.state.tick), self.clock.size(level))
+
+    def _first_level(self) -> tuple[int, BodiesPath | None]:
+        """The longest step on the clock's grid that closes no gap too fast for the mesh in it, and the way it takes."""
         level = self.clock.longest_level(self.state.tick, self.state.level)
-        with self.watch("detect"):
-            while level < self.clock.levels and self._closes_too_fast(level):
-                level += 1
-        return level
+        while level < self.clock.levels:
+            try:
+                path = self._path(level)
+            except StepRejected:
+                break
+            if not self._closes_too_fast(path.pose):
+                return level, path
+            level += 1
+        return level, None
 
-    def _closes_too_fast(self, level: int) -> bool:
-        pose = predicted(self.state, self.clock.size(level))
+    def _closes_too_fast(self, pose: Pose) -> bool:
+        if self.state.mesh is None:
+            return False
         moved = travel(self.system, self.state.pose, pose)
         before = least_gaps(self.system, self.state.pose, self.state.gaps)
         if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
@@ -158,7 +184,8 @@ class Simulation:
             mesh = self.mover.moved(self.state, pose) if self.system.detector.needs_mesh else None
         except StepRejected:
             return True
-        _, gaps = surroundings(self.system, pose, mesh)
+        with self.watch("detect"):
+            _, gaps = surroundings(self.system, pose, mesh)
         return bool((gaps < CLOSEST_APPROACH * before).any())
 
     def _smallest_gap(self) -> float:
@@ -211,7 +238,7 @@ class Simulation:
 
 
 def _initial_state(system: System, mover: Mover) -> State:
-    zero = Wrench(np.zeros_like(system.twist.velocity), np.zeros_like(system.twist.angular_velocity))
+    zero = nothing(system.pose)
     mesh = mover.first_mesh()
     contacts, gaps = surroundings(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
@@ -228,10 +255,11 @@ def _initial_state(system: System, mover: Mover) -> State:
         reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
         fluid=fluid,
         contacts=contacts,
+        inertness=np.ones(len(gaps)),
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored, power=Power(gravity=gravity_power(system, system.twist))),
+        ledger=Ledger(kinetic, stored, kinetic + stored),
     )
 
 

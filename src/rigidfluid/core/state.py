@@ -34,7 +34,8 @@ class State:
     """An accepted state.
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
-    a fluid); the wrenches are those that led to the present twist.
+    a fluid). ``inertness`` (n,): how many times its mass and known added mass each body showed in its latest blow. The
+    wrenches are those that led to the present twist.
     """
 
     tick: int
@@ -46,6 +47,7 @@ class State:
     mesh: Mesh | None
     reference: Reference | None
     fluid: FluidState
+    inertness: FloatArray
     contacts: Contacts
     gaps: FloatArray
     hydrodynamic_wrench: Wrench

@@ -5,28 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.energy import Power, kinetic_energy
+from rigidfluid.core.contact_path import BodiesPath
+from rigidfluid.core.energy import Power, Work, kinetic_energy
 from rigidfluid.core.mesh_adaptation import Mover
-from rigidfluid.core.proximity import surroundings
+from rigidfluid.core.proximity import refuse_overlap, surroundings
 from rigidfluid.core.state import Past, State
 from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.system import System
-from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
+from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
-from rigidfluid.core.wrenches import contact_wrench
-from rigidfluid.errors import StepRejected
 
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
 
 
-def predicted(state: State, size: float) -> Pose:
-    """Where the bodies are after a step of this size [time]."""
-    return predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
-
-
-def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int) -> State:
-    """The candidate state one step of this level later.
+def attempt(
+    system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int, path: BodiesPath
+) -> State:
+    """The candidate state one step of this level later, the bodies at the end of ``path``.
 
     Raises
     ------
@@ -35,15 +31,15 @@ def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state:
     """
     size = clock.size(level)
     time = clock.time(state.tick + clock.ticks(level))
-    pose = predicted(state, size)
+    pose = path.pose
     with watch("move mesh"):
         mesh = mover.moved(state, pose)
     with watch("detect"):
         contacts, gaps = surroundings(system, pose, mesh)
-        _refuse_overlap(system, gaps)
-        pushed = _contact_wrench(system, contacts, pose)
+        nearest = int(np.argmin(gaps))
+        refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
     with watch("advance"):
-        step = _step(system, state, time, size, pose, mesh, pushed)
+        step = _step(system, state, time, size, path, mesh)
         advance = system.backend.advance(state.fluid, state.mesh, step)
     return State(
         tick=state.tick + clock.ticks(level),
@@ -55,13 +51,15 @@ def attempt(system: System, clock: Clock, mover: Mover, watch: Stopwatch, state:
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
+        inertness=state.inertness,
         contacts=contacts,
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
-        contact_wrench=pushed,
+        contact_wrench=Wrench(path.impulse.force / size, path.impulse.torque / size),
         ledger=state.ledger.after(
             size,
-            _power(system, advance, pushed),
+            _power(system, advance),
+            _work(system, state, path, advance.twist),
             advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
@@ -79,21 +77,13 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(system.law.energy(contacts))) if system.law and len(contacts) else 0.0
 
 
-def _contact_wrench(system: System, contacts: Contacts, pose: Pose) -> Wrench:
-    """Zero without any work where nothing is near."""
-    if system.law is None or len(contacts) == 0:
-        return Wrench(np.zeros_like(system.twist.velocity), np.zeros_like(system.twist.angular_velocity))
-    return contact_wrench(contacts, system.law.force(contacts), pose)
-
-
-def _step(
-    system: System, state: State, time: float, size: float, pose: Pose, mesh: Mesh | None, pushed: Wrench
-) -> Step:
-    derivative = derivative_weights(size, state.past_step)
+def _step(system: System, state: State, time: float, size: float, path: BodiesPath, mesh: Mesh | None) -> Step:
+    derivative, pose = derivative_weights(size, state.past_step), path.pose
     poses, twists = [state.pose], [state.twist]
     if state.past is not None:
         poses.append(state.past.pose)
         twists.append(state.past.twist)
+    pushed = _mean_push(state, path, derivative)
     wrench = Wrench(pushed.force + system.weight, pushed.torque)
     mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     return Step(
@@ -109,35 +99,36 @@ def _step(
     )
 
 
-def _power(system: System, advance: Advance, pushed: Wrench) -> Power:
-    """The hands that drive controlled bodies work against the fluid and the contacts."""
-    twist, fluid = advance.twist, advance.hydrodynamic_wrench
-    driven = _rate(fluid, twist) + _rate(pushed, twist)
-    return Power(
-        gravity=gravity_power(system, twist),
-        boundary=advance.boundary_power,
-        control=-float(driven[system.controlled].sum()),
-        dissipation=advance.dissipation,
+def _mean_push(state: State, path: BodiesPath, derivative: FloatArray) -> Wrench:
+    """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
+
+    It is what differencing momentum less the impulses received so far comes to: a blow shorter than the step changes
+    the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
+    """
+    latest, before = state.contact_wrench, state.past_step or 0.0
+    return Wrench(
+        derivative[0] * path.impulse.force - derivative[2] * before * latest.force,
+        derivative[0] * path.impulse.torque - derivative[2] * before * latest.torque,
     )
 
 
-def gravity_power(system: System, twist: Twist) -> float:
-    """Of the submerged weight of the free bodies [energy/time]."""
-    return float(np.sum((system.weight * twist.velocity)[~system.controlled]))
+def _power(system: System, advance: Advance) -> Power:
+    """What enters by the faces, what drives bodies through the fluid, and what the fluid dissipates."""
+    driven = _rate(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
+    return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation)
+
+
+def _work(system: System, state: State, path: BodiesPath, twist: Twist) -> Work:
+    """Of the submerged weight of the free bodies, of the hands against the contacts, and of dampers in contacts."""
+    fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
+    mean = Twist(
+        0.5 * (state.twist.velocity + twist.velocity), 0.5 * (state.twist.angular_velocity + twist.angular_velocity)
+    )
+    held = -_rate(path.impulse, mean)
+    return Work(float(fallen[~system.controlled].sum()), float(held[system.controlled].sum()), path.dissipated)
 
 
 def _rate(wrench: Wrench, twist: Twist) -> FloatArray:
     return np.asarray(
         np.sum(wrench.force * twist.velocity, axis=1) + np.sum(wrench.torque * twist.angular_velocity, axis=1)
     )
-
-
-def _refuse_overlap(system: System, gaps: FloatArray) -> None:
-    body = int(np.argmin(gaps))
-    if gaps[body] <= 0.0:
-        raise StepRejected(
-            f"body {system.surfaces[body]}",
-            f"a gap of {gaps[body]:.3e}",
-            "a positive gap to every other surface",
-            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
-        )

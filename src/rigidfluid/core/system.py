@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.added_mass import added_inertia, added_mass
 from rigidfluid.core.boundary import conditions, face_planes, faces
 from rigidfluid.core.geometry_checks import check_geometry
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
@@ -23,10 +24,12 @@ class System:
     """Everything that stays the same while a scene runs.
 
     ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
-    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²], ``weight`` (n, d) submerged,
-    (m - ρV)g [force]. ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
+    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d) and
+    ``added_inertia`` (n, k, k): what a fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
+    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
+    ``substeps``: of contacts in a step, None where they follow from the contacts.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     """
 
@@ -37,6 +40,8 @@ class System:
     lower: FloatArray
     upper: FloatArray
     mass: FloatArray
+    added_mass: FloatArray
+    added_inertia: FloatArray
     inertia: FloatArray
     weight: FloatArray
     pose: Pose
@@ -49,6 +54,7 @@ class System:
     detector_why: str
     reach: float
     law: ForceLaw | None
+    substeps: int | None
 
 
 def build_system(scene: Scene) -> System:
@@ -72,6 +78,7 @@ def build_system(scene: Scene) -> System:
     parts, boundary = resolve(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
+    fluid = (scene.fluid.density or 0.0) if scene.fluid.model == "navier-stokes" else 0.0
     pose, motion = _initial_pose(scene), prescribed_motion(scene)
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
     check_geometry(scene, parts, pose)
@@ -84,6 +91,8 @@ def build_system(scene: Scene) -> System:
         lower=np.array(scene.domain.lower),
         upper=np.array(scene.domain.upper),
         mass=mass,
+        added_mass=fluid * np.array([added_mass(body) for body in parts.bodies]),
+        added_inertia=fluid * np.array([added_inertia(body) for body in parts.bodies]),
         inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
         weight=_submerged_weight(scene, parts.bodies, mass),
         pose=pose,
@@ -96,6 +105,7 @@ def build_system(scene: Scene) -> System:
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
         law=law,
+        substeps=scene.contact.substeps,
     )
 
 

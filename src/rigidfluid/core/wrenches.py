@@ -27,12 +27,17 @@ def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wr
     Wrench
         Force and torque on the n bodies; what a wall takes is dropped.
     """
-    count, dimension = pose.position.shape
-    wrench = Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
+    wrench, count = nothing(pose), len(pose.position)
     point, on_body = 0.5 * (contacts.point_a + contacts.point_b), contacts.body_b < count
     _apply(wrench, pose, contacts.body_a, point, force_on_a)
     _apply(wrench, pose, contacts.body_b[on_body], point[on_body], -force_on_a[on_body])
     return wrench
+
+
+def nothing(pose: Pose) -> Wrench:
+    """The wrench of no contact at all on bodies at ``pose``."""
+    count, dimension = pose.position.shape
+    return Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
 
 
 def _apply(wrench: Wrench, pose: Pose, body: IntArray, point: FloatArray, force: FloatArray) -> None:

@@ -1,0 +1,154 @@
+"""How bodies move between contacts: freely through nothing, or carried along by a fluid that is solved once a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from rigidfluid.core.free_rotation import rotate_freely
+from rigidfluid.core.rigid import inverse_lab_inertia, lab_inertia, rotate
+from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+
+
+class Movement(Protocol):
+    """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
+
+    pose: Pose
+
+    @property
+    def twist(self) -> Twist:
+        """How they move now."""
+
+    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for bodies that are driven [1/mass]."""
+
+    @property
+    def inverse_inertia(self) -> FloatArray:
+        """(R I Rᵀ)⁻¹ (n, k, k), zero for bodies that are driven [1/(mass·length²)]."""
+
+    def kick(self, wrench: Wrench, time: float) -> None:
+        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``."""
+
+    def drift(self, time: float) -> None:
+        """Change the pose as the twist does in ``time``."""
+
+
+class FreeMovement:
+    """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
+
+    Parameters
+    ----------
+    pose, twist : Pose, Twist
+        At the start.
+    mass : (n,) array
+        Masses [mass].
+    inertia : (n, k, k) array
+        In each body's frame [mass·length²].
+    weight : (n, d) array
+        W, constant [force].
+    controlled : (n,) array
+        Where the twist is given.
+    controlled_twist : callable
+        From a time since the start to the twist (n, d+k) of driven bodies.
+    """
+
+    def __init__(
+        self,
+        pose: Pose,
+        twist: Twist,
+        mass: FloatArray,
+        inertia: FloatArray,
+        weight: FloatArray,
+        controlled: BoolArray,
+        controlled_twist: Callable[[float], FloatArray],
+    ) -> None:
+        self.pose = pose
+        self._free = ~controlled[:, None]
+        self._mass, self._inertia, self._weight = mass, inertia, weight
+        self._given, self._time = controlled_twist, 0.0
+        self._driven = bool(controlled.any())
+        self._velocity = twist.velocity.copy()
+        spin = lab_inertia(inertia, pose.orientation)
+        self._momentum = np.einsum("nij,nj->ni", spin, twist.angular_velocity)
+
+    @property
+    def twist(self) -> Twist:
+        return Twist(self._velocity, np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
+
+    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """1/m, whatever the direction."""
+        return np.asarray(self._free[body, 0] / self._mass[body])
+
+    @property
+    def inverse_inertia(self) -> FloatArray:
+        return self._inverse_inertia() * self._free[:, :, None]
+
+    def kick(self, wrench: Wrench, time: float) -> None:
+        """Change momenta by F + W and T for so long."""
+        self._velocity = self._velocity + self._free * time * (wrench.force + self._weight) / self._mass[:, None]
+        self._momentum = self._momentum + self._free * time * wrench.torque
+
+    def drift(self, time: float) -> None:
+        """Move straight on and turn freely; driven bodies with their twist in mid-time."""
+        if self._driven:
+            self._drive(self._time + 0.5 * time)
+        orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)
+        self.pose = Pose(self.pose.position + time * self._velocity, orientation)
+        self._time += time
+        if self._driven:
+            self._drive(self._time)
+
+    def _drive(self, time: float) -> None:
+        given, d = self._given(time), self._velocity.shape[1]
+        self._velocity = np.where(self._free, self._velocity, given[:, :d])
+        spin = np.einsum("nij,nj->ni", lab_inertia(self._inertia, self.pose.orientation), given[:, d:])
+        self._momentum = np.where(self._free, self._momentum, spin)
+
+    def _inverse_inertia(self) -> FloatArray:
+        return inverse_lab_inertia(self._inertia, self.pose.orientation)
+
+
+class CarriedMovement:
+    """In a fluid: dU/dt = A + M⁻¹F, with A the acceleration of the latest step but for its contacts.
+
+    Without contact this is Adams–Bashforth 2. The fluid resists a quick change of velocity with its own mass too: ``M``
+    should hold what of it is known, and never more than there is, or a contact would give back more than it took.
+
+    Parameters
+    ----------
+    pose, twist : Pose, Twist
+        At the start.
+    rate : (n, d+k) array
+        A [length/time² | rad/time²].
+    linear, angular : (n, d, d) array, (n, k, k) array
+        M⁻¹ in the lab frame, zero for driven bodies [1/mass | 1/(mass·length²)].
+    """
+
+    def __init__(self, pose: Pose, twist: Twist, rate: FloatArray, linear: FloatArray, angular: FloatArray) -> None:
+        self.pose = pose
+        self.inverse_inertia = angular
+        self._linear = linear
+        self._twist = twist
+        self._rate = rate
+
+    @property
+    def twist(self) -> Twist:
+        return self._twist
+
+    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """That of the body and its added mass."""
+        return np.asarray(np.einsum("mi,mij,mj->m", direction, self._linear[body], direction))
+
+    def kick(self, wrench: Wrench, time: float) -> None:
+        """Change the twist by A and M⁻¹F for so long."""
+        d = wrench.force.shape[1]
+        gain = self._rate[:, :d] + np.einsum("nij,nj->ni", self._linear, wrench.force)
+        turn = self._rate[:, d:] + np.einsum("nij,nj->ni", self.inverse_inertia, wrench.torque)
+        self._twist = Twist(self._twist.velocity + time * gain, self._twist.angular_velocity + time * turn)
+
+    def drift(self, time: float) -> None:
+        """Move and turn with the present twist."""
+        position = self.pose.position + time * self._twist.velocity
+        self.pose = Pose(position, rotate(self.pose.orientation, time * self._twist.angular_velocity))

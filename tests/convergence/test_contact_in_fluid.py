@@ -1,0 +1,51 @@
+"""A disk that hits the floor of a box of fluid: order in time with resolved contacts, and stiff ones that are not."""
+
+import numpy as np
+import pytest
+
+import rigidfluid
+from rigidfluid.core.scene import Scene
+
+
+def bounce(step, end=0.032, epsilon=1e-7, **changes):
+    return Scene.from_dict(
+        {
+            "scene": {"name": "bounce", "dimension": 2},
+            "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
+            "body": [
+                {"type": "sphere", "radius": 0.125, "density": 3.0, "position": [0.5, 0.2], "velocity": [0.0, -5.0]}
+                | changes
+            ],
+            "contact": {"law": "centre", "range": 0.05, "epsilon": epsilon},
+            "mesh": {"size": 0.1, "size_body": 0.05, "quality": 0.01, "refinements": 1, "cells_per_gap": 1},
+            "time": {"end": end, "step": step},
+            "output": {"every": end},
+        }
+    )
+
+
+def test_second_order_through_a_contact():
+    """Positions after the bounce; the mesh is the same, so differences are those of the steps."""
+    heights = [rigidfluid.run(bounce(step)).bodies["y"][-1] for step in (1e-3, 5e-4, 2.5e-4, 1.25e-4)]
+    first, second, third = np.abs(np.diff(heights))
+    assert np.log2(first / second) > 1.8
+    assert np.log2(second / third) > 1.8
+
+
+@pytest.mark.parametrize("density", [0.01, 3.0])
+@pytest.mark.parametrize("epsilon", [1e-8, 1e-10, 1e-12])
+def test_the_step_is_not_tied_to_the_stiffness(epsilon, density):
+    """ωΔt is 10 to 1,000 and more: explicit steps are unstable above 2. What is left is a hop of a step or two."""
+    step, volume = 0.004, np.pi * 0.125**2
+    start = {"density": density, "position": [0.5, 0.75 if density < 1 else 0.25], "velocity": [0.0, 0.0]}
+    data = bounce(step, end=0.25, epsilon=epsilon, **start).to_dict()
+    history = rigidfluid.run(Scene.from_dict(data | {"mesh": {"size": 0.1, "size_body": 0.05}}))
+    bodies, late = history.bodies, slice(-30, None)
+    assert history.summary["rejected_steps"] == 0
+    assert 0.0 < bodies["gap"].min() <= 0.05
+    weight = volume * (density - 1.0) * 981.0
+    fall = abs(weight) * step / (volume * (density + 1.0))
+    assert np.abs(bodies["vy"][late]).max() < 2.0 * fall
+    assert np.abs(bodies["gap"][late] - 0.05).max() < 3.0 * fall * step
+    assert -bodies["cfy"][late].mean() == pytest.approx(-weight, rel=0.1)

@@ -1,0 +1,135 @@
+"""Bodies through contacts without a fluid: what the closed forms say, stiff laws, long steps, dampers."""
+
+import numpy as np
+import pytest
+
+import rigidfluid
+from rigidfluid.core import wrenches
+from rigidfluid.core.rigid import moment
+from rigidfluid.core.scene import Scene
+from rigidfluid.errors import StepError
+
+RADIUS, RANGE, SPEED = 0.1, 0.02, 3.0
+MASS = np.pi * RADIUS**2
+DISK = {"type": "sphere", "radius": RADIUS, "density": 1.0, "position": [0.5, 0.5], "velocity": [0.0, -SPEED]}
+
+
+def dry(*bodies, step, end, gravity=0.0, **contact):
+    return Scene.from_dict(
+        {
+            "scene": {"name": "dry", "dimension": 2},
+            "fluid": {"backend": "dry", "gravity": [0.0, -gravity]},
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
+            "body": [DISK | body for body in bodies],
+            "contact": {"law": "centre", "range": RANGE, "epsilon": 1e-6} | contact,
+            "time": {"step": step, "end": end},
+            "output": {"every": end},
+        }
+    )
+
+
+def energy(bodies, mass, inertia, gravity=0.0):
+    moving = 0.5 * mass * (bodies["vx"] ** 2 + bodies["vy"] ** 2) + 0.5 * inertia * bodies["w"] ** 2
+    return moving + mass * gravity * bodies["y"]
+
+
+def test_a_wall_gives_all_speed_back():
+    bodies = rigidfluid.run(dry({}, step=0.02, end=0.26, substeps=1000)).bodies
+    assert bodies["vy"][-1] == pytest.approx(SPEED, rel=1e-6)
+
+
+def test_a_shallow_contact_lasts_as_long_as_the_formula_says():
+    """T_c = 2.80436 w_m/v₀ with w_m = (3 ε m v₀²/[2 (R + range)])^(1/3), R = 2r at a wall."""
+    speed, epsilon = 0.01, 1e-5
+    deepest = (3 * epsilon * MASS * speed**2 / (2 * (2 * RADIUS + RANGE))) ** (1 / 3)
+    assert deepest < 0.05 * RANGE
+    start = {"position": [0.5, RADIUS + RANGE], "velocity": [0.0, -speed]}
+    time = 2.80436 * deepest / speed
+    bodies = rigidfluid.run(dry(start, step=time / 2000, end=1.2 * time, epsilon=epsilon, substeps=1)).bodies
+    inside = bodies["gap"] < RANGE
+    assert np.count_nonzero(inside) * time / 2000 == pytest.approx(time, rel=0.002)
+    assert RANGE - bodies["gap"].min() == pytest.approx(deepest, rel=0.01)
+
+
+def test_the_fastest_that_is_stopped():
+    """½ m v² = U(0) = range³ (4R + range)/(12 ε), R = 2r."""
+    epsilon = 1e-5
+    limit = np.sqrt(2 * RANGE**3 * (8 * RADIUS + RANGE) / (12 * epsilon) / MASS)
+    slower = dry({"velocity": [0.0, -0.999 * limit]}, step=0.01, end=0.35, epsilon=epsilon, substeps=400)
+    assert rigidfluid.run(slower).bodies["vy"][-1] == pytest.approx(0.999 * limit, rel=1e-4)
+    with pytest.raises(StepError, match=r"body body0.*Strengthen the contact force"):
+        rigidfluid.run(dry({"velocity": [0.0, -1.001 * limit]}, step=0.01, end=0.35, epsilon=epsilon, substeps=400))
+
+
+def tilted(gravity):
+    """Energies of a tilted ellipse that falls on the floor, where it is out of contact."""
+    scene = dry({}, step=1e-3, end=0.45, gravity=gravity, law="normal", epsilon=1e-6, substeps=20)
+    data = scene.to_dict()
+    shape = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.6, "density": 1.0, "position": [0.5, 0.3]}
+    bodies = rigidfluid.run(Scene.from_dict(data | {"body": [shape]})).bodies
+    mass = np.pi * 0.1 * 0.05
+    free = bodies["gap"] > RANGE
+    spins = bodies["w"][free]
+    return energy(bodies, mass, mass * (0.1**2 + 0.05**2) / 4, gravity)[free], spins
+
+
+def test_a_tilted_ellipse_keeps_its_energy():
+    energies, spins = tilted(10.0)
+    assert np.abs(spins).max() > 5.0
+    np.testing.assert_allclose(energies, energies[0], rtol=1e-5)
+
+
+def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
+    monkeypatch.setattr(wrenches, "moment", lambda arm, force: -moment(arm, force))
+    try:
+        energies, _ = tilted(10.0)
+    except StepError:
+        return
+    assert np.abs(energies / energies[0] - 1.0).max() > 0.1
+
+
+@pytest.mark.parametrize("law", ["centre", "normal", "barrier"])
+@pytest.mark.parametrize("epsilon", [1e-6, 1e-8, 1e-11, 1e-13])
+def test_a_long_step_is_divided_as_the_contact_needs(law, epsilon):
+    """In one step the disk flies through the range many times over; nothing is tied to √(m/k)."""
+    scene = dry({}, step=0.05, end=0.3, law=law, epsilon=epsilon)
+    history = rigidfluid.run(scene)
+    assert history.summary["rejected_steps"] == 0
+    assert history.bodies["vy"][-1] == pytest.approx(SPEED, rel=2e-3)
+
+
+def test_two_that_meet_swap_their_speeds():
+    left = {"position": [0.3, 0.5], "velocity": [2.0, 0.0]}
+    right = {"position": [0.6, 0.5], "velocity": [0.0, 0.0]}
+    bodies = rigidfluid.run(dry(left, right, step=0.02, end=0.12, substeps=500)).bodies
+    np.testing.assert_allclose(bodies["vx"][-2:], [0.0, 2.0], atol=1e-5)
+
+
+def test_one_far_heavier_is_hardly_moved():
+    light = {"position": [0.3, 0.5], "velocity": [2.0, 0.0], "density": 1e-4}
+    heavy = {"position": [0.6, 0.5], "velocity": [0.0, 0.0], "density": 1e4}
+    bodies = rigidfluid.run(dry(light, heavy, step=0.02, end=0.1, epsilon=1e-9)).bodies
+    np.testing.assert_allclose(bodies["vx"][-2:], [-2.0, 4e-8], rtol=2e-3)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.7, 0.2])
+def test_a_dashpot_takes_what_the_restitution_says(restitution):
+    law = {"law": "spring-dashpot", "stiffness": 1e4, "restitution": restitution}
+    scene = dry({}, step=0.02, end=0.26)
+    contact = {"range": RANGE, "substeps": 1000} | law
+    history = rigidfluid.run(Scene.from_dict(scene.to_dict() | {"contact": contact}))
+    assert history.bodies["vy"][-1] == pytest.approx(restitution * SPEED, rel=5e-3)
+    lost = 0.5 * MASS * SPEED**2 * (1.0 - restitution**2)
+    assert history.summary["energy"]["contact_loss"] == pytest.approx(lost, rel=0.02, abs=1e-12)
+    assert abs(history.summary["energy"]["relative_residual"]) < 5e-3
+
+
+def test_a_driven_body_pushes_and_takes_no_push():
+    piston = {"position": [0.3, 0.5], "velocity": None, "prescribed": {"velocity": [1.0, 0.0]}}
+    ball = {"position": [0.55, 0.5], "velocity": [0.0, 0.0]}
+    data = dry({}, step=0.01, end=0.12, epsilon=1e-7).to_dict()
+    bodies = [{key: value for key, value in (DISK | body).items() if value is not None} for body in (piston, ball)]
+    history = rigidfluid.run(Scene.from_dict(data | {"body": bodies}))
+    np.testing.assert_allclose(history.bodies["vx"][-2:], [1.0, 2.0], rtol=1e-3)
+    np.testing.assert_allclose(history.bodies["x"][::2], 0.3 + history.bodies["time"][::2], atol=1e-12)
+    assert history.summary["energy"]["control"] == pytest.approx(0.5 * MASS * 4.0, rel=2e-3)
