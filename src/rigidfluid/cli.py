@@ -19,14 +19,18 @@ from rigidfluid.errors import RigidfluidError
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+    from rigidfluid.checks import Report
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
-    from rigidfluid.core.system import System
     from rigidfluid.studies.results import Results
     from rigidfluid.studies.run import StudyProgress
 
+FOUND_ERRORS = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
+
+MOST_BODIES = 20
+"""More are not printed."""
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
@@ -42,7 +46,7 @@ Continue = Annotated[
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 
-JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the rows there as JSON.")]
+JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
 Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
@@ -75,16 +79,20 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
 
 
 @app.command()
-def check(scene: SceneFile, assignments: Assignments = None) -> None:
-    """Validate a scene, and say what it switches on and off, and why."""
+def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile = None) -> None:
+    """Say what a scene switches on and off, and whether its contacts can hold; exit code 1 if they cannot."""
     with _reported():
+        from rigidfluid.checks import check as ask
         from rigidfluid.core.scene import load_scene
-        from rigidfluid.core.system import build_system
 
-        loaded = load_scene(scene, assignments or ())
-        system = build_system(loaded)
-        _print_features(system)
-        _print_bodies(loaded, system)
+        report = ask(load_scene(scene, assignments or ()))
+        if json_file is not None:
+            _write_json(report.to_dict(), json_file)
+        _print_features(report)
+        _print_bodies(report)
+        _print_findings(report)
+    if report.count("error"):
+        raise typer.Exit(FOUND_ERRORS)
 
 
 @app.command()
@@ -229,28 +237,39 @@ def _print_end(summary: dict[str, Any], folder: Path) -> None:
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 
 
-def _print_features(system: System) -> None:
-    from rigidfluid.core.features import features
-
+def _print_features(report: Report) -> None:
     table = Table("part", "", "why")
-    for feature in features(system):
+    for feature in report.features:
         table.add_row(feature.name, "on" if feature.on else "off", feature.why)
     Console().print(table)
 
 
-def _print_bodies(scene: Scene, system: System) -> None:
-    from rigidfluid.core.geometry_checks import initial_contacts
-
-    contacts = initial_contacts(scene, system.bodies, system.pose)
-    solid = {*range(len(scene.body)), *(wall.surface for wall in system.walls)}
-    pairs = sorted(zip(contacts.gap, contacts.body_a, contacts.body_b, strict=True))
-    table = Table("body", "type", "mass", "submerged weight", "smallest gap", "to")
-    for number, body in enumerate(scene.body):
-        near = ((gap, a + b - number) for gap, a, b in pairs if number in (a, b) and b in solid)
-        gap, other = next(near, (None, None))
-        figures = system.mass[number], system.weight[number], gap
-        table.add_row(body.name, body.type, *map(_figure, figures), "" if other is None else system.surfaces[other])
+def _print_bodies(report: Report) -> None:
+    """Those that are nearest to anything, if there are many."""
+    nearest = sorted(report.bodies, key=lambda body: float("inf") if body.smallest_gap is None else body.smallest_gap)
+    shown = nearest[:MOST_BODIES]
+    table = Table("body", "type", "mass", "submerged weight", "impact speed", "smallest gap", "to")
+    for body in report.bodies if len(report.bodies) <= MOST_BODIES else shown:
+        figures = body.mass, body.submerged_weight, body.impact_speed, body.smallest_gap
+        table.add_row(body.name, body.type, *map(_figure, figures), body.nearest)
     Console().print(table)
+    if len(report.bodies) > len(shown):
+        _print(f"and {len(report.bodies) - len(shown)} bodies that are further from anything")
+
+
+def _print_findings(report: Report) -> None:
+    for finding in report.findings:
+        style = {"error": "red", "warning": "yellow"}.get(finding.grade, "")
+        text = f"{finding.grade}: {finding.text}." + (f" {finding.remedy}" if finding.remedy else "")
+        Console().print(Text(text, style=style), soft_wrap=True)
+    _print(f"{report.count('error')} errors, {report.count('warning')} warnings")
+
+
+def _write_json(data: object, path: Path) -> None:
+    from rigidfluid.core.writer import writing
+
+    with writing(path):
+        path.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _print_rows(rows: Iterable[DataclassInstance], json_file: Path | None) -> None:

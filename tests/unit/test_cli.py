@@ -64,7 +64,7 @@ def test_check_says_what_is_on_and_why() -> None:
     lines = [[cell.strip() for cell in line.split("│")[1:-1]] for line in result.stdout.splitlines() if "│" in line]
     assert ["fluid", "off", "backend 'dry' has no viscosity to work with"] in lines
     assert ["contact forces", "on", "law 'centre' below a gap of 0.02"] in lines
-    assert ["left_disk", "sphere", "0.03142", "(0, -30.82)", "0.2", "left"] in lines
+    assert ["left_disk", "sphere", "0.03142", "(0, -30.82)", "33.85", "0.2", "left"] in lines
 
 
 def test_set_changes_the_scene() -> None:

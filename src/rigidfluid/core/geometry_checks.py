@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,14 +41,15 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     SceneError
         If bodies overlap each other or a face of the domain, or if the mesh is too coarse for a gap.
     """
-    contacts = initial_contacts(scene, parts.bodies, pose)
+    mesh = scene.mesh if parts.backend.part.needs_mesh else None
+    contacts = initial_contacts(scene, parts.bodies, pose, _coarsest_gap(mesh, parts) if mesh else 0.0)
     _check_overlap(scene, contacts)
-    if parts.backend.part.needs_mesh and scene.mesh is not None:
-        _check_facets(scene.mesh, parts)
-        _check_resolution(scene, scene.mesh, parts, contacts)
+    if mesh is not None:
+        _check_facets(mesh, parts)
+        _check_resolution(scene, mesh, parts, contacts)
 
 
-def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose) -> Contacts:
+def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose, reach: float) -> Contacts:
     """Every pair of surfaces at the start, with faces that do not repel among them.
 
     Parameters
@@ -59,15 +60,17 @@ def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose) -> Contac
         Its bodies.
     pose : Pose
         Where they are.
+    reach : float
+        Largest gap, may be infinite [length].
 
     Returns
     -------
     Contacts
-        At any distance, from the exact detector that suits the bodies best.
+        Up to that gap, from the exact detector that suits the bodies best.
     """
     name, _ = cheapest_detector(bodies, mesh=False)
     detector = Registry.load().get(DETECTOR, name)
-    return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, inf)
+    return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, reach)
 
 
 def _check_overlap(scene: Scene, contacts: Contacts) -> None:
@@ -89,6 +92,12 @@ def _check_facets(mesh: MeshTable, parts: Parts) -> None:
     least = largest / MOST_FACETS_PER_RADIUS
     if mesh.size_body < least:
         raise SceneError("mesh.size_body", mesh.size_body, f"at least {least:g} for these bodies", "Coarsen it.")
+
+
+def _coarsest_gap(mesh: MeshTable, parts: Parts) -> float:
+    """The largest gap that the mesh may be too coarse for [length]."""
+    smallest = min(body.bounding_radius for body in parts.bodies)
+    return float((mesh.size_body / 2**mesh.refinements) ** 2 / (4.0 * smallest))
 
 
 def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Contacts) -> None:

@@ -39,15 +39,13 @@ def require_loads(loads: Loads | None, law_range: float) -> Loads:
     if idle.any():
         found = f'"auto" with body.{int(np.argmax(idle))} that has neither weight nor speed'
         allowed = "a load that the contacts must hold"
-        raise SceneError(_FIELD, found, allowed, "Say how fast it may hit, or give `epsilon` as a number.")
+        remedy = "Say how fast it may hit: `contact.impact_speed`, or give `epsilon` as a number."
+        raise SceneError(_FIELD, found, allowed, remedy)
     return loads
 
 
 def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArray:
     """½ m v² + W (range - smallest_gap), what a head-on impact puts into each contact.
-
-    m is the effective mass, v = v_a + v_b and W the larger of the two weights; a wall has neither weight nor speed.
-    Between two bodies of given twist it is zero, since nothing is to be stopped.
 
     Parameters
     ----------
@@ -63,11 +61,48 @@ def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArr
     (m,) array
         Work [energy].
     """
-    a, b = contacts.body_a, np.minimum(contacts.body_b, len(loads.mass))
-    weight, speed = (np.append(column, 0.0) for column in (loads.weight, loads.speed))
-    inverse_mass = np.append(1.0 / loads.mass, 0.0)
-    twice_kinetic = np.zeros(len(contacts))
-    inverse = inverse_mass[a] + inverse_mass[b]
-    np.divide((speed[a] + speed[b]) ** 2, inverse, out=twice_kinetic, where=inverse > 0.0)
-    falling = np.maximum(weight[a], weight[b]) * (law_range - loads.smallest_gap)
-    return np.asarray(0.5 * twice_kinetic + falling)
+    return impact_energy(contacts, loads) + held_weight(contacts, loads) * (law_range - loads.smallest_gap)
+
+
+def impact_energy(contacts: Contacts, loads: Loads) -> FloatArray:
+    """½ m v² with the effective mass m and v = v_a + v_b; a wall is heavy and rests.
+
+    Between two bodies of given twist it is zero, since nothing is to be stopped.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        The m contacts.
+    loads : Loads
+        Masses and speeds.
+
+    Returns
+    -------
+    (m,) array
+        Kinetic energy of the approach [energy].
+    """
+    inverse = inverse_mass(contacts, loads)
+    twice = np.zeros(len(contacts))
+    np.divide(closing_speed(contacts, loads) ** 2, inverse, out=twice, where=inverse > 0.0)
+    return 0.5 * twice
+
+
+def closing_speed(contacts: Contacts, loads: Loads) -> FloatArray:
+    """v_a + v_b, (m,) [length/time]."""
+    return np.asarray(_both(loads.speed, contacts).sum(axis=0))
+
+
+def held_weight(contacts: Contacts, loads: Loads) -> FloatArray:
+    """W, the larger of the two weights, (m,) [force]."""
+    return np.asarray(_both(loads.weight, contacts).max(axis=0))
+
+
+def inverse_mass(contacts: Contacts, loads: Loads) -> FloatArray:
+    """1/m_a + 1/m_b, (m,) [1/mass]."""
+    return np.asarray(_both(1.0 / loads.mass, contacts).sum(axis=0))
+
+
+def _both(column: FloatArray, contacts: Contacts) -> FloatArray:
+    """What ``column`` (n,) says of a and of b, zero for walls, (2, m)."""
+    extended = np.append(column, 0.0)
+    return np.stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])

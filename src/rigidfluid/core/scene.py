@@ -140,6 +140,14 @@ class ContactTable(_OpenTable):
     )
     law: str | None = Field(default=None, description="Name of a force law; no contact force if not given")
     range: Positive | None = Field(default=None, description="Gap above which the law is zero [length]")
+    smallest_gap: Positive | None = Field(
+        default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
+    )
+    impact_speed: float | None = Field(
+        default=None,
+        ge=0,
+        description="Speed at which free bodies hit; from gravity, drag and the box if not given [length/time]",
+    )
     substeps: int | None = Field(
         default=None,
         ge=1,

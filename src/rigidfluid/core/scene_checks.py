@@ -168,11 +168,19 @@ def _check_assemblies(scene: Scene) -> None:
 
 
 def _check_contact(scene: Scene) -> None:
-    law, range_ = scene.contact.law, scene.contact.range
+    law, range_, smallest = scene.contact.law, scene.contact.range, scene.contact.smallest_gap
     if law is not None and range_ is None:
         raise SceneError("contact.range", "nothing", "a length above 0 beside `law`", "Add the law's reach.")
     if law is None and range_ is not None:
         raise SceneError("contact.range", f"{range_} without a law", "`range` beside `law`", "Name the law: `law = …`.")
+    for key in ("smallest_gap", "impact_speed"):
+        given = getattr(scene.contact, key)
+        if law is None and given is not None:
+            remedy = "Name the law: `law = …`."
+            raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
+    if smallest is not None and range_ is not None and smallest >= range_:
+        allowed = f"a length above 0 and below contact.range = {range_}"
+        raise SceneError("contact.smallest_gap", smallest, allowed, "Shorten it, or widen the range.")
 
 
 def _check_sizes(scene: Scene) -> None:

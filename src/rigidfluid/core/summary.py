@@ -12,6 +12,7 @@ from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
 from rigidfluid.core.records import LEDGER_COLUMNS
 from rigidfluid.core.scene import Scene
+from rigidfluid.core.strength import chosen_strengths
 from rigidfluid.core.system import System
 from rigidfluid.core.types import FloatArray
 
@@ -47,6 +48,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "smallest_gap": _finite(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         "energy": energy_balance(state.ledger),
+        "auto_epsilon": chosen_strengths(system),
     }
 
 

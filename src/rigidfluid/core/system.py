@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -10,13 +11,26 @@ import numpy as np
 from rigidfluid.core.added_mass import added_inertia, added_mass
 from rigidfluid.core.boundary import conditions, face_planes, faces
 from rigidfluid.core.geometry_checks import check_geometry
+from rigidfluid.core.impact import impact_speeds
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.parts import Parts, resolve
 from rigidfluid.core.prescribed import prescribed_motion
 from rigidfluid.core.scene import Scene
-from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, FluidProblem, IntArray, Pose, Twist, Wall
+from rigidfluid.core.types import (
+    BoolArray,
+    BoundaryCondition,
+    FloatArray,
+    FluidProblem,
+    IntArray,
+    Loads,
+    Pose,
+    Twist,
+    Wall,
+)
 
 _MOST_PAIRS = 1000
+_SMALLEST_GAP = 0.25
+"""The smallest gap wanted over the range of the law, if the scene gives none."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +43,7 @@ class System:
     ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
+    ``loads``: what contacts must hold; its smallest gap is 0 without a law.
     ``substeps``: of contacts in a step, None where they follow from the contacts.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     """
@@ -54,6 +69,7 @@ class System:
     detector_why: str
     reach: float
     law: ForceLaw | None
+    loads: Loads
     substeps: int | None
 
 
@@ -78,11 +94,15 @@ def build_system(scene: Scene) -> System:
     parts, boundary = resolve(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
-    fluid = (scene.fluid.density or 0.0) if scene.fluid.model == "navier-stokes" else 0.0
     pose, motion = _initial_pose(scene), prescribed_motion(scene)
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
     check_geometry(scene, parts, pose)
-    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts)
+    weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
+    added = inert * np.array([added_mass(body) for body in parts.bodies])
+    moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
+    speed = impact_speeds(scene, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
+    loads = _loads(scene, controlled, moved, weight, speed)
+    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts, loads)
     return System(
         dimension=scene.dimension,
         bodies=parts.bodies,
@@ -91,10 +111,10 @@ def build_system(scene: Scene) -> System:
         lower=np.array(scene.domain.lower),
         upper=np.array(scene.domain.upper),
         mass=mass,
-        added_mass=fluid * np.array([added_mass(body) for body in parts.bodies]),
-        added_inertia=fluid * np.array([added_inertia(body) for body in parts.bodies]),
+        added_mass=added,
+        added_inertia=inert * np.array([added_inertia(body) for body in parts.bodies]),
         inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
-        weight=_submerged_weight(scene, parts.bodies, mass),
+        weight=weight,
         pose=pose,
         twist=_initial_twist(scene, controlled, motion(0.0)),
         assembly=_assemblies(scene),
@@ -105,6 +125,7 @@ def build_system(scene: Scene) -> System:
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
         law=law,
+        loads=loads,
         substeps=scene.contact.substeps,
     )
 
@@ -139,6 +160,19 @@ def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) ->
     return np.outer(mass - (scene.fluid.density or 0.0) * volume, gravity)
 
 
+def _inert_density(scene: Scene, parts: Parts) -> float:
+    """Density of the fluid that bodies have to move with them; none without a fluid, or without its inertia."""
+    inert = parts.backend.part.needs_mesh and scene.fluid.model == "navier-stokes"
+    return (scene.fluid.density or 0.0) if inert else 0.0
+
+
+def _loads(scene: Scene, controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray) -> Loads:
+    """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
+    smallest = scene.contact.smallest_gap or _SMALLEST_GAP * (scene.contact.range or 0.0)
+    pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
+    return Loads(np.where(controlled, np.inf, mass), pull, speed, smallest)
+
+
 def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProblem | None:
     fluid = scene.fluid
     if fluid.density is None or fluid.viscosity is None:
@@ -154,18 +188,27 @@ def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProb
 
 
 def _reach(detector: Detector, law: ForceLaw | None) -> float:
-    """Among few bodies as far as the detector sees; among many at most twice the largest body's size beyond the range.
+    """As far as the detector sees, and no further than is worth its while."""
+    law_range = law.range if law else 0.0
+    return min(detector.sight(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
+
+
+def gap_reach(system: System) -> float:
+    """The largest gap that is worth measuring, whatever the detector sees [length]."""
+    return _worth_measuring(system.bodies, len(system.walls), system.law.range if system.law else 0.0)
+
+
+def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float) -> float:
+    """Among few bodies any gap; among many at most twice the largest body's size beyond the range.
 
     So the work grows with the number of neighbours and not of pairs.
     """
-    law_range, count = law.range if law else 0.0, len(detector.bodies)
-    sight = detector.sight(law_range)
-    if count * (count + len(detector.walls)) <= _MOST_PAIRS:
-        return sight
-    return min(sight, law_range + 2.0 * max(body.bounding_radius for body in detector.bodies))
+    if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS:
+        return math.inf
+    return law_range + 2.0 * max(body.bounding_radius for body in bodies)
 
 
-def _law(scene: Scene, parts: Parts) -> ForceLaw | None:
+def _law(scene: Scene, parts: Parts, loads: Loads) -> ForceLaw | None:
     if parts.law is None or scene.contact.range is None:
         return None
-    return parts.law.part(parts.law.options, scene.contact.range)
+    return parts.law.part(parts.law.options, scene.contact.range, loads)

@@ -1,0 +1,90 @@
+"""Is there anything at all that keeps the bodies apart?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.finding import Finding, Grade, figure
+from rigidfluid.core.boundary import faces, inward_normal
+from rigidfluid.core.meetings import free, kinds
+from rigidfluid.core.strength import chosen_strengths
+from rigidfluid.core.system import System
+from rigidfluid.core.types import FloatArray
+
+
+def by_a_law(system: System) -> Iterator[Finding]:
+    """Whether there is a law, and whether it has an energy, which alone keeps bodies apart.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, law and backend.
+
+    Yields
+    ------
+    Finding
+        One where nothing repels: a warning in a fluid, whose film also brakes, and an error without.
+    """
+    moving = [i for i in free(system, range(len(system.bodies))) if _moves(system, i)]
+    if not moving or (system.law is not None and system.law.conservative):
+        return
+    text = "nothing keeps bodies apart"
+    text += ": the scene names no law" if system.law is None else f": law {system.law.name!r} only takes energy out"
+    grade: Grade = "warning" if system.backend.needs_mesh else "error"
+    remedy = 'Set contact.law = "normal", contact.range and contact.epsilon = "auto".'
+    yield Finding(grade, "law", (system.surfaces[moving[0]],), text, remedy, {"moving_bodies": len(moving)})
+
+
+def by_walls(system: System) -> Iterator[Finding]:
+    """Whether the face that a weight drives bodies to repels.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and walls.
+
+    Yields
+    ------
+    Finding
+        A warning for each such face that is no wall.
+    """
+    solid = {wall.name for wall in system.walls}
+    for face, name in enumerate(faces(system.dimension)):
+        normal = inward_normal(face, system.dimension)
+        driven = [kind[0] for kind in kinds(system) if free(system, kind) and _drives(system, kind[0], normal)]
+        if driven and name not in solid:
+            text = f"{system.surfaces[driven[0]]} is driven to {name}, which is no wall and does not repel"
+            remedy = "End before it gets there, or make that face a wall."
+            yield Finding("warning", "open-face", (system.surfaces[driven[0]], name), text, remedy)
+
+
+def by_auto(system: System) -> Iterator[Finding]:
+    """Which ε `auto` has chosen, and why.
+
+    Parameters
+    ----------
+    system : System
+        Law and loads.
+
+    Yields
+    ------
+    Finding
+        Notes: the largest and the smallest ε at walls, and between bodies.
+    """
+    for row in chosen_strengths(system):
+        a, b = row.pop("between")
+        epsilon, speed, gap = (figure(row[key]) for key in ("epsilon", "impact_speed", "smallest_gap"))
+        text = f"{a} and {b}: epsilon is {epsilon}, so that an impact at a speed of {speed} ends at a gap of {gap}"
+        yield Finding("note", "auto", (a, b), text, found=row)
+
+
+def _moves(system: System, body: int) -> bool:
+    return bool(system.loads.weight[body] > 0.0 or system.loads.speed[body] > 0.0)
+
+
+def _drives(system: System, body: int, normal: FloatArray) -> bool:
+    """Whether the weight is within 60° of pointing at a face of this inward ``normal`` (d,)."""
+    weight = system.weight[body]
+    return bool(weight @ normal < -0.5 * np.linalg.norm(weight))

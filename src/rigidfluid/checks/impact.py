@@ -1,0 +1,82 @@
+"""Can the law stop the expected impact?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.checks.remedies import stronger
+from rigidfluid.checks.response import barrier, energy_along, turning_gap
+from rigidfluid.core.types import FloatArray
+
+QUESTION = "impact"
+_SLACK = 0.8
+"""An impact may end at this share of the smallest gap wanted."""
+
+
+def on_impact(met: Encounters, wanted: float | None) -> Iterator[Finding]:
+    """Compare what the law stores up to contact with ½ m v² + W range.
+
+    Parameters
+    ----------
+    met : Encounters
+        The bodies, with a wall or with each other.
+    wanted : float or None
+        The smallest gap that the scene asks for [length].
+
+    Yields
+    ------
+    Finding
+        One for each kind of pair that moves or has weight; an error where the law is too weak and nothing else brakes,
+        a warning where a fluid or the law's dampers brake too.
+    """
+    work = met.energy + met.weight * met.law.range
+    stored = barrier(met.law, met.contacts)
+    share = np.divide(stored, work, out=np.full(len(work), np.inf), where=work > 0.0)
+    gaps = turning_gap(met.law, met.contacts, met.energy, met.weight)
+    for row in met.worst(-share):
+        if work[row] > 0.0:
+            yield _finding(met, row, float(share[row]), float(gaps[row]))
+    if wanted is not None:
+        yield from _too_near(met, gaps, wanted)
+
+
+def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
+    found = _figures(met, row, gap if share >= 1.0 else np.nan) | {"barrier_over_impact": share}
+    fast = f"{' against '.join(met.names(row))} at a speed of {figure(met.speed[row])}"
+    if share >= 1.0:
+        text = f"{fast} is stopped at a gap of {figure(gap)}, if nothing else brakes it"
+        return Finding("note", QUESTION, met.names(row), text, found=found)
+    text = f"{fast}: up to contact the law takes up only {figure(share)} of the impact"
+    enough, remedy = stronger(met.law, met.at_walls, share)
+    braked = met.system.backend.needs_mesh or met.law.dissipative
+    if braked:
+        text += (
+            "; the film between them must brake the rest" if met.system.backend.needs_mesh else "; dampers brake too"
+        )
+    return Finding("warning" if braked else "error", QUESTION, met.names(row), text, remedy, found, enough)
+
+
+def _too_near(met: Encounters, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
+    """Which impacts end nearer than the smallest gap that the scene asks for."""
+    needed = met.energy + met.weight * (met.law.range - wanted)
+    stored = energy_along(met.law, met.contacts, np.full((len(gaps), 1), wanted))[:, 0]
+    for row in met.worst(-gaps):
+        if gaps[row] < _SLACK * wanted:
+            enough, remedy = stronger(met.law, met.at_walls, float(stored[row] / needed[row]))
+            pair = " and ".join(met.names(row))
+            text = f"{pair} may come as near as {figure(gaps[row])}, and smallest_gap is {figure(wanted)}"
+            found = _figures(met, row, float(gaps[row]))
+            yield Finding("warning", "smallest-gap", met.names(row), text, remedy, found, enough)
+
+
+def _figures(met: Encounters, row: int, gap: float) -> dict[str, float]:
+    return {
+        "turning_gap": gap,
+        "impact_speed": float(met.speed[row]),
+        "impact_energy": float(met.energy[row]),
+        "weight_work": float(met.weight[row] * met.law.range),
+    }

@@ -1,0 +1,122 @@
+"""Does the law leave bodies free where they should be?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.core.contacts import select
+from rigidfluid.core.interfaces import Body, ForceLaw
+from rigidfluid.core.loads import impact_energy
+from rigidfluid.core.meetings import free, kinds
+from rigidfluid.core.proximity import may_repel
+from rigidfluid.core.scene import MeshTable
+from rigidfluid.core.shapes import inscribed_radius
+from rigidfluid.core.system import System
+from rigidfluid.core.types import Contacts
+
+
+def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Finding]:
+    """Which surfaces are within range at the start, and whether what is stored there drives them apart like an impact.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and loads.
+    law : ForceLaw
+        Its law.
+    start : Contacts
+        Of the bodies and all faces at the start.
+
+    Yields
+    ------
+    Finding
+        One, of the pair that stores most; a warning where that is more than the expected impact.
+    """
+    repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
+    near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
+    near = select(near, may_repel(system, near))
+    if len(near) == 0:
+        return
+    stored, impact = law.energy(near), impact_energy(near, system.loads)
+    most = int(np.argmax(stored))
+    names = system.surfaces[near.body_a[most]], system.surfaces[near.body_b[most]]
+    gap, energy = float(near.gap[most]), float(stored[most])
+    found = {"pairs": len(near), "gap": gap, "energy": energy, "impact_energy": float(impact[most])}
+    text = f"{len(near)} pairs start within range, {names[0]} and {names[1]} at a gap of {figure(gap)}"
+    if energy <= impact[most]:
+        yield Finding("note", "start", names, text, found=found)
+        return
+    text += f", which stores {figure(energy)}: more than the expected impact of {figure(impact[most])}"
+    remedy = f"Move them apart by {figure(law.range - gap)}, or set contact.range to {at_most(gap)} or less."
+    yield Finding("warning", "start", names, text, remedy, found, {"range": gap})
+
+
+def between_walls(system: System, law: ForceLaw) -> Iterator[Finding]:
+    """Whether a body midway between opposite walls is free of both.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and walls.
+    law : ForceLaw
+        Its law.
+
+    Yields
+    ------
+    Finding
+        One for each shape and pair of walls that is never free: a warning; or only at some angles: a note.
+    """
+    walls = {wall.name: wall for wall in system.walls}
+    for axis in range(system.dimension):
+        pair = [system.surfaces[len(system.bodies) + 2 * axis + side] for side in (0, 1)]
+        if not all(name in walls for name in pair):
+            continue
+        width = float(system.upper[axis] - system.lower[axis])
+        for kind in kinds(system):
+            if free(system, kind):
+                yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, law.range)
+
+
+def _between(name: str, body: Body, pair: list[str], width: float, law_range: float) -> Iterator[Finding]:
+    least, most = 0.5 * width - body.bounding_radius, 0.5 * width - inscribed_radius(body)
+    if law_range <= least:
+        return
+    found = {"range": law_range, "least_centred_gap": least, "most_centred_gap": most}
+    always = law_range > most
+    text = f"midway between {pair[0]} and {pair[1]} {name} has gaps of {figure(least)} to {figure(most)}"
+    text += ", so that both act in every place" if always else ", so that at some angles both act in every place"
+    remedy = f"Set contact.range to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the box."
+    yield Finding("warning" if always else "note", "free-gap", (name, *pair), text, remedy, found, {"range": least})
+
+
+def beside_sizes(system: System, law: ForceLaw, mesh: MeshTable | None) -> Iterator[Finding]:
+    """Compare the range with the smallest body and with the cells on the bodies.
+
+    Parameters
+    ----------
+    system : System
+        Bodies.
+    law : ForceLaw
+        Its law.
+    mesh : MeshTable or None
+        Sizes of the cells, if there are any.
+
+    Yields
+    ------
+    Finding
+        Warnings alone.
+    """
+    smallest = min((kind[0] for kind in kinds(system)), key=lambda body: inscribed_radius(system.bodies[body]))
+    name, size = system.surfaces[smallest], inscribed_radius(system.bodies[smallest])
+    if law.range > size:
+        text = f"the law reaches {figure(law.range)}, further than {name} is thick, {figure(size)} from its centre"
+        remedy, found = f"Set contact.range to {at_most(size)} or less.", {"range": law.range, "inscribed_radius": size}
+        yield Finding("warning", "range", (name,), text, remedy, found, {"range": size})
+    if mesh is not None and law.range < mesh.size_body:
+        text = f"the law begins at {figure(law.range)}, within one cell of {figure(mesh.size_body)}"
+        remedy = f"Set mesh.size_body to {at_most(law.range)} or less, or widen contact.range."
+        found = {"range": law.range, "size_body": mesh.size_body}
+        yield Finding("warning", "range", (), text, remedy, found, {"size_body": law.range})

@@ -1,0 +1,131 @@
+"""All questions, asked of one scene before any heavy work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.checks.encounters import encounters
+from rigidfluid.checks.finding import GRADES, Finding
+from rigidfluid.checks.holding import by_a_law, by_auto, by_walls
+from rigidfluid.checks.impact import on_impact
+from rigidfluid.checks.reach import at_the_start, beside_sizes, between_walls
+from rigidfluid.checks.resolution import in_the_gap
+from rigidfluid.checks.rest import at_rest
+from rigidfluid.checks.stepping import in_steps
+from rigidfluid.core.features import Feature, features
+from rigidfluid.core.geometry_checks import initial_contacts
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.system import System, build_system, gap_reach
+from rigidfluid.core.types import Contacts, FloatArray
+
+
+@dataclass(frozen=True)
+class BodyRow:
+    """One body as the run will start: ``submerged_weight`` (m - ρV)g, ``added_mass`` and ``impact_speed`` as estimated.
+
+    ``smallest_gap`` is None, and ``nearest`` empty, where nothing is near.
+    """
+
+    name: str
+    type: str
+    mass: float
+    added_mass: float
+    submerged_weight: tuple[float, ...]
+    impact_speed: float
+    smallest_gap: float | None
+    nearest: str
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a check has found: what is switched on and off, the bodies, and findings, the gravest first."""
+
+    scene: str
+    features: tuple[Feature, ...]
+    bodies: tuple[BodyRow, ...]
+    findings: tuple[Finding, ...]
+
+    def count(self, grade: str) -> int:
+        """How many findings have this grade."""
+        return sum(finding.grade == grade for finding in self.findings)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, in values that JSON can hold."""
+        return {
+            "scene": self.scene,
+            **{f"{grade}s": self.count(grade) for grade in GRADES},
+            "features": [asdict(feature) for feature in self.features],
+            "bodies": [asdict(body) for body in self.bodies],
+            "findings": [finding.to_dict() for finding in self.findings],
+        }
+
+
+def check(scene: Scene) -> Report:
+    """Ask all questions of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        A validated scene; no mesh is made.
+
+    Returns
+    -------
+    Report
+        Features, bodies and findings.
+
+    Raises
+    ------
+    RigidfluidError
+        If the scene cannot be built at all.
+    """
+    system = build_system(scene)
+    start = initial_contacts(scene, system.bodies, system.pose, gap_reach(system))
+    found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
+    return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
+
+
+def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
+    """The answers to all questions, in the order in which they are asked."""
+    yield from chain(by_a_law(system), by_walls(system), by_auto(system))
+    law, mesh = system.law, scene.mesh if system.backend.needs_mesh else None
+    if law is None:
+        return
+    if law.conservative:
+        for met in encounters(system, law):
+            yield from chain(at_rest(met), on_impact(met, scene.contact.smallest_gap), in_steps(met, scene.time))
+            if mesh is not None:
+                yield from in_the_gap(met, mesh)
+    yield from at_the_start(system, law, start)
+    yield from chain(between_walls(system, law), beside_sizes(system, law, mesh))
+
+
+def _rows(scene: Scene, system: System, start: Contacts) -> Iterator[BodyRow]:
+    gaps, nearest = _nearest(system, start)
+    for i, table in enumerate(scene.body):
+        yield BodyRow(
+            name=table.name,
+            type=table.type,
+            mass=float(system.mass[i]),
+            added_mass=float(np.trace(system.added_mass[i])) / system.dimension,
+            submerged_weight=tuple(system.weight[i].tolist()),
+            impact_speed=float(system.loads.speed[i]),
+            smallest_gap=float(gaps[i]) if np.isfinite(gaps[i]) else None,
+            nearest=nearest[i],
+        )
+
+
+def _nearest(system: System, start: Contacts) -> tuple[FloatArray, list[str]]:
+    """Of each body the gap to the nearest body or repelling wall (n,), infinite where none is near, and its name."""
+    count = len(system.bodies)
+    gaps, names = np.full(count, np.inf), [""] * count
+    solid = {*range(count), *(wall.surface for wall in system.walls)}
+    for a, b, gap in zip(start.body_a.tolist(), start.body_b.tolist(), start.gap.tolist(), strict=True):
+        for body, other in ((a, b), (b, a)):
+            if body < count and other in solid and gap < gaps[body]:
+                gaps[body], names[body] = gap, system.surfaces[other]
+    return gaps, names

@@ -1,0 +1,59 @@
+"""Are there cells in the gap where a body comes to rest?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, log2
+
+import numpy as np
+
+from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.response import rest_gap, turning_gap
+from rigidfluid.core.scene import MeshTable
+
+QUESTION = "cells"
+_MOST_REFINEMENTS = 20
+_ROUNDING = 1e-9
+
+
+def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the finest cells, size_body/2^refinements, with the gap at rest, or where an impact ends.
+
+    Parameters
+    ----------
+    met : Encounters
+        The bodies, with a wall or with each other.
+    mesh : MeshTable
+        Sizes of the cells.
+
+    Yields
+    ------
+    Finding
+        One for each kind of pair whose gap is known; a warning where fewer than cells_per_gap cells fit.
+    """
+    gaps = turning_gap(met.law, met.contacts, met.energy, met.weight)
+    resting = met.weight > 0.0
+    gaps = np.where(resting, rest_gap(met.law, met.contacts, met.weight, 0.0), gaps)
+    finest = mesh.size_body / 2**mesh.refinements
+    gaps = np.where(gaps > _ROUNDING * met.law.range, gaps, np.nan)
+    for row in met.worst(-np.nan_to_num(gaps, nan=np.inf)):
+        if np.isfinite(gaps[row]):
+            yield _finding(met, row, float(gaps[row]), finest, mesh)
+
+
+def _finding(met: Encounters, row: int, gap: float, finest: float, mesh: MeshTable) -> Finding:
+    cells = gap / float(np.clip(gap / mesh.cells_per_gap, finest, mesh.size_body))
+    found = {"gap": gap, "cells": cells, "finest_cell": finest}
+    where = "gap at rest" if met.weight[row] > 0.0 else "gap at the impact"
+    text = f"{' and '.join(met.names(row))}: {figure(cells)} cells across the {where} of {figure(gap)}"
+    if cells >= mesh.cells_per_gap * (1.0 - _ROUNDING):
+        return Finding("note", QUESTION, met.names(row), text, found=found)
+    text += f", and {mesh.cells_per_gap} are wanted"
+    refinements = ceil(log2(mesh.size_body * mesh.cells_per_gap / gap) - _ROUNDING)
+    if refinements <= _MOST_REFINEMENTS:
+        remedy = f"Set mesh.refinements to {refinements} or more."
+        return Finding("warning", QUESTION, met.names(row), text, remedy, found, {"refinements": refinements})
+    size = gap * 2**mesh.refinements / mesh.cells_per_gap
+    remedy = f"Set mesh.size_body to {at_most(size)} or less, or stiffen the law."
+    return Finding("warning", QUESTION, met.names(row), text, remedy, found, {"size_body": size})

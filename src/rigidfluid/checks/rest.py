@@ -1,0 +1,56 @@
+"""Can the law hold each body at rest?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.checks.remedies import stronger
+from rigidfluid.checks.response import largest_force, rest_gap
+
+QUESTION = "rest"
+
+
+def at_rest(met: Encounters) -> Iterator[Finding]:
+    """Compare the largest force without overlap with the weight, and say at which gap they balance.
+
+    Parameters
+    ----------
+    met : Encounters
+        The bodies, one at a wall or on another body.
+
+    Yields
+    ------
+    Finding
+        One for each kind of pair with weight; an error where the law is too weak.
+    """
+    rows = np.flatnonzero(met.weight > 0.0)
+    if len(rows) == 0:
+        return
+    most, _ = largest_force(met.law, met.contacts)
+    gaps = rest_gap(met.law, met.contacts, met.weight, _deepest(met))
+    share = np.divide(most, met.weight, out=np.full(len(most), np.inf), where=met.weight > 0.0)
+    for row in met.worst(-share):
+        if met.weight[row] > 0.0:
+            yield _finding(met, row, float(share[row]), float(gaps[row]))
+
+
+def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
+    pair = " on ".join(met.names(row))
+    found = {"force_over_weight": share, "rest_gap": gap, "weight": float(met.weight[row])}
+    if share >= 1.0:
+        force = "without bound" if np.isinf(share) else f"at most {figure(share)} times its weight"
+        text = f"{pair} rests at a gap of {figure(gap)}; the law gives {force}"
+        return Finding("note", QUESTION, met.names(row), text, found=found)
+    end = "nothing stops it" if np.isnan(gap) else f"it would rest only in overlap, at a gap of {figure(gap)}"
+    text = f"{pair}: the law gives at most {figure(share)} of its weight; {end}"
+    enough, remedy = stronger(met.law, met.at_walls, share)
+    return Finding("error", QUESTION, met.names(row), text, remedy, found, enough)
+
+
+def _deepest(met: Encounters) -> float:
+    """How far into overlap a law is asked: no body is gone through [length]."""
+    return min(met.law.range, min(body.bounding_radius for body in met.system.bodies))

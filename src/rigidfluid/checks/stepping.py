@@ -1,0 +1,86 @@
+"""How long does a contact last, and how many substeps does it take?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, log2
+
+import numpy as np
+
+from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.finding import Finding, Grade, at_most, figure
+from rigidfluid.checks.response import greatest_stiffness, turning_gap
+from rigidfluid.core.contact_path import MOST_SUBSTEPS
+from rigidfluid.core.scene import TimeTable
+from rigidfluid.core.substep import RESOLUTION
+
+QUESTION = "step"
+_STABLE = 2.0
+"""Verlet's scheme explodes above this substep times frequency."""
+_ACCURATE = 0.5
+
+
+def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
+    """Compare π √(m/k), with the greatest stiffness k that the impact reaches, with the step and its substeps.
+
+    Parameters
+    ----------
+    met : Encounters
+        The bodies, with a wall or with each other.
+    time : TimeTable
+        Nominal and shortest step.
+
+    Yields
+    ------
+    Finding
+        One for each kind of pair. With fixed substeps h, ω h > 2 is an error and > 0.5 a warning.
+    """
+    turning = turning_gap(met.law, met.contacts, met.energy, met.weight)
+    stiffness = greatest_stiffness(met.law, met.contacts, turning)
+    frequency = np.sqrt(stiffness * met.inverse_mass)
+    for row in met.worst(frequency):
+        if frequency[row] > 0.0:
+            yield _finding(met, row, float(frequency[row]), float(stiffness[row]), time)
+
+
+def _finding(met: Encounters, row: int, frequency: float, stiffness: float, time: TimeTable) -> Finding:
+    found = {
+        "contact_time": np.pi / frequency,
+        "stiffness": stiffness,
+        "frequency": frequency,
+        "contact_time_over_step": np.pi / frequency / time.step,
+        "way_over_range": float(met.speed[row]) * time.step / met.law.range,
+    }
+    pair = " and ".join(met.names(row))
+    text = f"{pair}: a contact lasts about {figure(np.pi / frequency)}, and a step {figure(time.step)}"
+    if met.system.substeps is None:
+        return _adapted(met.names(row), text, found, frequency, time)
+    return _fixed(met.names(row), text, found, frequency * time.step, met.system.substeps)
+
+
+def _fixed(names: tuple[str, str], text: str, found: dict[str, float], turn: float, substeps: int) -> Finding:
+    """``turn`` is ω times the step."""
+    each = turn / substeps
+    found |= {"substeps": substeps, "turn_per_substep": each}
+    text += f" of {substeps} substeps; frequency times substep is {figure(each)}"
+    if each <= _ACCURATE:
+        return Finding("note", QUESTION, names, text, found=found)
+    grade: Grade = "error" if each > _STABLE else "warning"
+    text += ", which explodes above 2" if each > _STABLE else ", which is inaccurate above 0.5"
+    enough = {"substeps": ceil(turn / _ACCURATE)}
+    remedy = f"Set contact.substeps to {enough['substeps']} or more, or leave it out."
+    return Finding(grade, QUESTION, names, text, remedy, found, enough)
+
+
+def _adapted(names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable) -> Finding:
+    substeps, least = (2 ** ceil(log2(max(size * frequency / RESOLUTION, 1.0))) for size in (time.step, time.shortest))
+    found |= {"substeps": substeps}
+    text += f", divided into about {substeps}"
+    if substeps <= MOST_SUBSTEPS:
+        return Finding("note", QUESTION, names, text, found=found)
+    enough = {"time_step": MOST_SUBSTEPS * RESOLUTION / frequency / 2.0}
+    remedy = f"Soften the law, widen its range, or set time.step to {at_most(enough['time_step'])} or less."
+    if least <= MOST_SUBSTEPS:
+        return Finding("warning", QUESTION, names, f"{text}: steps will be cut", remedy, found, enough)
+    text += f", and even the shortest step more than the {MOST_SUBSTEPS} that are allowed"
+    return Finding("error", QUESTION, names, text, remedy, found, enough)
