@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rigidfluid.checks import Report
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
+    from rigidfluid.crosscheck import Comparison
     from rigidfluid.studies.results import Results
     from rigidfluid.studies.run import StudyProgress
 
@@ -48,6 +49,7 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 
 JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
 Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
+Steps = Annotated[int, typer.Option(help="Steps to run with: time.step over contact.substeps, half of it, …", min=1)]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -93,6 +95,16 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
         _print_findings(report)
     if report.count("error"):
         raise typer.Exit(FOUND_ERRORS)
+
+
+@app.command()
+def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile = None, steps: Steps = 3) -> None:
+    """Run a dry scene of balls in LAMMPS too, and say how far the results are apart."""
+    with _reported():
+        from rigidfluid.core.scene import load_scene
+        from rigidfluid.crosscheck import crosscheck as run_both
+
+        _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)
 
 
 @app.command()
@@ -270,6 +282,22 @@ def _write_json(data: object, path: Path) -> None:
 
     with writing(path):
         path.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _print_comparison(comparison: Comparison, json_file: Path | None) -> None:
+    """Differences over the step, and the means of both programs; all rows to a file, if one is named."""
+    from dataclasses import asdict
+
+    columns = ("step", "position", "velocity", "spin", "energy", "momentum", "from_finest", "parted")
+    table = Table(*(column.replace("_", " ") for column in columns), title="largest differences from LAMMPS")
+    means = Table("step", "mean energy", "LAMMPS'", "momentum", "LAMMPS'", "pressure on walls", "LAMMPS'")
+    for row in comparison.rows:
+        table.add_row(*("never" if (value := getattr(row, column)) is None else f"{value:.1e}" for column in columns))
+        pairs = [(getattr(row.ours, name), getattr(row.theirs, name)) for name in ("energy", "momentum", "pressure")]
+        means.add_row(_figure(row.step), *(_figure(value) for pair in pairs for value in pair))
+    Console().print(table, means)
+    if json_file is not None:
+        _write_json([asdict(row) for row in comparison.rows], json_file)
 
 
 def _print_rows(rows: Iterable[DataclassInstance], json_file: Path | None) -> None:

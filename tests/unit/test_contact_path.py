@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core import wrenches
-from rigidfluid.core.rigid import moment
+from rigidfluid.core import contact_path
 from rigidfluid.core.scene import Scene
+from rigidfluid.core.types import Wrench
+from rigidfluid.core.wrenches import contact_wrench
 from rigidfluid.errors import StepError
 
 RADIUS, RANGE, SPEED = 0.1, 0.02, 3.0
@@ -80,7 +81,11 @@ def test_a_tilted_ellipse_keeps_its_energy():
 
 
 def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
-    monkeypatch.setattr(wrenches, "moment", lambda arm, force: -moment(arm, force))
+    def flipped(*arguments):
+        wrench = contact_wrench(*arguments)
+        return Wrench(wrench.force, -wrench.torque)
+
+    monkeypatch.setattr(contact_path, "contact_wrench", flipped)
     try:
         energies, _ = tilted(10.0)
     except StepError:

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ellipj, ellipkinc
 
 from rigidfluid.core.free_rotation import rotate_freely
-from rigidfluid.core.rigid import rotation_matrices
+from rigidfluid.core.rigid import rotate, rotation_matrices
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.simulation import Simulation
 
@@ -87,3 +87,14 @@ def test_a_thousand_periods_keep_energy_and_momentum():
     kept = np.einsum("nij,nj->ni", rotation, INERTIA * local)
     np.testing.assert_allclose(kept, np.broadcast_to(momentum, kept.shape), atol=1e-9 * np.linalg.norm(momentum))
     assert len(energy) == 4_001
+
+
+def test_round_bodies_turn_by_their_constant_spin():
+    random = np.random.default_rng(0)
+    orientation = random.normal(size=(20, 4))
+    orientation /= np.linalg.norm(orientation, axis=1, keepdims=True)
+    spin, moment = random.normal(size=(20, 3)), random.uniform(0.5, 2.0, 20)
+    spin[3] = 0.0
+    turned = rotate_freely(orientation, moment[:, None] * spin, moment[:, None, None] * np.eye(3), 0.7)
+    np.testing.assert_allclose(turned, rotate(orientation, 0.7 * spin), rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(turned[3], orientation[3])

@@ -72,3 +72,32 @@ def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:
     bodies = [Sphere(SphereOptions(radius=1.0), 2), Ellipsoid(EllipsoidOptions(semi_axes=[1.0, 2.0]), 2)]
     with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "ellipsoid".*auto'):
         SphereDetector(PartOptions(), bodies, [])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_kept_neighbours_find_what_a_new_search_finds(dimension: int) -> None:
+    random = np.random.default_rng(1)
+    radii, position = random.uniform(0.1, 0.3, 200), random.uniform(0, 5, (200, dimension))
+    walls = tuple(
+        Wall(200 + 2 * axis, "left", np.zeros(dimension), np.eye(dimension)[axis]) for axis in range(dimension)
+    )
+    kept = detector_of(radii, dimension, walls)
+    velocity, searched = random.normal(size=(200, dimension)), 0
+    for step in range(60):
+        position = position + 0.004 * velocity
+        before = kept._pairs._lists
+        for reach in (0.05, 0.02 * step):
+            found = kept.detect(pose_of(position), None, reach)
+            fresh = detector_of(radii, dimension, walls).detect(pose_of(position), None, reach)
+            for field in type(found).__slots__:
+                np.testing.assert_array_equal(getattr(found, field), getattr(fresh, field))
+        searched += kept._pairs._lists is not before
+    assert 2 < searched < 40
+
+
+def test_jump_beyond_the_kept_neighbours_is_noticed() -> None:
+    position = np.stack([np.arange(100.0), np.zeros(100)], axis=1)
+    detector = detector_of(np.full(100, 0.1), 2)
+    assert len(detector.detect(pose_of(position), None, 0.01)) == 0
+    position[0] = [99.0, 0.205]
+    assert detector.detect(pose_of(position), None, 0.01).body_b.tolist() == [99]

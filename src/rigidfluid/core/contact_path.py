@@ -124,7 +124,8 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
 
     def contacts_at(pose: Pose) -> Contacts:
         near = system.detector.detect(pose, None, reach)
-        return select(near, may_repel(system, near))
+        chosen = may_repel(system, near)
+        return near if chosen.all() else select(near, chosen)
 
     return contacts_at
 
@@ -246,7 +247,10 @@ def _fastest(system: System, twist: Twist, size: float) -> float:
 
 
 def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:
-    return Wrench(total.force + factor * wrench.force, total.torque + factor * wrench.torque)
+    """The total with so much of a wrench added in place."""
+    total.force[:] += factor * wrench.force
+    total.torque[:] += factor * wrench.torque
+    return total
 
 
 def _flat(twist: Twist) -> FloatArray:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.rigid import rotate
 from rigidfluid.core.types import FloatArray
 
 LARGEST_TURN = 0.1
@@ -51,25 +50,55 @@ def rotate_freely(
     if orientation.shape[1] == 1:
         return orientation + time * angular_momentum / inertia[:, 0]
     result = orientation.copy()
-    moments = np.einsum("nii->ni", inertia)
-    is_round = np.all(inertia == moments[:, :1, None] * np.eye(3), axis=(1, 2))
-    result[is_round] = rotate(orientation[is_round], time * angular_momentum[is_round] / moments[is_round, :1])
-    other = np.flatnonzero(~is_round)
-    if len(other):
-        _tumble(result, angular_momentum, np.linalg.inv(inertia), other, time, LARGEST_TURN, _STAGES)
+    _turn(result, angular_momentum, inertia, time, LARGEST_TURN, _STAGES)
     return result
 
 
 @njit(cache=True)
-def _tumble(orientation, angular_momentum, inverse, bodies, time, largest_turn, stages):
-    for body in bodies:
-        quaternion, momentum = orientation[body], angular_momentum[body]
-        length = np.sqrt(momentum[0] ** 2 + momentum[1] ** 2 + momentum[2] ** 2)
-        fastest = length * np.sqrt((inverse[body] ** 2).sum())
-        steps = int(np.ceil(abs(time) * fastest / largest_turn))
-        for _ in range(steps):
-            for stage in stages:
-                _midpoint(quaternion, momentum, inverse[body], stage * time / steps)
+def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages):
+    for body in range(len(orientation)):
+        if _is_round(inertia, body):
+            _spin(orientation, angular_momentum, body, time / inertia[body, 0, 0])
+        else:
+            inverse = np.linalg.inv(inertia[body])
+            _tumble(orientation[body], angular_momentum[body], inverse, time, largest_turn, stages)
+
+
+@njit(cache=True)
+def _is_round(inertia, body):
+    for i in range(3):
+        for j in range(3):
+            if inertia[body, i, j] != (inertia[body, 0, 0] if i == j else 0.0):
+                return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _spin(orientation, momentum, body, factor):
+    """Turn one quaternion in place by exp([factor · momentum]×)."""
+    half = 0.5 * factor
+    x, y, z = half * momentum[body, 0], half * momentum[body, 1], half * momentum[body, 2]
+    angle = np.sqrt(x * x + y * y + z * z)
+    if angle == 0.0:
+        return
+    w, ratio = np.cos(angle), np.sin(angle) / angle
+    x, y, z = ratio * x, ratio * y, ratio * z
+    a, b, c, d = orientation[body, 0], orientation[body, 1], orientation[body, 2], orientation[body, 3]
+    e, f = w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c
+    g, h = w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b
+    scale = 1.0 / np.sqrt(e * e + f * f + g * g + h * h)
+    orientation[body, 0], orientation[body, 1] = scale * e, scale * f
+    orientation[body, 2], orientation[body, 3] = scale * g, scale * h
+
+
+@njit(cache=True)
+def _tumble(quaternion, momentum, inverse, time, largest_turn, stages):
+    length = np.sqrt(momentum[0] ** 2 + momentum[1] ** 2 + momentum[2] ** 2)
+    fastest = length * np.sqrt((inverse**2).sum())
+    steps = int(np.ceil(abs(time) * fastest / largest_turn))
+    for _ in range(steps):
+        for stage in stages:
+            _midpoint(quaternion, momentum, inverse, stage * time / steps)
 
 
 @njit(cache=True)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
+from numba import njit
 
 from rigidfluid.core.free_rotation import rotate_freely
 from rigidfluid.core.rigid import inverse_lab_inertia, lab_inertia, rotate
@@ -70,12 +71,14 @@ class FreeMovement:
         self._given, self._time = controlled_twist, 0.0
         self._driven = bool(controlled.any())
         self._velocity = twist.velocity.copy()
+        self._inverse: FloatArray = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
+        self._round = bool(np.all(inertia == inertia[:, :1, :1] * np.eye(inertia.shape[1])))
         spin = lab_inertia(inertia, pose.orientation)
         self._momentum = np.einsum("nij,nj->ni", spin, twist.angular_velocity)
 
     @property
     def twist(self) -> Twist:
-        return Twist(self._velocity, np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
+        return Twist(self._velocity.copy(), np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """1/m, whatever the direction."""
@@ -87,8 +90,8 @@ class FreeMovement:
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change momenta by F + W and T for so long."""
-        self._velocity = self._velocity + self._free * time * (wrench.force + self._weight) / self._mass[:, None]
-        self._momentum = self._momentum + self._free * time * wrench.torque
+        state = self._velocity, self._momentum
+        _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)
 
     def drift(self, time: float) -> None:
         """Move straight on and turn freely; driven bodies with their twist in mid-time."""
@@ -107,7 +110,21 @@ class FreeMovement:
         self._momentum = np.where(self._free, self._momentum, spin)
 
     def _inverse_inertia(self) -> FloatArray:
+        if self._round:
+            return self._inverse
         return inverse_lab_inertia(self._inertia, self.pose.orientation)
+
+
+@njit(cache=True)
+def _kick(velocity, momentum, force, torque, weight, mass, free, time):  # type: ignore[no-untyped-def]
+    """In place, as fresh arrays of many bodies would cost more than the sums."""
+    for body in range(len(velocity)):
+        if free[body]:
+            share = time / mass[body]
+            for k in range(velocity.shape[1]):
+                velocity[body, k] += share * (force[body, k] + weight[body, k])
+            for k in range(momentum.shape[1]):
+                momentum[body, k] += time * torque[body, k]
 
 
 class CarriedMovement:

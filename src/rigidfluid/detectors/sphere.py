@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.broad_phase import near_pairs
-from rigidfluid.core.contacts import in_order, select
+from rigidfluid.core.broad_phase import NearPairs
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
 from rigidfluid.errors import SceneError
 
 
@@ -44,12 +44,29 @@ class SphereDetector(Detector):
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
+        self._pairs = NearPairs(self._radii)
+        self._surfaces = np.array([wall.surface for wall in walls], dtype=np.int64)
+        self._planes = np.array([[wall.point, wall.normal] for wall in walls], dtype=float)
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the positions alone."""
-        found = [_ball_contacts(pose.position, self._radii, reach)]
-        found += [_wall_contacts(pose.position, self._radii, wall, reach) for wall in self.walls]
-        return in_order(found)
+        position, radii = pose.position, self._radii
+        pairs = self._pairs.within(position, reach)
+        planes = self._planes.reshape(-1, 2, position.shape[1])
+        a, b, gap = near_surfaces(position, radii, pairs.start, pairs.second, planes, self._surfaces, reach)
+        point_a, point_b, normal = points_and_normals(position, radii, planes, self._surfaces, a, b)
+        # behind the bodies' radii that of any wall
+        all_radii = np.append(radii, np.inf)
+        return Contacts(
+            body_a=a,
+            body_b=b,
+            point_a=point_a,
+            point_b=point_b,
+            normal=normal,
+            gap=gap,
+            radius_a=radii[a],
+            radius_b=all_radii[np.minimum(b, len(radii))],
+        )
 
 
 def _radius(index: int, body: Body) -> float:
@@ -61,44 +78,3 @@ def _radius(index: int, body: Body) -> float:
         "balls only",
         'Use detector = "auto", which takes one for these shapes.',
     )
-
-
-def _ball_contacts(position: FloatArray, radii: FloatArray, reach: float) -> Contacts:
-    body_a, body_b = near_pairs(position, radii, reach)
-    line = position[body_a] - position[body_b]
-    distance = np.linalg.norm(line, axis=1)
-    gap = distance - radii[body_a] - radii[body_b]
-    normal = _unit(line, distance)
-    contacts = Contacts(
-        body_a=body_a,
-        body_b=body_b,
-        point_a=position[body_a] - radii[body_a, None] * normal,
-        point_b=position[body_b] + radii[body_b, None] * normal,
-        normal=normal,
-        gap=gap,
-        radius_a=radii[body_a],
-        radius_b=radii[body_b],
-    )
-    return select(contacts, gap <= reach)
-
-
-def _wall_contacts(position: FloatArray, radii: FloatArray, wall: Wall, reach: float) -> Contacts:
-    height = (position - wall.point) @ wall.normal
-    normal = np.broadcast_to(wall.normal, position.shape)
-    contacts = Contacts(
-        body_a=np.arange(len(radii)),
-        body_b=np.full(len(radii), wall.surface),
-        point_a=position - radii[:, None] * normal,
-        point_b=position - height[:, None] * normal,
-        normal=normal,
-        gap=height - radii,
-        radius_a=radii,
-        radius_b=np.full(len(radii), np.inf),
-    )
-    return select(contacts, contacts.gap <= reach)
-
-
-def _unit(line: FloatArray, distance: FloatArray) -> FloatArray:
-    """Directions; the first axis for balls with a common centre, where any direction will do."""
-    together = (distance == 0)[:, None]
-    return np.where(together, np.eye(1, line.shape[1]), line / np.where(together, 1.0, distance[:, None]))

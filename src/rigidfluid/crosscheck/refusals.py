@@ -1,0 +1,56 @@
+"""What LAMMPS cannot run as we do is refused, with the reason."""
+
+from __future__ import annotations
+
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.system import System
+from rigidfluid.errors import CrosscheckError
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
+
+
+def refuse_foreign(scene: Scene, system: System) -> None:
+    """Raise CrosscheckError if LAMMPS has no exact counterpart for something in the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    system : System
+        Its parts.
+
+    Raises
+    ------
+    CrosscheckError
+        For a fluid, shapes other than balls, motions that are prescribed, articulated bodies, and laws that take
+        energy out, but for ``spring-dashpot``.
+    """
+    if system.backend.needs_mesh:
+        raise CrosscheckError(
+            "fluid.backend", repr(scene.fluid.backend), "'dry'", "Leave the fluid out: --set fluid.backend=dry."
+        )
+    for number, (table, body) in enumerate(zip(scene.body, system.bodies, strict=True)):
+        field = f"body.{number}"
+        if body.radius is None:
+            raise CrosscheckError(
+                f"{field}.type",
+                repr(table.type),
+                "balls: LAMMPS repels other shapes by laws of its own, which are none of these",
+                "Use type = 'sphere'.",
+            )
+        if table.prescribed is not None:
+            raise CrosscheckError(
+                f"{field}.prescribed",
+                "a prescribed motion",
+                "free and fixed bodies",
+                "Use fixed = true, or leave it out.",
+            )
+        if table.part_of is not None:
+            raise CrosscheckError(f"{field}.part_of", repr(table.part_of), "bodies of one part", "Leave part_of out.")
+    law = system.law
+    if law is not None and (law.dissipative or not law.conservative) and not isinstance(law, SpringDashpotLaw):
+        raise CrosscheckError(
+            "contact.law",
+            repr(law.name),
+            "'spring-dashpot', and laws that keep the energy",
+            "Choose another law; what LAMMPS lets films resist is another formula.",
+        )

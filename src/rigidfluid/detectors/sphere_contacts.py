@@ -1,0 +1,111 @@
+"""Contacts of balls with balls and flat walls: arrays in, arrays out."""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def _square(position, a, b):
+    """Of the distance of two centres; written out, since most pairs go no further."""
+    x, y = position[a, 0] - position[b, 0], position[a, 1] - position[b, 1]
+    if position.shape[1] == 2:
+        return x * x + y * y
+    z = position[a, 2] - position[b, 2]
+    return x * x + y * y + z * z
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def near_surfaces(position, radii, start, second, planes, surfaces, reach):
+    """Surfaces near each ball, with gap ≤ ``reach``.
+
+    Parameters
+    ----------
+    position : (n, d) array
+        Centres [length].
+    radii : (n,) array
+        Radii [length].
+    start : (n+1,) array
+        Where the pairs of each ball begin in ``second``.
+    second : (p,) array
+        The other ball of each pair, of a higher number.
+    planes : (w, 2, d) array
+        A point and the unit normal of each wall.
+    surfaces : (w,) array
+        Surface numbers of the walls, rising.
+    reach : float
+        Largest gap [length].
+
+    Returns
+    -------
+    (m,) array, (m,) array, (m,) array
+        The ball a, the surface b and the gap, sorted by (a, b).
+    """
+    count, dimension = position.shape
+    most = len(second) + count * len(planes)
+    body, other, gap = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
+    found = 0
+    for a in range(count):
+        for pair in range(start[a], start[a + 1]):
+            b = second[pair]
+            square = _square(position, a, b)
+            # a root for those alone that may be near
+            if square > 1.001 * max(radii[a] + radii[b] + reach, 0.0) ** 2:
+                continue
+            free = np.sqrt(square) - radii[a] - radii[b]
+            if free <= reach:
+                body[found], other[found], gap[found] = a, b, free
+                found += 1
+        for wall in range(len(planes)):
+            height = 0.0
+            for k in range(dimension):
+                height += (position[a, k] - planes[wall, 0, k]) * planes[wall, 1, k]
+            if height - radii[a] <= reach:
+                body[found], other[found], gap[found] = a, surfaces[wall], height - radii[a]
+                found += 1
+    return body[:found].copy(), other[:found].copy(), gap[:found].copy()
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def points_and_normals(position, radii, planes, surfaces, body, other):
+    """Where near surfaces face each other.
+
+    Parameters
+    ----------
+    position, radii, planes, surfaces : arrays
+        As for `near_surfaces`.
+    body, other : (m,) array
+        Its result.
+
+    Returns
+    -------
+    (m, d) array, (m, d) array, (m, d) array
+        Nearest point of a, of b, and the normal; the first axis for balls with a common centre.
+    """
+    dimension = position.shape[1]
+    point_a, point_b = np.empty((len(body), dimension)), np.empty((len(body), dimension))
+    normal = np.empty((len(body), dimension))
+    for i in range(len(body)):
+        a, b = body[i], other[i]
+        if b < len(position):
+            square = _square(position, a, b)
+            distance = np.sqrt(square)
+            for k in range(dimension):
+                axis = 1.0 if k == 0 else 0.0
+                normal[i, k] = (position[a, k] - position[b, k]) / distance if distance > 0.0 else axis
+                point_b[i, k] = position[b, k] + radii[b] * normal[i, k]
+        else:
+            wall = np.searchsorted(surfaces, b)
+            height = 0.0
+            for k in range(dimension):
+                height += (position[a, k] - planes[wall, 0, k]) * planes[wall, 1, k]
+            for k in range(dimension):
+                normal[i, k] = planes[wall, 1, k]
+                point_b[i, k] = position[a, k] - height * normal[i, k]
+        for k in range(dimension):
+            point_a[i, k] = position[a, k] - radii[a] * normal[i, k]
+    return point_a, point_b, normal
