@@ -23,7 +23,9 @@ class Interrupted(Simulation):
 
     def _first_level(self):
         odd = self.state.tick // self.clock.ticks(0) % 2
-        return max(super()._first_level(), int(self.uneven and odd))
+        level, path = super()._first_level()
+        shorter = self.uneven and odd and level == 0
+        return (1, None) if shorter else (level, path)
 
 
 def fall(step, uneven):
