@@ -156,6 +156,7 @@ def _coast(movement: FreeMovement, size: float) -> BodiesPath:
     none = nothing(movement.pose)
     movement.kick(none, 0.5 * size)
     movement.drift(size)
+    movement.kick(none, 0.5 * size)
     return BodiesPath(movement.pose, movement.twist, none, 0.0, 1)
 
 

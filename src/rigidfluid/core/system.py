@@ -133,7 +133,8 @@ def build_system(scene: Scene) -> System:
 def _assemblies(scene: Scene) -> IntArray:
     """A number for each body, the same for parts of one articulated body (n,)."""
     wholes: list[str | int] = [body.part_of or number for number, body in enumerate(scene.body)]
-    return np.array([wholes.index(whole) for whole in wholes], dtype=np.int64)
+    first: dict[str | int, int] = {}
+    return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
 
 
 def _initial_pose(scene: Scene) -> Pose:
