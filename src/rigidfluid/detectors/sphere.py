@@ -7,10 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.broad_phase import NearPairs
 from rigidfluid.core.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
-from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
 from rigidfluid.errors import SceneError
 
 
@@ -42,6 +40,8 @@ class SphereDetector(Detector):
     name: ClassVar[str] = "sphere"
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        from rigidfluid.core.near_pairs import NearPairs
+
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
         self._pairs = NearPairs(self._radii)
@@ -50,6 +50,8 @@ class SphereDetector(Detector):
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the positions alone."""
+        from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
+
         position, radii = pose.position, self._radii
         pairs = self._pairs.within(position, reach)
         planes = self._planes.reshape(-1, 2, position.shape[1])
