@@ -157,11 +157,12 @@ class ForceLaw(Part):
     overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "repels"
     """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
     StepRejected."""
+    loads: Loads | None = None
+    """What its strength follows from, in a law that sets it by them; bodies of equal loads then meet alike."""
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         self.options = options
         self.range = range
-        self.loads = loads
 
     @abstractmethod
     def force(self, contacts: Contacts) -> FloatArray:

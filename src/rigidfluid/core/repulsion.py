@@ -70,7 +70,7 @@ class Repulsion(ForceLaw):
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
         if AUTO in (self.options.epsilon, self.options.epsilon_wall):
-            require_loads(loads, range)
+            self.loads = require_loads(loads, range)
 
     @abstractmethod
     def unit_force(self, contacts: Contacts) -> FloatArray:
