@@ -448,3 +448,26 @@ def test_every_question_and_figure_is_explained() -> None:
     words |= {word for each in reports[0].to_dict()["bodies"] for word in each}
     assert {"rest", "impact", "smallest-gap", "step", "cells", "start", "range", "law", "open-face", "auto"} <= words
     assert sorted(word for word in words if f"`{word}`" not in page) == []
+
+
+def test_a_light_body_under_a_heavy_one_is_warned_of():
+    """`auto` looks at each body's own weight; what comes to lie on it is more."""
+    light = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.15]}
+    heavy = light | {"density": 400.0, "position": [0.5, 0.5]}
+    tables = {
+        "scene": {"name": "stack", "dimension": 2},
+        "fluid": {"backend": "dry", "gravity": [0.0, -10.0]},
+        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
+        "contact": {"law": "normal", "range": 0.02, "epsilon": "auto"},
+        "time": {"end": 1.0, "step": 0.01},
+        "output": {"every": 0.5},
+    }
+
+    def stacks(*bodies, **contact):
+        data = tables | {"body": list(bodies), "contact": tables["contact"] | contact}
+        return [finding for finding in check(Scene.from_dict(data)).findings if finding.question == "stack"]
+
+    (finding,) = stacks(light, heavy)
+    assert (finding.grade, finding.subject[0]) == ("warning", "body0")
+    assert stacks(light, heavy, epsilon_wall=finding.enough["epsilon_wall"]) == []
+    assert stacks(heavy) == []

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
-from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.remedies import stronger
 from rigidfluid.checks.response import largest_force, rest_gap
+from rigidfluid.core.repulsion import Repulsion
 
 QUESTION = "rest"
 
@@ -36,6 +37,38 @@ def at_rest(met: Encounters) -> Iterator[Finding]:
     for row in met.worst(-share):
         if met.weight[row] > 0.0:
             yield _finding(met, row, float(share[row]), float(gaps[row]))
+
+
+def under_the_others(met: Encounters) -> Iterator[Finding]:
+    """Compare the largest force of a wall on each body with the weight of all bodies that may come to lie on it.
+
+    Parameters
+    ----------
+    met : Encounters
+        The bodies, each at a wall.
+
+    Yields
+    ------
+    Finding
+        A warning for the worst kind of body where the wall's law holds less.
+    """
+    free = ~met.system.controlled
+    together = float(np.linalg.norm(met.system.weight[free].sum(axis=0)))
+    if not met.at_walls or np.count_nonzero(free) < 2 or together == 0.0:
+        return
+    share = largest_force(met.law, met.contacts)[0] / together
+    row = int(np.argmin(share))
+    if share[row] >= 1.0 or share[row] * together < met.weight[row]:
+        return  # that it cannot hold itself is an error of its own
+    names = met.names(row)
+    text = f"{names[0]} on {names[1]}: the law gives at most {figure(float(share[row]))} of the weight of all bodies"
+    text += "; others that come to lie on it may press it through"
+    enough, remedy = {"strength": 1.0 / float(share[row])}, "Make the law stronger at walls."
+    if isinstance(met.law, Repulsion):
+        enough["epsilon_wall"] = float(share[row] * met.law.epsilon(met.contacts)[row])
+        remedy = f"Set contact.epsilon_wall to {at_most(enough['epsilon_wall'])} or less."
+    found = {"force_over_all_weights": float(share[row]), "all_weights": together}
+    yield Finding("warning", "stack", names, text, remedy, found, enough)
 
 
 def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:

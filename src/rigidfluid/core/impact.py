@@ -28,7 +28,7 @@ def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight
     v = √(v₀² + 2 (W/m) h), h the free height along the weight to the face of the box, less the range of the law. In a
     fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the surface of
     a body that is no ball turns with it. A driven body has the greatest speed of its prescription. An ``impact_speed``
-    in the scene takes the place of all that for free bodies.
+    in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight
     if wet:
         falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, bodies, pull))) + _fastest_inflow(scene)
     if scene.contact.impact_speed is not None:
-        falling = np.full(len(bodies), scene.contact.impact_speed)
+        falling = np.maximum(start, scene.contact.impact_speed)
     return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
 
 

@@ -25,6 +25,8 @@ FIGURES = (
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
 """Keys of summary.json that hold numbers, or tables and lists of them."""
+ENERGIES = (*LEDGER_COLUMNS, "relative_residual")
+"""Keys of its table ``energy``."""
 
 
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
@@ -82,8 +84,7 @@ def _highest_speeds(system: System, history: History) -> FloatArray:
 
 def energy_balance(ledger: Ledger) -> dict[str, float]:
     """What is stored, what came in, what went out [energy], and the residual over the energy that passed through."""
-    names = (*LEDGER_COLUMNS, "relative_residual")
-    return {name: getattr(ledger, name) for name in names}
+    return {name: getattr(ledger, name) for name in ENERGIES}
 
 
 def versions() -> dict[str, str]:

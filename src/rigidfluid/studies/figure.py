@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rigidfluid.core.history import History
 from rigidfluid.core.records import columns
 from rigidfluid.core.scene import Scene
-from rigidfluid.core.summary import FIGURES
+from rigidfluid.core.summary import ENERGIES, FIGURES
 from rigidfluid.core.tables import KINDS
 from rigidfluid.core.types import BoolArray, FloatArray
 from rigidfluid.errors import SceneError
@@ -38,7 +38,10 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
         Naming the nearest name that there is.
     """
     if figure.key is not None:
-        _refuse_unknown("", figure.key.partition(".")[0], FIGURES)
+        table, _, rest = figure.key.partition(".")
+        _refuse_unknown("", table, FIGURES)
+        if table == "energy":
+            _refuse_unknown("", rest, ENERGIES)
         return
     names = columns(scene.dimension)[str(figure.table)]
     _refuse_unknown(".column", str(figure.column), [name for name in names if KINDS.get(name) is not str])
