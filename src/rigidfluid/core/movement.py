@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from copy import copy
+from typing import Protocol, Self
 
 import numpy as np
 from numba import njit
@@ -26,8 +27,15 @@ class Movement(Protocol):
         """e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for bodies that are driven [1/mass]."""
 
     @property
+    def mobility(self) -> FloatArray:
+        """M⁻¹ of straight motion (n, d, d), zero for bodies that are driven [1/mass]."""
+
+    @property
     def inverse_inertia(self) -> FloatArray:
         """(R I Rᵀ)⁻¹ (n, k, k), zero for bodies that are driven [1/(mass·length²)]."""
+
+    def copied(self) -> Self:
+        """The same motion, to be tried out."""
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``."""
@@ -85,8 +93,18 @@ class FreeMovement:
         return np.asarray(self._free[body, 0] / self._mass[body])
 
     @property
+    def mobility(self) -> FloatArray:
+        return np.asarray((self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1]))
+
+    @property
     def inverse_inertia(self) -> FloatArray:
         return self._inverse_inertia() * self._free[:, :, None]
+
+    def copied(self) -> Self:
+        """With momenta of its own, which kicks change in place."""
+        other = copy(self)
+        other._velocity, other._momentum = self._velocity.copy(), self._momentum.copy()
+        return other
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change momenta by F + W and T for so long."""
@@ -146,7 +164,7 @@ class CarriedMovement:
     def __init__(self, pose: Pose, twist: Twist, rate: FloatArray, linear: FloatArray, angular: FloatArray) -> None:
         self.pose = pose
         self.inverse_inertia = angular
-        self._linear = linear
+        self.mobility = linear
         self._twist = twist
         self._rate = rate
 
@@ -154,14 +172,18 @@ class CarriedMovement:
     def twist(self) -> Twist:
         return self._twist
 
+    def copied(self) -> Self:
+        """Poses and twists are never changed in place."""
+        return copy(self)
+
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """That of the body and its added mass."""
-        return np.asarray(np.einsum("mi,mij,mj->m", direction, self._linear[body], direction))
+        return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the twist by A and M⁻¹F for so long."""
         d = wrench.force.shape[1]
-        gain = self._rate[:, :d] + np.einsum("nij,nj->ni", self._linear, wrench.force)
+        gain = self._rate[:, :d] + np.einsum("nij,nj->ni", self.mobility, wrench.force)
         turn = self._rate[:, d:] + np.einsum("nij,nj->ni", self.inverse_inertia, wrench.torque)
         self._twist = Twist(self._twist.velocity + time * gain, self._twist.angular_velocity + time * turn)
 

@@ -148,6 +148,10 @@ class ContactTable(_OpenTable):
         ge=0,
         description="Speed at which free bodies hit; from gravity, drag and the box if not given [length/time]",
     )
+    stepping: Literal["substeps", "implicit"] = Field(
+        default="substeps",
+        description="How bodies go through contacts: in `substeps`, or in one `implicit` step that keeps the energy",
+    )
     substeps: int | None = Field(
         default=None,
         ge=1,

@@ -178,6 +178,9 @@ def _check_contact(scene: Scene) -> None:
         if law is None and given is not None:
             remedy = "Name the law: `law = …`."
             raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
+    if scene.contact.stepping == "implicit" and scene.contact.substeps is not None:
+        allowed = 'none beside `stepping = "implicit"`'
+        raise SceneError("contact.substeps", scene.contact.substeps, allowed, "Remove one of them.")
     if smallest is not None and range_ is not None and smallest >= range_:
         allowed = f"a length above 0 and below contact.range = {range_}"
         raise SceneError("contact.smallest_gap", smallest, allowed, "Shorten it, or widen the range.")

@@ -44,7 +44,7 @@ class System:
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
     ``loads``: what contacts must hold; its smallest gap is 0 without a law.
-    ``substeps``: of contacts in a step, None where they follow from the contacts.
+    ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     """
 
@@ -71,6 +71,7 @@ class System:
     law: ForceLaw | None
     loads: Loads
     substeps: int | None
+    implicit: bool
 
 
 def build_system(scene: Scene) -> System:
@@ -127,6 +128,7 @@ def build_system(scene: Scene) -> System:
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,
+        implicit=scene.contact.stepping == "implicit",
     )
 
 

@@ -48,7 +48,7 @@ def _timed(scene: Scene, timing: Timing) -> Scene:
     # The shortest step is the block: a step that is cut would not be LAMMPS' step.
     data["time"] = {"step": block, "shortest": block, "end": timing.blocks * block}
     data["output"] = {"every": timing.blocks * block}
-    data["contact"]["substeps"] = timing.steps
+    data["contact"] |= {"stepping": "substeps", "substeps": timing.steps}
     return Scene.from_dict(data)
 
 
