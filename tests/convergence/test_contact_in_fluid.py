@@ -7,7 +7,7 @@ import rigidfluid
 from rigidfluid.core.scene import Scene
 
 
-def bounce(step, end=0.032, epsilon=1e-7, **changes):
+def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
     return Scene.from_dict(
         {
             "scene": {"name": "bounce", "dimension": 2},
@@ -17,7 +17,7 @@ def bounce(step, end=0.032, epsilon=1e-7, **changes):
                 {"type": "sphere", "radius": 0.125, "density": 3.0, "position": [0.5, 0.2], "velocity": [0.0, -5.0]}
                 | changes
             ],
-            "contact": {"law": "centre", "range": 0.05, "epsilon": epsilon},
+            "contact": {"law": "centre", "range": 0.05, "epsilon": epsilon} | (contact or {}),
             "mesh": {"size": 0.1, "size_body": 0.05, "quality": 0.01, "refinements": 1, "cells_per_gap": 1},
             "time": {"end": end, "step": step},
             "output": {"every": end},
@@ -25,21 +25,35 @@ def bounce(step, end=0.032, epsilon=1e-7, **changes):
     )
 
 
-def test_second_order_through_a_contact():
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+def test_second_order_through_a_contact(stepping):
     """Positions after the bounce; the mesh is the same, so differences are those of the steps."""
-    heights = [rigidfluid.run(bounce(step)).bodies["y"][-1] for step in (1e-3, 5e-4, 2.5e-4, 1.25e-4)]
+    scenes = [bounce(step, contact={"stepping": stepping}) for step in (1e-3, 5e-4, 2.5e-4, 1.25e-4)]
+    heights = [rigidfluid.run(scene).bodies["y"][-1] for scene in scenes]
     first, second, third = np.abs(np.diff(heights))
     assert np.log2(first / second) > 1.8
     assert np.log2(second / third) > 1.8
 
 
+def test_implicit_contacts_followed_from_a_mesh_end_where_substeps_do():
+    ends = []
+    for stepping in ("substeps", "implicit"):
+        scene = bounce(2.5e-4, contact={"stepping": stepping, "detector": "narrow_band"})
+        ends.append(rigidfluid.run(scene).bodies["y"][-1])
+    assert ends[1] == pytest.approx(ends[0], abs=5e-4)
+    assert ends[0] > 0.15
+
+
 @pytest.mark.parametrize("density", [0.01, 3.0])
-@pytest.mark.parametrize("epsilon", [1e-8, 1e-10, 1e-12])
-def test_the_step_is_not_tied_to_the_stiffness(epsilon, density):
+@pytest.mark.parametrize(
+    ("stepping", "epsilon"),
+    [*(("substeps", epsilon) for epsilon in (1e-8, 1e-10, 1e-12)), ("implicit", 1e-8), ("implicit", 1e-10)],
+)
+def test_the_step_is_not_tied_to_the_stiffness(stepping, epsilon, density):
     """ωΔt is 10 to 1,000 and more: explicit steps are unstable above 2. What is left is a hop of a step or two."""
     step, volume = 0.004, np.pi * 0.125**2
     start = {"density": density, "position": [0.5, 0.75 if density < 1 else 0.25], "velocity": [0.0, 0.0]}
-    data = bounce(step, end=0.25, epsilon=epsilon, **start).to_dict()
+    data = bounce(step, end=0.25, epsilon=epsilon, contact={"stepping": stepping}, **start).to_dict()
     history = rigidfluid.run(Scene.from_dict(data | {"mesh": {"size": 0.1, "size_body": 0.05}}))
     bodies, late = history.bodies, slice(-30, None)
     assert history.summary["rejected_steps"] == 0

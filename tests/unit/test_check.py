@@ -202,6 +202,17 @@ def test_fixed_substeps(turn: float, grade: str) -> None:
         assert finding.enough == {"substeps": int(np.ceil(2 * turn * substeps))}
 
 
+@pytest.mark.parametrize(("turn", "grade"), [(0.49, "note"), (5.0, "warning")])
+def test_one_implicit_step(turn: float, grade: str) -> None:
+    stiffness = 1e4
+    times = {"time": {"end": 10.0, "step": turn / frequency(stiffness)}, "output": {"every": 1.0}}
+    (finding,) = answers(without_epsilon(spring(stiffness, stepping="implicit"), **times), "step")
+    assert finding.grade == grade
+    assert finding.found["turn_per_step"] == pytest.approx(turn)
+    if grade != "note":
+        assert finding.enough == {"time_step": pytest.approx(0.5 / frequency(stiffness))}
+
+
 def test_substeps_follow_from_the_stiffness() -> None:
     step = 100.0 / frequency(1e4)
     times = {"time": {"end": 10.0, "step": step}, "output": {"every": 1.0}}

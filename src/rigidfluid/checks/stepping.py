@@ -33,7 +33,8 @@ def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
     Yields
     ------
     Finding
-        One for each kind of pair. With fixed substeps h, ω h > 2 is an error and > 0.5 a warning.
+        One for each kind of pair. With fixed substeps h, ω h > 2 is an error and > 0.5 a warning; in one implicit step
+        h, ω h > 0.5 is a warning where there are dampers.
     """
     turning = turning_gap(met.law, met.contacts, met.energy, met.weight)
     stiffness = greatest_stiffness(met.law, met.contacts, turning)
@@ -53,6 +54,8 @@ def _finding(met: Encounters, row: int, frequency: float, stiffness: float, time
     }
     pair = " and ".join(met.names(row))
     text = f"{pair}: a contact lasts about {figure(np.pi / frequency)}, and a step {figure(time.step)}"
+    if met.system.implicit:
+        return _implicit(met.names(row), text, found, frequency, time, met.law.dissipative)
     if met.system.substeps is None:
         return _adapted(met.names(row), text, found, frequency, time)
     return _fixed(met.names(row), text, found, frequency * time.step, met.system.substeps)
@@ -70,6 +73,19 @@ def _fixed(names: tuple[str, str], text: str, found: dict[str, float], turn: flo
     enough = {"substeps": ceil(turn / _ACCURATE)}
     remedy = f"Set contact.substeps to {enough['substeps']} or more, or leave it out."
     return Finding(grade, QUESTION, names, text, remedy, found, enough)
+
+
+def _implicit(
+    names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable, damped: bool
+) -> Finding:
+    turn = frequency * time.step
+    found |= {"turn_per_step": turn}
+    text += f", which is implicit; frequency times step is {figure(turn)}"
+    if turn <= _ACCURATE or not damped:
+        return Finding("note", QUESTION, names, text, found=found)
+    enough = {"time_step": _ACCURATE / frequency}
+    remedy = f"Set time.step to {at_most(enough['time_step'])} or less, or contact.stepping to substeps."
+    return Finding("warning", QUESTION, names, f"{text}: dampers are missed above 0.5", remedy, found, enough)
 
 
 def _adapted(names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable) -> Finding:

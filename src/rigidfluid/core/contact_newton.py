@@ -138,10 +138,10 @@ def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
 
 def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray:
     """(1 + slope · compliance)⁻¹ right."""
-    if sparse.issparse(compliance):
-        matrix = sparse.eye(len(slope)) + sparse.diags(slope) @ compliance
-        return np.asarray(spsolve(matrix.tocsc(), right))
-    return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+    if isinstance(compliance, np.ndarray):
+        return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+    matrix = sparse.eye(len(slope)) + sparse.diags(slope) @ compliance
+    return np.asarray(spsolve(matrix.tocsc(), right))
 
 
 def _open_part(gap: FloatArray, moved: FloatArray) -> float:

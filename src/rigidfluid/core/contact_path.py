@@ -124,9 +124,7 @@ def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: flo
     return _crossed(law, movement, contacts.start, contacts.at, size)
 
 
-def _cross_carried(
-    system: System, law: ForceLaw, movement: CarriedMovement, near: Contacts, size: float
-) -> BodiesPath:
+def _cross_carried(system: System, law: ForceLaw, movement: CarriedMovement, near: Contacts, size: float) -> BodiesPath:
     """One implicit step from the contacts of its start, as far as they may come into range."""
     if system.detector.needs_mesh:
         return _crossed(law, movement, near, FollowedContacts(near, movement.pose).at, size)

@@ -193,4 +193,6 @@ def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:
 
 def _rejected(found: str) -> StepRejected:
     allowed = "forces that keep all surfaces apart"
-    return StepRejected("the implicit contact step", found, allowed, "Shorten the step, or set contact.stepping to substeps.")
+    return StepRejected(
+        "the implicit contact step", found, allowed, "Shorten the step, or set contact.stepping to substeps."
+    )
