@@ -9,11 +9,13 @@ from touching import contact
 import rigidfluid
 from rigidfluid.core import implicit_contacts
 from rigidfluid.core.contact_newton import discrete_gradient
+from rigidfluid.core.redetected import RedetectedContacts
 from rigidfluid.core.repulsion import RepulsionOptions
 from rigidfluid.core.scene import Scene
-from rigidfluid.core.types import Wrench
+from rigidfluid.core.system import build_system
+from rigidfluid.core.types import Pose, Wrench
 from rigidfluid.core.wrenches import contact_wrench
-from rigidfluid.errors import SceneError, StepError
+from rigidfluid.errors import SceneError, StepError, StepRejected
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.normal import NormalLaw
@@ -167,6 +169,20 @@ def test_a_driven_body_pushes_and_takes_no_push():
     history = rigidfluid.run(implicit({"law": "centre", "epsilon": 1e-7}, piston, pushed, end=0.12, step=0.01))
     np.testing.assert_allclose(history.bodies["vx"][-2:], [1.0, 2.0], rtol=1e-9)
     assert history.summary["energy"]["control"] == pytest.approx(0.5 * MASS * 4.0, rel=1e-9)
+
+
+def test_a_pair_that_was_not_foreseen_rejects_the_step():
+    pair = [ball([x, 0.5], [0.0, 0.0]) for x in (0.25, 0.75)]
+    system = build_system(implicit(spring(1e4), *pair, end=0.1, step=0.01))
+    contacts = RedetectedContacts(system, system.pose, reach=0.16)
+    assert contacts.start.gap == pytest.approx([0.15, 0.15])
+
+    def right_at(x):
+        return Pose(np.array([[0.25, 0.5], [x, 0.5]]), system.pose.orientation)
+
+    assert contacts.at(right_at(0.5)).gap == pytest.approx([0.15, 0.4])
+    with pytest.raises(StepRejected, match=r"body body0.*contact with body1"):
+        contacts.at(right_at(0.46))
 
 
 def test_a_law_that_is_too_weak_is_said_to_be():

@@ -24,7 +24,7 @@ from rigidfluid.studies.figure import check_figure, read_figure
 from rigidfluid.studies.kernel_subject import KernelSubject
 from rigidfluid.studies.model import ErrorTable, FigureTable, Settings, StudyTable
 from rigidfluid.studies.results import Results, most_expensive, pareto_front
-from rigidfluid.studies.rows import read_rows
+from rigidfluid.studies.rows import read_rows, short_text
 from rigidfluid.studies.run import StudyProgress
 from rigidfluid.studies.scene_subject import SceneSubject
 from rigidfluid.studies.subject import Outcome
@@ -397,6 +397,13 @@ def test_shipped_studies_can_be_run(path: Path) -> None:
     assert len(identities) == len(study.settings())
     for identity in identities:
         rigidfluid.Scene.from_dict(json.loads(identity)[0])
+
+
+def test_tables_are_named_by_what_differs() -> None:
+    tables = [{"law": "centre", "range": 0.1}, {"law": "centre", "range": 0.1, "substeps": 1}, {"law": "normal"}]
+    assert short_text(tables[1], tables) == "law centre, range 0.1, substeps 1"
+    assert short_text(tables[1], tables[:2]) == "substeps 1"
+    assert short_text(0.5, [0.5, 1.0]) == "0.5"
 
 
 def test_every_key_of_a_study_is_explained() -> None:

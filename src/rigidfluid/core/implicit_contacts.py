@@ -20,8 +20,9 @@ from rigidfluid.errors import StepRejected
 MOST_UPDATES = 40
 """How often normals, points and gaps are taken anew at most."""
 
-MOST_DAMPER_UPDATES = 10
-"""From then on dampers are as they were, as one that switches on at the range may have no value that fits."""
+MOST_FORCE_UPDATES = 20
+"""From then on dampers, and the scale that makes the work exact, are as they were: a damper that switches on at the
+range, or a way that is nearly none, may have no value that fits."""
 
 TOLERANCE = 1e-10
 """How far, over the range, the surfaces may end from where the forces take them."""
@@ -86,10 +87,13 @@ def cross_contacts(
         force, gap = contact_forces(problem, force, gap)
         spring = (force + dampers.across * (gap + offset)) / look.scale
         push = force[:, None] * look.middle.normal + dampers.along
+        before = look
         look = _looked(law, movement, start, contacts_at, contact_wrench(look.middle, push, look.pose), size)
         used = dampers
-        if update < MOST_DAMPER_UPDATES:
+        if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, look, size)
+        else:
+            look = look._replace(scale=before.scale)
         wanted = (look.scale * spring - dampers.across * look.way)[:, None] * look.middle.normal + dampers.along
         if _settled(law, look, gap, wanted - push):
             return _crossing(look, used, size)

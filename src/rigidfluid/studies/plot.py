@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from rigidfluid.reports.style import BLACK, PALETTE, new_figure
 from rigidfluid.studies.model import Settings
 from rigidfluid.studies.results import Results
-from rigidfluid.studies.rows import text_of
+from rigidfluid.studies.rows import short_text
 
 _MARKERS = "osD^vP*X"
 CROWDED = 300.0
@@ -64,7 +64,7 @@ def _series(results: Results) -> dict[str, list[str]]:
     group = results.study.tables.study.group
     series: dict[str, list[str]] = {}
     for key, settings in _settings(results).items():
-        series.setdefault("runs" if group is None else _words(group, settings.get(group)), []).append(key)
+        series.setdefault("runs" if group is None else _words(results, group, settings.get(group)), []).append(key)
     return series
 
 
@@ -79,10 +79,13 @@ def _limits(values: Sequence[float]) -> tuple[float, float]:
     return low / room, high * room
 
 
-def _words(knob: str, value: object) -> str:
+def _words(results: Results, knob: str, value: object) -> str:
     """A setting in few words; None for runs that do not read it."""
     short = knob.rpartition(".")[2]
-    return f"without {short}" if value is None else f"{short} {text_of(value)}"
+    if value is None:
+        return f"without {short}"
+    text = short_text(value, results.study.tables.vary[knob])
+    return text if isinstance(value, dict) else f"{short} {text}"
 
 
 def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
@@ -97,5 +100,5 @@ def _draw_front(axes: Axes, results: Results) -> None:
     shown = [key for key in results.study.knobs if key != results.study.tables.study.group]
     settings = _settings(results)
     for key in results.front:
-        words = "\n".join(_words(knob, settings[key][knob]) for knob in shown if knob in settings[key])
+        words = "\n".join(_words(results, knob, settings[key][knob]) for knob in shown if knob in settings[key])
         axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)

@@ -42,6 +42,14 @@ def text_of(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
+def short_text(value: Any, among: Sequence[Any]) -> str:
+    """The same in few words: of a table only the keys that are not alike in all of the tables ``among``."""
+    if not isinstance(value, Mapping):
+        return text_of(value)
+    differing = [key for key, part in value.items() if any(other.get(key) != part for other in among)]
+    return ", ".join(f"{key} {text_of(value[key])}" for key in differing)
+
+
 def cells(knobs: Sequence[str], settings: Settings) -> list[str]:
     """The values of the knobs; an empty text where a run does not read one."""
     return [text_of(settings[knob]) if knob in settings else "" for knob in knobs]
