@@ -1,6 +1,6 @@
-"""Runs the validation scenes and the studies of kernels, and writes docs/validation: a page and a plot for each.
+"""Runs the validation scenes and the studies of kernels, and writes docs/validation: a page for each, most with a plot.
 
-python docs/make_validation.py [falling_disk] [dfg_cylinder] [distance_field] [detectors] [lammps] [contact_stepping]
+python docs/make_validation.py [falling_disk] [dfg_cylinder] [distance_field] [detectors] [lammps] [stability] [contact_stepping]
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ OUT = ROOT / "docs" / "validation"
 sys.path.append(str(ROOT / "tests" / "support"))
 
 from dry_scenes import sphere_gas  # noqa: E402
+from extreme_cases import CASES as EXTREMES  # noqa: E402
+from extreme_cases import rows as extremes  # noqa: E402
 from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_SPEED  # noqa: E402
 
 Row = tuple[str, str, str, str]
@@ -52,10 +54,11 @@ def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def write_page(name: str, title: str, command: str, text: str) -> None:
-    """One page with its date, its command and its plot."""
+def write_page(name: str, title: str, command: str, text: str, plot: bool = True) -> None:
+    """One page with its date, its command and its plot, if it has one."""
     stamp = f"Made on {datetime.date.today()} by `{command}`, rigidfluid {rigidfluid.__version__}."
-    page = f"# {title}\n\n{stamp}\n\n![{title}]({name}.png)\n\n{text}\n"
+    picture = f"![{title}]({name}.png)\n\n" if plot else ""
+    page = f"# {title}\n\n{stamp}\n\n{picture}{text}\n"
     (OUT / f"{name}.md").write_text(page, encoding="utf-8")
 
 
@@ -187,6 +190,21 @@ all of the time, {len(late.ours.time):,} samples, with the size of the total mom
     write_page("lammps", "200 spheres beside LAMMPS", "python docs/make_validation.py lammps", text)
 
 
+def stability() -> None:
+    """Stiff and extreme contacts, and what each must do."""
+    text = f"""The scenes and their limits are those of `tests/stability/test_extreme_contacts.py`. A ball has a
+radius of 0.1 and a
+density of 1, in a box of side 1, and speeds are of order 1, unless the case says otherwise.
+
+* smallest gap: the least of the run; above zero there was no overlap at any step.
+* rejected steps: none means that the contacts were met by the step as given.
+* energy unaccounted for: the largest residual of the balance, over the most energy that was stored.
+* energy gained: the most by which stored energy exceeded what came in, over the same. In a fluid and with dashpots.
+
+{table(("case", "demanded", "found", "pass"), extremes(EXTREMES))}"""
+    write_page("stability", "Stiff and extreme contacts", "python docs/make_validation.py stability", text, plot=False)
+
+
 def studied(name: str) -> Results:
     """A study, run; its plot is kept."""
     with tempfile.TemporaryDirectory() as folder:
@@ -277,6 +295,7 @@ CASES = {
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
     "lammps": lammps,
     "contact_stepping": contact_stepping,
+    "stability": stability,
 }
 
 

@@ -17,9 +17,14 @@ def ball(position: Sequence[float], velocity: Sequence[float], **keys: Any) -> d
 
 
 def dry_scene(
-    contact: dict[str, Any], *bodies: dict[str, Any], end: float, step: float, gravity: Sequence[float] | None = None
+    contact: dict[str, Any],
+    *bodies: dict[str, Any],
+    end: float,
+    step: float,
+    gravity: Sequence[float] | None = None,
+    upper: Sequence[float] | None = None,
 ) -> Scene:
-    """Balls in a box of side 1."""
+    """Bodies in a box from the origin to ``upper``, of side 1 if not given."""
     dimension = len(bodies[0]["position"])
     fluid: dict[str, Any] = {"backend": "dry"}
     if gravity is not None:
@@ -28,7 +33,7 @@ def dry_scene(
         {
             "scene": {"name": "dry", "dimension": dimension},
             "fluid": fluid,
-            "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
+            "domain": {"lower": [0.0] * dimension, "upper": list(upper or [1.0] * dimension)},
             "body": list(bodies),
             "contact": contact,
             "time": {"end": end, "step": step},

@@ -13,7 +13,7 @@ from rigidfluid.core.followed import FollowedContacts
 from rigidfluid.core.implicit_contacts import cross_contacts
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import CarriedMovement, FreeMovement, Movement
-from rigidfluid.core.proximity import may_repel, refuse_overlap
+from rigidfluid.core.proximity import arms, may_repel, refuse_overlap
 from rigidfluid.core.redetected import RedetectedContacts
 from rigidfluid.core.rigid import lab_inertia, rotation_matrices
 from rigidfluid.core.state import State
@@ -21,7 +21,7 @@ from rigidfluid.core.substep import Plan, plan, relative_motion
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import predict_pose
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
-from rigidfluid.core.wrenches import contact_wrench, nothing
+from rigidfluid.core.wrenches import contact_wrench, nothing, power
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
@@ -29,6 +29,9 @@ MOST_SUBSTEPS = 100_000
 
 MOST_INERT = 20.0
 """A body in a film of fluid answers to a blow as if it had at most so many times its mass."""
+
+MOST_ALIKE = 1_000
+"""After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
 
 ROUNDING = 1e-9
 """What is left of a step below this part of it is the rounding of sums."""
@@ -39,13 +42,14 @@ class BodiesPath:
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them [energy], and the number of ``substeps``.
+    them and ``held`` against them by what drives bodies [energy], and the number of ``substeps``.
     """
 
     pose: Pose
     twist: Twist
     impulse: Wrench
     dissipated: float
+    held: float
     substeps: int
 
 
@@ -95,58 +99,68 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
         return _coast(movement, size)
     if system.implicit:
         return _cross_free(system, system.law, movement, size)
-    reach, span = _horizon(system, state.twist, size)
+    reach, span = _horizon(system, movement, size)
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
 
 def _follow_carried(system: System, state: State, size: float) -> BodiesPath:
     pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
     if system.law is None:
-        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 1)
+        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
     movement = _carried(system, state)
     near = select(state.contacts, _may_touch(system.law.range, state.contacts, movement, size))
     if len(near) == 0:
-        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 1)
+        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
     if system.implicit:
         return _cross_carried(system, system.law, movement, near, size)
     if system.detector.needs_mesh:
         return _resolve(system, system.law, movement, FollowedContacts(near, state.pose).at, size, size)
-    reach, span = _horizon(system, state.twist, size)
+    reach, span = _horizon(system, movement, size)
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
 
 def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: float) -> BodiesPath:
     """One implicit step; contacts are foreseen at four times the fastest speed, as blows may double that of both."""
-    reach = law.range + 4.0 * _fastest(system, movement.twist, size) * size
+    reach = law.range + 4.0 * _fastest(system, movement, size) * size
     contacts = RedetectedContacts(system, movement.pose, reach)
     if len(contacts.start) == 0:
         return _coast(movement, size)
-    return _crossed(law, movement, contacts.start, contacts.at, size)
+    return _crossed(system, law, movement, contacts.start, contacts.at, size)
 
 
 def _cross_carried(system: System, law: ForceLaw, movement: CarriedMovement, near: Contacts, size: float) -> BodiesPath:
     """One implicit step from the contacts of its start, as far as they may come into range."""
     if system.detector.needs_mesh:
-        return _crossed(law, movement, near, FollowedContacts(near, movement.pose).at, size)
+        return _crossed(system, law, movement, near, FollowedContacts(near, movement.pose).at, size)
     contacts = RedetectedContacts(system, movement.pose, float(near.gap.max()))
-    return _crossed(law, movement, contacts.start, contacts.at, size)
+    return _crossed(system, law, movement, contacts.start, contacts.at, size)
 
 
 def _crossed(
-    law: ForceLaw, movement: Movement, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
+    system: System,
+    law: ForceLaw,
+    movement: Movement,
+    start: Contacts,
+    contacts_at: Callable[[Pose], Contacts],
+    size: float,
 ) -> BodiesPath:
     end, wrench, lost = cross_contacts(law, movement, start, contacts_at, size)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
-    return BodiesPath(end.pose, end.twist, impulse, lost, 1)
+    mean = Twist(
+        0.5 * (movement.twist.velocity + end.twist.velocity),
+        0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
+    )
+    held = -float(power(impulse, mean)[system.controlled].sum())
+    return BodiesPath(end.pose, end.twist, impulse, lost, held, 1)
 
 
-def _horizon(system: System, twist: Twist, size: float) -> tuple[float, float]:
+def _horizon(system: System, movement: Movement, size: float) -> tuple[float, float]:
     """Up to which gap contacts are foreseen [length], and for how long that is enough [time]."""
     law_range = system.law.range if system.law else 0.0
     if system.substeps:
         return law_range, size
     largest = max(body.bounding_radius for body in system.bodies)
-    fastest = _fastest(system, twist, size)
+    fastest = _fastest(system, movement, size)
     ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
     return law_range + ahead, 0.5 * ahead / fastest if fastest > 0 else size
 
@@ -189,7 +203,7 @@ def _coast(movement: FreeMovement, size: float) -> BodiesPath:
     movement.kick(none, 0.5 * size)
     movement.drift(size)
     movement.kick(none, 0.5 * size)
-    return BodiesPath(movement.pose, movement.twist, none, 0.0, 1)
+    return BodiesPath(movement.pose, movement.twist, none, 0.0, 0.0, 1)
 
 
 def _resolve(
@@ -201,52 +215,57 @@ def _resolve(
     are over.
     """
     contacts = contacts_at(movement.pose)
-    impulse, dissipated, count, left = nothing(movement.pose), 0.0, 0, size
-    push = _push(law, contacts, movement)
+    impulse, dissipated, held, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
+    push = _push(system, law, contacts, movement)
     planned, coast, substep = 0.0, 0.0, 0.0
     while left > 0.0:
         if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
             planned = min(left, span)
             coast, substep = _plan(system, law, contacts, movement, size, planned)
+            planned = min(planned, coast + MOST_ALIKE * substep)
         part = min(coast or substep, left)
         movement.kick(push.wrench, 0.5 * part)
         movement.drift(part)
         contacts = contacts_at(movement.pose)
         _refuse_overlap(system, contacts)
-        before, push = push, _push(law, contacts, movement)
+        before, push = push, _push(system, law, contacts, movement)
         movement.kick(push.wrench, 0.5 * part)
         impulse = _added(_added(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
         dissipated += 0.5 * part * (before.loss + push.loss)
+        held += 0.5 * part * (before.held + push.held)
         count, coast, planned = count + 1, 0.0, planned - part
         left = left - part if left - part > ROUNDING * size else 0.0
         if count == MOST_SUBSTEPS and left > 0.0:
             raise _too_stiff(system, contacts, part)
-    return BodiesPath(movement.pose, movement.twist, impulse, dissipated, count)
+    return BodiesPath(movement.pose, movement.twist, impulse, dissipated, held, count)
 
 
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: Movement, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
-    pull = np.linalg.norm(system.weight, axis=1) / system.mass
-    return plan(law, contacts, movement, pull, size, span)
+    return plan(law, contacts, movement, arms(system), size, span)
 
 
 class _Push(NamedTuple):
-    """What the contacts do at one moment: their ``wrench``, and the power that their dampers take."""
+    """What the contacts do at one moment: their ``wrench``, the power that their dampers take and that hands give."""
 
     wrench: Wrench
     loss: float
+    held: float
 
 
-def _push(law: ForceLaw, contacts: Contacts, movement: Movement) -> _Push:
+def _push(system: System, law: ForceLaw, contacts: Contacts, movement: Movement) -> _Push:
     if len(contacts) == 0:
-        return _Push(nothing(movement.pose), 0.0)
+        return _Push(nothing(movement.pose), 0.0, 0.0)
     force, loss = law.force(contacts), 0.0
     if law.dissipative:
         motion = relative_motion(contacts, movement)
         damping = law.damping(contacts, motion)
         force, loss = force + damping, -float(np.sum(damping * motion.velocity))
-    return _Push(contact_wrench(contacts, force, movement.pose), loss)
+    wrench, held = contact_wrench(contacts, force, movement.pose), 0.0
+    if system.controlled.any():
+        held = -float(power(wrench, movement.twist)[system.controlled].sum())
+    return _Push(wrench, loss, held)
 
 
 def _refuse_overlap(system: System, contacts: Contacts) -> None:
@@ -272,11 +291,11 @@ def _may_touch(law_range: float, contacts: Contacts, movement: CarriedMovement, 
     return np.asarray(contacts.gap <= law_range + 2.0 * size * speed)
 
 
-def _fastest(system: System, twist: Twist, size: float) -> float:
-    """Bound of the speed of any surface point in the step, contacts apart [length/time]."""
-    bounds = np.array([body.bounding_radius for body in system.bodies])
-    speed = np.linalg.norm(twist.velocity, axis=1) + bounds * np.linalg.norm(twist.angular_velocity, axis=1)
-    return float(np.max(speed + size * np.linalg.norm(system.weight, axis=1) / system.mass))
+def _fastest(system: System, movement: Movement, size: float) -> float:
+    """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
+    twist = movement.twist
+    turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
+    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.pull(size)))
 
 
 def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:

@@ -13,6 +13,8 @@ from rigidfluid.core.free_rotation import rotate_freely
 from rigidfluid.core.rigid import inverse_lab_inertia, lab_inertia, rotate
 from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
+_PARTS = np.linspace(0.0, 1.0, 17)[1:]
+
 
 class Movement(Protocol):
     """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
@@ -36,6 +38,9 @@ class Movement(Protocol):
 
     def copied(self) -> Self:
         """The same motion, to be tried out."""
+
+    def pull(self, time: float) -> FloatArray:
+        """Greatest acceleration of each body in so much time from now by all but contacts, (n,) [length/time²]."""
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``."""
@@ -105,6 +110,16 @@ class FreeMovement:
         other = copy(self)
         other._velocity, other._momentum = self._velocity.copy(), self._momentum.copy()
         return other
+
+    def pull(self, time: float) -> FloatArray:
+        """|W|/m, and of driven bodies the greatest change of velocity over the time that it is in."""
+        fall = np.linalg.norm(self._weight, axis=1) / self._mass
+        if not self._driven:
+            return np.asarray(fall)
+        now, d = self._given(self._time), self._velocity.shape[1]
+        later = [self._given(self._time + part * time) for part in _PARTS]
+        change = np.max([np.linalg.norm((given - now)[:, :d], axis=1) for given in later], axis=0)
+        return np.asarray(np.where(self._free[:, 0], fall, change / time))
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change momenta by F + W and T for so long."""
@@ -179,6 +194,10 @@ class CarriedMovement:
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """That of the body and its added mass."""
         return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
+
+    def pull(self, time: float) -> FloatArray:
+        """|A|, whatever the time."""
+        return np.asarray(np.linalg.norm(self._rate[:, : self._twist.velocity.shape[1]], axis=1))
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the twist by A and M⁻¹F for so long."""

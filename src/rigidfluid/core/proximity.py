@@ -57,5 +57,10 @@ def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:
     """How far any surface point of each body can move from one pose to another, |Δx| + R Δθ (n,) [length]."""
     moved = np.linalg.norm(end.position - start.position, axis=1)
-    reach = np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])
-    return np.asarray(moved + reach * angle_between(start.orientation, end.orientation))
+    return np.asarray(moved + arms(system) * angle_between(start.orientation, end.orientation))
+
+
+def arms(system: System) -> FloatArray:
+    """How far the surface of each body reaches from its centre of mass, zero for balls, which turn in their place (n,)
+    [length]."""
+    return np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])

@@ -14,6 +14,7 @@ from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.wrenches import power
 
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
@@ -59,7 +60,7 @@ def attempt(
         ledger=state.ledger.after(
             size,
             _power(system, advance),
-            _work(system, state, path, advance.twist),
+            _work(system, state, path),
             advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
@@ -114,21 +115,11 @@ def _mean_push(state: State, path: BodiesPath, derivative: FloatArray) -> Wrench
 
 def _power(system: System, advance: Advance) -> Power:
     """What enters by the faces, what drives bodies through the fluid, and what the fluid dissipates."""
-    driven = _rate(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
+    driven = power(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
     return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation)
 
 
-def _work(system: System, state: State, path: BodiesPath, twist: Twist) -> Work:
+def _work(system: System, state: State, path: BodiesPath) -> Work:
     """Of the submerged weight of the free bodies, of the hands against the contacts, and of dampers in contacts."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
-    mean = Twist(
-        0.5 * (state.twist.velocity + twist.velocity), 0.5 * (state.twist.angular_velocity + twist.angular_velocity)
-    )
-    held = -_rate(path.impulse, mean)
-    return Work(float(fallen[~system.controlled].sum()), float(held[system.controlled].sum()), path.dissipated)
-
-
-def _rate(wrench: Wrench, twist: Twist) -> FloatArray:
-    return np.asarray(
-        np.sum(wrench.force * twist.velocity, axis=1) + np.sum(wrench.torque * twist.angular_velocity, axis=1)
-    )
+    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated)

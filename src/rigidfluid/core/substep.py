@@ -10,11 +10,14 @@ import numpy as np
 
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import Movement
-from rigidfluid.core.rigid import cross, moment
+from rigidfluid.core.rigid import cross
 from rigidfluid.core.types import Contacts, FloatArray, IntArray, Motion, Pose, Twist
 
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
+
+MOST_LEVERAGE = 5.0
+"""Mass times (r × n)·I⁻¹(r × n) is no more at any point of a homogeneous ellipsoid, however slender."""
 
 _HALVINGS = 30
 _SAMPLES = 8
@@ -27,11 +30,12 @@ class Plan(NamedTuple):
     substep: float
 
 
-def plan(law: ForceLaw, contacts: Contacts, movement: Movement, pull: FloatArray, size: float, span: float) -> Plan:
+def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray, size: float, span: float) -> Plan:
     """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
 
     Not the one they have now: substeps of equal length keep the energy of a collision. h is the step halved a whole
-    number of times, so that it seldom changes from step to step; each change costs some energy.
+    number of times, so that it seldom changes from step to step; each change costs some energy. A body that is no ball
+    may hit with its fastest point, wherever its nearest one is now.
 
     Parameters
     ----------
@@ -41,8 +45,8 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, pull: FloatArray
         All that may come into range in the span.
     movement : Movement
         The n bodies as they move now.
-    pull : (n,) array
-        Greatest acceleration by all but contacts [length/time²].
+    arms : (n,) array
+        How far the surface reaches from the centre of mass, zero for balls, which turn in their place [length].
     size, span : float
         Of the whole step, and how far contacts are foreseen [time].
 
@@ -53,24 +57,42 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, pull: FloatArray
     """
     if len(contacts) == 0:
         return Plan(span, span)
-    motion = relative_motion(contacts, movement)
-    pulls = np.append(pull, 0.0)
-    pulled = pulls[contacts.body_a] + pulls[np.minimum(contacts.body_b, len(pull))]
-    speed = np.linalg.norm(motion.velocity, axis=1) + span * pulled
+    pulled = _of_both(movement.pull(span), contacts).sum(axis=1)
+    approach = _approach(contacts, movement, arms)
+    speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
-    halvings = log2(max(size / _resolved(law, contacts, movement, motion, pulled), 1.0))
+    halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
     substep = size / 2.0 ** ceil(halvings)
     coast = min(float(first.min()), span)
     return Plan(coast if coast > substep else 0.0, substep)
 
 
-def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, motion: Motion, pull: FloatArray) -> float:
+class _Approach(NamedTuple):
+    """Of the m contacts: no two points are ``fastest`` to meet, the gap shrinks with ``closing`` at most (m,)
+    [length/time]; ``inverse`` (m, 2): 1/m_a and 1/m_b, as much as they can be where the contact may wander [1/mass]."""
+
+    fastest: FloatArray
+    closing: FloatArray
+    inverse: FloatArray
+
+
+def _approach(contacts: Contacts, movement: Movement, arms: FloatArray) -> _Approach:
+    """Normals of balls do not turn away from where they meet; those of other shapes may turn anywhere."""
+    twist, arm = movement.twist, _of_both(arms, contacts)
+    spin = _of_both(arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts).sum(axis=1)
+    resting = np.vstack([twist.velocity, np.zeros_like(twist.velocity[:1])])
+    velocity = resting[contacts.body_a] - resting[np.minimum(contacts.body_b, len(arms))]
+    fastest = np.linalg.norm(velocity, axis=1) + spin
+    head_on = np.maximum(-np.sum(velocity * contacts.normal, axis=1), 0.0)
+    inverse = _inverse_masses(contacts, movement) * np.where(arm > 0.0, 1.0 + MOST_LEVERAGE, 1.0)
+    return _Approach(fastest, np.where(arm.any(axis=1), fastest, head_on), inverse)
+
+
+def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _Approach, pull: FloatArray) -> float:
     """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time]."""
-    inverse = _inverse_masses(contacts, movement)
-    closing = np.minimum(np.sum(motion.velocity * contacts.normal, axis=1), 0.0)
-    mass = 1.0 / np.maximum(inverse.sum(axis=1), np.finfo(float).tiny)
-    energy = 0.5 * mass * closing**2 + law.energy(contacts)
-    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, energy, mass * pull))
+    motion, inverse = relative_motion(contacts, movement), approach.inverse
+    energy = 0.5 * motion.mass * approach.closing**2 + law.energy(contacts)
+    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, energy, motion.mass * pull))
     rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
     return RESOLUTION / rate if rate > 0 else np.inf
 
@@ -134,16 +156,18 @@ def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray)
 
 
 def _inverse_masses(contacts: Contacts, movement: Movement) -> FloatArray:
-    """1/m + (r × n)·(R I Rᵀ)⁻¹(r × n) of a and of b, (m, 2), zero for walls [1/mass]."""
-    position = movement.pose.position
+    """1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
     inverse = np.zeros((len(contacts), 2))
-    for side, (body, point) in enumerate([(contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)]):
-        on_body = body < len(position)
-        index, normal = body[on_body], contacts.normal[on_body]
-        turn = moment(point[on_body] - position[index], normal)
-        turning = np.einsum("ni,nij,nj->n", turn, movement.inverse_inertia[index], turn)
-        inverse[on_body, side] = movement.inverse_mass(index, normal) + turning
+    for side, body in enumerate([contacts.body_a, contacts.body_b]):
+        on_body = body < len(movement.pose.position)
+        inverse[on_body, side] = movement.inverse_mass(body[on_body], contacts.normal[on_body])
     return inverse
+
+
+def _of_both(column: FloatArray, contacts: Contacts) -> FloatArray:
+    """What ``column`` (n,) says of a and of b, zero for walls, (m, 2)."""
+    extended = np.append(column, 0.0)
+    return np.column_stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])
 
 
 def _highest_sum(coefficient: FloatArray, contacts: Contacts, inverse: FloatArray) -> float:

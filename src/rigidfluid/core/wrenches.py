@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.types import Contacts, FloatArray, Pose, Wrench
+from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 
 
 def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wrench:
@@ -41,6 +41,13 @@ def nothing(pose: Pose) -> Wrench:
     """The wrench of no contact at all on bodies at ``pose``."""
     count, dimension = pose.position.shape
     return Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
+
+
+def power(wrench: Wrench, twist: Twist) -> FloatArray:
+    """F·U + T·ω of each body, (n,) [energy/time]."""
+    return np.asarray(
+        np.sum(wrench.force * twist.velocity, axis=1) + np.sum(wrench.torque * twist.angular_velocity, axis=1)
+    )
 
 
 @njit(cache=True)
