@@ -1,6 +1,6 @@
 """Runs the validation scenes and the studies of kernels, and writes docs/validation: a page for each, most with a plot.
 
-python docs/make_validation.py [falling_disk] [dfg_cylinder] [distance_field] [detectors] [lammps] [stability] [contact_stepping]
+python docs/make_validation.py [NAME ...], the names as in CASES; all without one.
 """
 
 from __future__ import annotations
