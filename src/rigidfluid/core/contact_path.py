@@ -29,7 +29,7 @@ MOST_INERT = 20.0
 """A body in a film of fluid answers to a blow as if it had at most so many times its mass."""
 
 MOST_ALIKE = 1_000
-"""After so many substeps of one length they are planned anew: what flies apart from a stiff contact needs ever fewer."""
+"""After so many substeps of one length they are planned anew: what leaves a stiff contact needs ever fewer."""
 
 ROUNDING = 1e-9
 """What is left of a step below this part of it is the rounding of sums."""
