@@ -192,9 +192,8 @@ all of the time, {len(late.ours.time):,} samples, with the size of the total mom
 
 def stability() -> None:
     """Stiff and extreme contacts, and what each must do."""
-    text = f"""The scenes and their limits are those of `tests/stability/test_extreme_contacts.py`. A ball has a
-radius of 0.1 and a
-density of 1, in a box of side 1, and speeds are of order 1, unless the case says otherwise.
+    text = f"""The scenes and their limits are those of `tests/stability/test_extreme_contacts.py`. Unless the case says
+otherwise, a ball has a radius of 0.1 and a density of 1, boxes have a side of 1, and speeds are of order 1.
 
 * smallest gap: the least of the run; above zero there was no overlap at any step.
 * rejected steps: none means that the contacts were met by the step as given.

@@ -223,7 +223,7 @@ def _dry() -> Iterator[Case]:
             yield Case(f"gap of 1e-6 radius, {name}, {dimension}D", scene, demands)
     scene = partial(almost_touching, law("normal", 1e-16, range=2e-7), 3)
     yield Case("gap of 1e-6 radius, range of 2e-6 radius", scene, keeps(5e-3))
-    for axes, end in ((BLADE, 0.05), ((0.2, 0.1), 0.05), ((0.2, 0.15, 0.1), 0.05)):
+    for axes, end in ((BLADE, 0.025), ((0.2, 0.1), 0.025), ((0.2, 0.15, 0.1), 0.025)):
         yield Case(f"spin 1e4, semi-axes {axes}", partial(spinning, axes, end), keeps(2e-3))
     spun = dry_scene, dashpot(1e4, 0.7), ball((0.5, 0.2), (0, 0), angular_velocity=[1e4])
     falls = partial(*spun, end=0.5, step=0.01, gravity=(0.0, -10.0))
@@ -240,7 +240,7 @@ def _crowds() -> Iterator[Case]:
     yield Case("1,000 balls fall, spring-dashpot", partial(heap, 1_000, rough, 0.04), less)
     yield Case("1,000 balls fall, normal", partial(heap, 1_000, smooth, 0.04), keeps(1e-3))
     at_rest = Demand("kinetic energy left", at_most=1e-3), Demand("force of the floor over the weight", 0.98, 1.02)
-    yield Case("50 disks come to rest", partial(heap, 50, rough, 3.0, 2), (*less, *at_rest))
+    yield Case("30 disks come to rest", partial(heap, 30, rough, 3.0, 2), (*less, *at_rest))
     yield Case("1,000 balls come to rest", partial(heap, 1_000, rough, 3.0), (*less, *at_rest), heavy=True)
     yield Case("200 balls fly about without gravity", partial(sphere_gas, 500), keeps(1e-3))
     still = Demand("moved, in radii", at_most=0.0)
