@@ -35,6 +35,10 @@ class RigidfluidError(Exception):
         self.remedy = remedy
         super().__init__(f"{subject}: found {found}; allowed is {allowed}. {remedy}")
 
+    def __reduce__(self) -> tuple[type[RigidfluidError], tuple[str, str, str, str]]:
+        """By its four parts, as it travels between processes."""
+        return type(self), (self.subject, str(self.found), self.allowed, self.remedy)
+
 
 class SceneError(RigidfluidError):
     """The scene or study file, or a value in it, cannot be used."""

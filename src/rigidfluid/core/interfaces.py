@@ -13,7 +13,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
+from scipy.sparse import csc_array
 
+from rigidfluid.core.extension import Extension, FactorisedExtension
+from rigidfluid.core.ranks import ALONE, Ranks
 from rigidfluid.core.types import (
     Advance,
     BoolArray,
@@ -184,6 +187,9 @@ class ForceLaw(Part):
 class FluidBackend(Part):
     """Moves fluid and bodies together over one step.
 
+    With several ``ranks`` each process has a backend and a part of each mesh; all methods are called on all ranks
+    together, and results that are not fields are the same on all.
+
     Parameters
     ----------
     options : PartOptions
@@ -193,10 +199,19 @@ class FluidBackend(Part):
     """
 
     needs_mesh: ClassVar[bool] = True
+    ranks: Ranks = ALONE
+    """The processes that share the run."""
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         self.options = options
         self.problem = problem
+
+    def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
+        """What solves Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
+
+        ``stiffness`` (N, N) is symmetric and has this rank's cells alone.
+        """
+        return FactorisedExtension(stiffness, held)
 
     @abstractmethod
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:

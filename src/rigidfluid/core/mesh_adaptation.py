@@ -91,7 +91,8 @@ class Mover:
 
     def _map(self, reference: Reference) -> MeshMotion:
         if self._motion is None or self._reference is not reference:
-            self._motion = MeshMotion(reference.mesh, self._system.bodies, reference.pose)
+            s = self._system
+            self._motion = MeshMotion(reference.mesh, s.bodies, reference.pose, s.backend.extension)
             self._reference = reference
         return self._motion
 

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
+from rigidfluid.core.extension import Extension, FactorisedExtension
 from rigidfluid.core.frames import to_body_frame, to_world
 from rigidfluid.core.interfaces import Body
 from rigidfluid.core.mesh_quality import cell_volumes
 from rigidfluid.core.types import BoolArray, FloatArray, Mesh, Pose
+
+MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
+
+
+def factorised(mesh: Mesh, matrix: csc_array, held: BoolArray) -> Extension:
+    """By factors, in one process."""
+    return FactorisedExtension(matrix, held)
 
 
 class MeshMotion:
@@ -29,20 +36,24 @@ class MeshMotion:
         The shapes.
     reference_pose : Pose
         Where they are on the reference mesh.
+    extension : callable
+        Makes the solver from the mesh, its stiffness matrix and the held vertices of one component.
 
     Notes
     -----
     Equation (ALE) of Van Landeghem et al., arXiv:2402.19093; τ after Kanchi and Masud, DOI 10.1002/fld.1512.
     """
 
-    def __init__(self, mesh: Mesh, bodies: Sequence[Body], reference_pose: Pose) -> None:
+    def __init__(
+        self, mesh: Mesh, bodies: Sequence[Body], reference_pose: Pose, extension: MakeExtension = factorised
+    ) -> None:
         self._points = mesh.points
         self._bodies = tuple(bodies)
         self._pose = reference_pose
         self._surfaces = [np.unique(mesh.facets[mesh.markers == i]) for i in range(len(bodies))]
         self._held = held_components(mesh, len(bodies))
         matrix = stiffness(mesh)
-        self._solves = [Extension(matrix, held) for held in self._held.T]
+        self._solves = [extension(mesh, matrix, held) for held in self._held.T]
 
     def move(self, pose: Pose) -> FloatArray:
         """Vertices of the mesh when the bodies are at ``pose``.
@@ -72,28 +83,6 @@ class MeshMotion:
         reference = self._points[self._surfaces[i]]
         turned: FloatArray = to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
         return turned
-
-
-class Extension:
-    """Extends values given at the held vertices to the free ones, A_ff u_f = -A_fh u_h.
-
-    Parameters
-    ----------
-    matrix : (N, N) sparse array
-        Symmetric stiffness matrix.
-    held : (N,) array of bool
-        Where values are given; at least one.
-    """
-
-    def __init__(self, matrix: csc_array, held: BoolArray) -> None:
-        self._held, self._free = np.flatnonzero(held), np.flatnonzero(~held)
-        rows = matrix.tocsr()[self._free].tocsc()
-        self._coupling = rows[:, self._held].tocsr()
-        self._factor = splu(rows[:, self._free], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-
-    def fill(self, values: FloatArray) -> None:
-        """Overwrite the free entries of ``values`` (N,)."""
-        values[self._free] = self._factor.solve(-(self._coupling @ values[self._held]))
 
 
 def held_components(mesh: Mesh, bodies: int) -> BoolArray:

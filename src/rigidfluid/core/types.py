@@ -14,6 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.ranks import ALONE, Ranks
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -105,14 +107,37 @@ class Wall:
 
 
 @dataclass(frozen=True, slots=True)
+class MeshPart:
+    """Where the part of a mesh that one process holds stands in the whole.
+
+    A part has cells of its own and all their vertices; those on a border are in several parts, and ``owned`` (N,) by
+    the one of lowest rank. ``vertices`` (N,), ``cells`` (M,), ``facets`` (F,): numbers in the whole mesh;
+    ``counts`` (3,): how many vertices, cells and facets that has. ``ranks``: the processes that hold the parts.
+    """
+
+    ranks: Ranks
+    vertices: IntArray
+    cells: IntArray
+    facets: IntArray
+    owned: BoolArray
+    counts: IntArray
+
+
+@dataclass(frozen=True, slots=True)
 class Mesh:
     """Straight simplices: ``points`` (N, d) [length], ``cells`` (M, d+1), boundary ``facets`` (F, d) and
-    ``markers`` (F,), the number of the surface that each facet lies on."""
+    ``markers`` (F,), the number of the surface that each facet lies on. ``part`` is None where it is the whole mesh."""
 
     points: FloatArray
     cells: IntArray
     facets: IntArray
     markers: IntArray
+    part: MeshPart | None = None
+
+    @property
+    def ranks(self) -> Ranks:
+        """The processes that hold the whole mesh together."""
+        return ALONE if self.part is None else self.part.ranks
 
 
 @dataclass(frozen=True, slots=True)

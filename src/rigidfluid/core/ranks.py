@@ -1,0 +1,151 @@
+"""The processes that share one run: each holds a part of the mesh and of the fields, and all step together."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import numpy as np
+
+from rigidfluid.errors import RigidfluidError
+
+T = TypeVar("T")
+ROOT = 0
+"""The rank that meshes, and writes what is there once."""
+
+
+class Ranks(ABC):
+    """Processes that run the same loop; every method is called by all of them together.
+
+    ``rank`` is this one's number, from 0 to ``size`` - 1.
+    """
+
+    rank: int
+    size: int
+
+    @property
+    def is_root(self) -> bool:
+        """Whether this process meshes, and writes what is there once."""
+        return self.rank == ROOT
+
+    @abstractmethod
+    def gathered(self, item: T) -> list[T]:
+        """Everyone's ``item``, in the order of ranks, for all."""
+
+    @abstractmethod
+    def collected(self, item: T) -> list[T] | None:
+        """Everyone's ``item``, in the order of ranks, for the root; None for the others."""
+
+    @abstractmethod
+    def shared(self, item: T) -> T:
+        """The root's ``item``, for all."""
+
+    @abstractmethod
+    def scattered(self, items: Sequence[T] | None) -> T:
+        """Of the root's ``items``, one for each rank, this rank's; the others pass None."""
+
+    @abstractmethod
+    def exchanged(self, items: Sequence[T]) -> list[T]:
+        """``items`` has one for each rank; what the ranks have for this one, in their order."""
+
+    @abstractmethod
+    def abort(self) -> None:
+        """End all processes at once, where one of them cannot go on and the others would wait for it for ever."""
+
+    def sum(self, value: Any) -> Any:
+        """Sum of everyone's ``value``, a number or an array; the same bits for all."""
+        return np.sum(self.gathered(value), axis=0)
+
+    def least(self, value: Any) -> Any:
+        """The smallest of everyone's ``value``, element by element."""
+        return np.min(self.gathered(value), axis=0)
+
+    def greatest(self, value: Any) -> Any:
+        """The largest of everyone's ``value``, element by element."""
+        return np.max(self.gathered(value), axis=0)
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """An error on one rank becomes the same error on all, so that nobody waits for one who has left."""
+        error: RigidfluidError | None = None
+        try:
+            yield
+        except RigidfluidError as raised:
+            error = raised
+        first = next((each for each in self.gathered(error) if each is not None), None)
+        if error is not None:
+            raise error
+        if first is not None:
+            raise first
+
+
+class Alone(Ranks):
+    """One process that holds everything."""
+
+    rank = 0
+    size = 1
+
+    def gathered(self, item: T) -> list[T]:
+        return [item]
+
+    def collected(self, item: T) -> list[T] | None:
+        return [item]
+
+    def shared(self, item: T) -> T:
+        return item
+
+    def scattered(self, items: Sequence[T] | None) -> T:
+        assert items is not None
+        return items[0]
+
+    def exchanged(self, items: Sequence[T]) -> list[T]:
+        return list(items)
+
+    def abort(self) -> None:
+        """Nobody waits."""
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Nothing to agree on."""
+        yield
+
+
+ALONE = Alone()
+
+
+class MpiRanks(Ranks):
+    """The processes of an MPI communicator.
+
+    Parameters
+    ----------
+    communicator : mpi4py.MPI.Intracomm
+        Theirs.
+    """
+
+    def __init__(self, communicator: Any) -> None:
+        self.communicator = communicator
+        self.rank: int = communicator.rank
+        self.size: int = communicator.size
+
+    def gathered(self, item: T) -> list[T]:
+        return list(self.communicator.allgather(item))
+
+    def collected(self, item: T) -> list[T] | None:
+        items: list[T] | None = self.communicator.gather(item, root=ROOT)
+        return items
+
+    def shared(self, item: T) -> T:
+        held: T = self.communicator.bcast(item, root=ROOT)
+        return held
+
+    def scattered(self, items: Sequence[T] | None) -> T:
+        own: T = self.communicator.scatter(items, root=ROOT)
+        return own
+
+    def exchanged(self, items: Sequence[T]) -> list[T]:
+        return list(self.communicator.alltoall(list(items)))
+
+    def abort(self) -> None:
+        self.communicator.Abort(1)
