@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rigidfluid.backends.dolfinx import Dolfinx
 from rigidfluid.backends.dry import Dry
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.interfaces import FluidBackend
@@ -11,4 +12,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_fluid_backends() -> list[type[FluidBackend]]:
     """The built-in fluid backends."""
-    return [Dry, ScikitFem]
+    return [Dolfinx, Dry, ScikitFem]

@@ -80,7 +80,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
         from rigidfluid.taylor_hood.transfer import transfer
 
-        source, before = self._numbering_of(old), kinetic_energy(self._any(old), old.points, fluid["velocity"])
+        source, before = self.numbering_of(old), kinetic_energy(self._any(old), old.points, fluid["velocity"])
         self.drop_factors()
         target = self._for_projection(new)
         moved = transfer(source, target, self.options.tolerance, fluid, old, new)
@@ -89,7 +89,7 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
-        numbering = self._numbering_of(mesh)
+        numbering = self.numbering_of(mesh)
         pressure = numbering.node_points(fluid["pressure"])
         return Fields(numbering.node_points(mesh.points), numbering.cell_nodes, fluid["velocity"], pressure)
 
@@ -98,7 +98,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.sampling import Samples
 
         # All processes ask alike: the root asks, and shares the answer.
-        samples = Samples(mesh, self._numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
+        samples = Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
         found = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
         return mesh.ranks.shared(found)
 
@@ -111,7 +111,7 @@ class TaylorHoodBackend(FluidBackend):
         self.drop_factors()
         self._latest = None
 
-    def _numbering_of(self, mesh: Mesh) -> Numbering:
+    def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
         if self._numbering is None or self._numbering.cells is not mesh.cells:
             self._numbering = Numbering(mesh.cells, len(mesh.points))
@@ -119,7 +119,7 @@ class TaylorHoodBackend(FluidBackend):
         return self._numbering
 
     def _on(self, mesh: Mesh, controlled: BoolArray) -> Discretisation:
-        numbering = self._numbering_of(mesh)
+        numbering = self.numbering_of(mesh)
         if self._latest is None or not np.array_equal(self._latest[0], controlled):
             self._latest = controlled, self.discretise(numbering, mesh, controlled)
         return self._latest[1]
@@ -129,7 +129,7 @@ class TaylorHoodBackend(FluidBackend):
 
     def _any(self, mesh: Mesh) -> Discretisation:
         """On this topology, whichever bodies are controlled."""
-        self._numbering_of(mesh)
+        self.numbering_of(mesh)
         return self._for_projection(mesh) if self._latest is None else self._latest[1]
 
 

@@ -11,7 +11,7 @@ from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.stale_solver import StaleSolver
+from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
@@ -42,7 +42,7 @@ class SparseDiscretisation:
         Equations and boundary conditions.
     assembly : Assembly
         The integrals.
-    solver : StaleSolver
+    solver : StaleFactors
         Kept from topology to topology; it must have been told to forget the last one.
     mesh : Mesh
         The topology.
@@ -51,7 +51,7 @@ class SparseDiscretisation:
     """
 
     def __init__(
-        self, problem: FluidProblem, assembly: Assembly, solver: StaleSolver, mesh: Mesh, controlled: BoolArray
+        self, problem: FluidProblem, assembly: Assembly, solver: StaleFactors, mesh: Mesh, controlled: BoolArray
     ) -> None:
         self.problem = problem
         self.numbering = assembly.numbering
@@ -95,7 +95,7 @@ class SparseDiscretisation:
         right_side = constraint.transposed @ (load - stiffness @ given)
         right_side[twists] += s.body_load[free].ravel()
         guess = self._guess(s, twists)
-        scale = float(np.linalg.norm(right_side))
+        scale = self._solver.norm(right_side)
         correction, _ = self._solver.solve(apply, matrix, right_side - apply(guess), tolerance * scale)
         reduced = guess + correction
         everything = constraint.operator @ reduced + given

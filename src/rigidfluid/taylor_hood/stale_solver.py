@@ -1,91 +1,97 @@
-"""GMRES preconditioned by the LU factors of an earlier step's matrix, renewed when that pays."""
+"""A Krylov iteration preconditioned by what an earlier step's matrix gave, which is renewed when that pays."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import Generic, TypeVar, final
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, gmres
 
+from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.factorization import Factors, factorise
 
-# One factorisation costs about as much as this many iterations (PARDISO, 15,000 to 150,000 unknowns),
-_ITERATIONS_PER_FACTORISATION = 30
-# and with fresh factors, once the step has settled, a solve takes about this many.
-_ITERATIONS_WHEN_FRESH = 3
-_MOST_ITERATIONS = 60
+Matrix = TypeVar("Matrix")
+MOST_ITERATIONS = 60
 
 
-class StaleSolver:
+class StaleSolver(ABC, Generic[Matrix]):
     """Solves A x = b for a matrix that changes little from step to step.
 
-    The factors are renewed when the iterations beyond those that fresh factors would have taken add up to the price of
-    new ones: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
+    The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the price
+    of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
+
+    ``price`` of a preconditioner in iterations, and ``when_fresh``, those that a solve then takes.
     """
 
-    def __init__(self) -> None:
-        self._factors: Factors | None = None
+    price: int
+    when_fresh: int
+
+    def __init__(self, ranks: Ranks) -> None:
+        self._ranks = ranks
         self._solves = 0
         self._wasted = 0
+        self._is_made = False
 
+    @final
     def forget(self) -> None:
-        """Drop the factors."""
-        self._factors = None
+        """Drop the preconditioner."""
+        self._is_made = False
+        self.drop()
 
+    @final
     def solve(
         self,
         apply: Callable[[FloatArray], FloatArray],
-        matrix: Callable[[], sparse.csr_array],
+        matrix: Callable[[], Matrix],
         residual: FloatArray,
         tolerance: float,
     ) -> tuple[FloatArray, int]:
         """The correction x with ‖residual - A x‖ ≤ tolerance, and the iterations spent; raises StepRejected.
 
-        ``apply(x)`` is A x; ``matrix()`` builds A where new factors are needed.
+        ``apply(x)`` is A x; ``matrix()`` builds A where a new preconditioner is needed. Vectors are this process' part.
         """
-        if np.linalg.norm(residual) <= tolerance:
+        if self.norm(residual) <= tolerance:
             return np.zeros_like(residual), 0
-        if self._factors is None or self._wasted > _ITERATIONS_PER_FACTORISATION:
+        if not self._is_made or self._wasted > self.price:
             self._renew(matrix)
-        correction, iterations, converged = self._iterate(apply, residual, tolerance)
+        correction, iterations, converged = self.iterate(apply, residual, tolerance)
         if not converged and self._solves > 0:
             self._renew(matrix)
-            correction, iterations, converged = self._iterate(apply, residual, tolerance)
+            correction, iterations, converged = self.iterate(apply, residual, tolerance)
         if not converged:
             raise StepRejected(
                 "fluid.tolerance",
-                f"a linear system that does not converge to {tolerance:.1e} in {_MOST_ITERATIONS} iterations",
+                f"a linear system that does not converge to {tolerance:.1e} in {MOST_ITERATIONS} iterations",
                 "a converging one",
                 "Shorten time.step or loosen fluid.tolerance.",
             )
         self._solves += 1
-        self._wasted += max(0, iterations - _ITERATIONS_WHEN_FRESH)
+        self._wasted += max(0, iterations - self.when_fresh)
         return correction, iterations
 
-    def _renew(self, matrix: Callable[[], sparse.csr_array]) -> None:
-        self._factors = None  # frees the old factors before the new ones need memory
-        self._factors = factorise(matrix())
-        self._solves = self._wasted = 0
+    @final
+    def norm(self, vector: FloatArray) -> float:
+        """Its Euclidean norm, over all processes."""
+        return float(np.sqrt(self._ranks.sum(vector @ vector)))
 
-    def _iterate(
+    @abstractmethod
+    def make(self, matrix: Matrix) -> None:
+        """Make a preconditioner of this matrix."""
+
+    @abstractmethod
+    def drop(self) -> None:
+        """Free its memory."""
+
+    @abstractmethod
+    def iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
     ) -> tuple[FloatArray, int, bool]:
-        """Preconditioned on the right, so that the norm that stops the iteration is the true residual's."""
-        assert self._factors is not None
-        factors = self._factors
-        norms: list[float] = []
-        operator = LinearOperator((len(residual),) * 2, matvec=lambda y: apply(factors.solve(y)), dtype=np.float64)
-        inner, failed = gmres(
-            operator,
-            residual,
-            rtol=0.0,
-            atol=tolerance,
-            restart=_MOST_ITERATIONS,
-            maxiter=1,
-            callback=norms.append,
-            callback_type="pr_norm",
-        )
-        return factors.solve(inner), len(norms), failed == 0
+        """The correction, the iterations spent, and whether ‖residual - A x‖ ≤ tolerance was reached."""
+
+    def _renew(self, matrix: Callable[[], Matrix]) -> None:
+        self.drop()  # frees the old one before the new one needs memory
+        self.make(matrix())
+        self._is_made = True
+        self._solves = self._wasted = 0

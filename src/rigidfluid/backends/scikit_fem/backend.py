@@ -22,10 +22,10 @@ class ScikitFem(TaylorHoodBackend):
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
-        from rigidfluid.taylor_hood.stale_solver import StaleSolver
+        from rigidfluid.taylor_hood.stale_factors import StaleFactors
 
         super().__init__(options, problem)
-        self._solver = StaleSolver()
+        self._solver = StaleFactors()
         self._assembly: CompiledAssembly | None = None
 
     def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:

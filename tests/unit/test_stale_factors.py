@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood import stale_solver
-from rigidfluid.taylor_hood.stale_solver import StaleSolver
+from rigidfluid.taylor_hood import stale_factors
+from rigidfluid.taylor_hood.stale_factors import StaleFactors
 
 N = 200
 RIGHT = np.eye(N)[0]
@@ -17,13 +17,13 @@ SHIFT = sparse.csr_array(np.roll(np.eye(N), 1, axis=0))  # GMRES does not get an
 @pytest.fixture
 def made(monkeypatch):
     count = []
-    factorise = stale_solver.factorise
-    monkeypatch.setattr(stale_solver, "factorise", lambda matrix: count.append(1) or factorise(matrix))
+    factorise = stale_factors.factorise
+    monkeypatch.setattr(stale_factors, "factorise", lambda matrix: count.append(1) or factorise(matrix))
     return count
 
 
 def test_stale_factors_that_fail_are_renewed_once(made):
-    solver = StaleSolver()
+    solver = StaleFactors()
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     found, _ = solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)
     np.testing.assert_allclose(SHIFT @ found, RIGHT, atol=1e-9)
@@ -32,11 +32,11 @@ def test_stale_factors_that_fail_are_renewed_once(made):
 
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
-        StaleSolver().solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
+        StaleFactors().solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
 
 
 def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made):
-    solver = StaleSolver()
+    solver = StaleFactors()
     other = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 20))
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     iterations = [solver.solve(other.__matmul__, lambda: other, np.ones(N), 1e-9)[1] for _ in range(5)]
@@ -46,4 +46,4 @@ def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made)
 
 
 def test_nothing_to_do():
-    assert StaleSolver().solve(IDENTITY.__matmul__, lambda: IDENTITY, np.zeros(N), 0.0)[1] == 0
+    assert StaleFactors().solve(IDENTITY.__matmul__, lambda: IDENTITY, np.zeros(N), 0.0)[1] == 0

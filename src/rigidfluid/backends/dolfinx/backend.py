@@ -1,0 +1,64 @@
+"""Fluid backend "dolfinx": assembly by DOLFINx, solution by PETSc, on one process or many."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, final
+
+from scipy.sparse import csc_array
+
+from rigidfluid.backends.dolfinx.options import DolfinxOptions
+from rigidfluid.core.extension import Extension
+from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.taylor_hood.backend import TaylorHoodBackend
+from rigidfluid.taylor_hood.discretisation import Discretisation
+from rigidfluid.taylor_hood.numbering import Numbering
+
+if TYPE_CHECKING:
+    from rigidfluid.backends.dolfinx.discretisation import Topology
+
+
+@final
+class Dolfinx(TaylorHoodBackend):
+    """Under mpirun each process has a part of the mesh; preconditioners are kept from step to step."""
+
+    name: ClassVar[str] = "dolfinx"
+    requires: ClassVar[dict[str, str]] = {"dolfinx": "fenics-dolfinx (conda-forge, or python3-dolfinx of Debian 13)"}
+    Options: ClassVar[type[PartOptions]] = DolfinxOptions
+    options: DolfinxOptions
+
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
+        from mpi4py import MPI
+
+        from rigidfluid.backends.dolfinx.krylov import StaleLU, StaleSchur
+        from rigidfluid.core.ranks import MpiRanks
+
+        super().__init__(options, problem)
+        if MPI.COMM_WORLD.size > 1:
+            self.ranks = MpiRanks(MPI.COMM_WORLD)
+        by_schur = self.options.solver == "schur" or (self.options.solver == "auto" and self.problem.dimension == 3)
+        self._solver = (StaleSchur if by_schur else StaleLU)(self.ranks, self.options.petsc)
+        self._topology: Topology | None = None
+
+    def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
+        from rigidfluid.backends.dolfinx.extension import DistributedExtension
+
+        if mesh.part is None:
+            return super().extension(mesh, stiffness, held)
+        return DistributedExtension(self._topology_of(self.numbering_of(mesh), mesh).space, stiffness, held)
+
+    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+        from rigidfluid.backends.dolfinx.discretisation import PetscDiscretisation
+
+        topology = self._topology_of(numbering, mesh)
+        return PetscDiscretisation(self.problem, topology, self._solver, mesh, controlled)
+
+    def drop_factors(self) -> None:
+        self._solver.forget()
+
+    def _topology_of(self, numbering: Numbering, mesh: Mesh) -> Topology:
+        from rigidfluid.backends.dolfinx.discretisation import Topology
+
+        if self._topology is None or self._topology.numbering is not numbering:
+            self._topology = Topology(numbering, mesh)
+        return self._topology

@@ -1,0 +1,24 @@
+"""What differs between the versions of DOLFINx that are supported: 0.9 and newer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import dolfinx.fem.petsc as assembling
+
+
+def create_block_matrix(blocks: Any) -> Any:
+    """A PETSc matrix with the sparsity of a table of forms, the rows of each process together."""
+    if hasattr(assembling, "create_matrix_block"):  # until 0.9
+        return assembling.create_matrix_block(blocks)
+    return assembling.create_matrix(blocks)
+
+
+def assemble_block_matrix(matrix: Any, blocks: Any) -> None:
+    """Overwrite its entries."""
+    matrix.zeroEntries()
+    if hasattr(assembling, "assemble_matrix_block"):  # until 0.9
+        assembling.assemble_matrix_block(matrix, blocks)
+    else:
+        assembling.assemble_matrix(matrix, blocks)
+    matrix.assemble()

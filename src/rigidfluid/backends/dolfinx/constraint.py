@@ -1,0 +1,101 @@
+"""The operator P of `rigidfluid.taylor_hood.constraint`, distributed.
+
+Of its columns each process has its own free velocities first, the root all twists next, and each its free pressures.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+from scipy import sparse
+
+from rigidfluid.backends.dolfinx.space import Space
+from rigidfluid.core.types import BoolArray, FloatArray, IntArray
+from rigidfluid.taylor_hood.constraint import CROSS
+from rigidfluid.taylor_hood.surfaces import Surfaces
+
+
+class DistributedConstraint:
+    """Which unknowns are free on one topology, and P as a PETSc matrix.
+
+    Parameters
+    ----------
+    space : Space
+        Who owns which node.
+    surfaces : Surfaces
+        Nodes on bodies and faces.
+    controlled : (n,) bool
+        Bodies whose twist is given.
+    pinned : int or None
+        A vertex of this process where the pressure is zero.
+    """
+
+    def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pinned: int | None) -> None:
+        self._space, ranks = space, surfaces.ranks
+        d = space.numbering.dimension
+        self._free_bodies = np.flatnonzero(~controlled)
+        self._velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
+        self._pressure_free = space.owned_vertices != (-1 if pinned is None else pinned)
+        self.velocities, self.pressures = int(self._velocity_free.sum()), int(self._pressure_free.sum())
+        width = d + (1 if d == 2 else 3)
+        self.twists = width * len(self._free_bodies) if ranks.is_root else 0
+        self.columns = self.velocities + self.twists + self.pressures
+        counts = ranks.gathered((self.columns, self.velocities))
+        self.first_column = sum(columns for columns, _ in counts[: ranks.rank])
+        self.unknowns = sum(columns for columns, _ in counts)
+        self._first_twist = counts[0][1]
+        place = np.full(space.numbering.nodes, -1)
+        place[space.owned_nodes] = np.arange(len(space.owned_nodes))
+        self._body_rows = [(on := place[surfaces.body_nodes[body]])[on >= 0] for body in self._free_bodies]
+        self._width = width
+
+    @property
+    def rows(self) -> int:
+        """Velocities and pressures that this process owns."""
+        return len(self._velocity_free) + len(self._pressure_free)
+
+    @property
+    def twist_slice(self) -> slice:
+        """The twists among this process' columns; empty but on the root."""
+        return slice(self.velocities, self.velocities + self.twists)
+
+    def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
+        """P for nodes at ``node_points`` (nodes, d) and bodies centred at ``position`` (n, d)."""
+        local = self._free_columns()
+        blocks = [local, *self._rigid_blocks(node_points, position)]
+        row, column, value = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+        matrix = sparse.coo_array((value, (row, column)), shape=(self.rows, self.unknowns)).tocsr()
+        matrix.sort_indices()
+        index = PETSc.IntType
+        csr = matrix.indptr.astype(index), matrix.indices.astype(index), matrix.data
+        sizes = (self.rows, None), (self.columns, None)
+        made = PETSc.Mat().createAIJ(sizes, csr=csr, comm=self._space.communicator)
+        made.assemble()
+        return made
+
+    def reduced(self, velocity: FloatArray, twist: FloatArray, pressure: FloatArray) -> FloatArray:
+        """This process' unknowns from fields on nodes and vertices and all bodies' twists (n, d+k)."""
+        space = self._space
+        on_owned = velocity[space.owned_nodes].ravel()[self._velocity_free]
+        twists = twist[self._free_bodies].ravel() if self.twists else np.zeros(0)
+        return np.concatenate([on_owned, twists, pressure[space.owned_vertices][self._pressure_free]])
+
+    def _free_columns(self) -> tuple[IntArray, IntArray, FloatArray]:
+        free = np.flatnonzero(np.concatenate([self._velocity_free, self._pressure_free]))
+        number = np.arange(len(free)) + np.where(np.arange(len(free)) < self.velocities, 0, self.twists)
+        return free, self.first_column + number, np.ones(len(free))
+
+    def _rigid_blocks(
+        self, node_points: FloatArray, position: FloatArray
+    ) -> list[tuple[IntArray, IntArray, FloatArray]]:
+        """u = U + ω × r, row by row, for each free body's nodes that this process owns."""
+        d, blocks = self._space.numbering.dimension, []
+        for number, (body, at) in enumerate(zip(self._free_bodies, self._body_rows, strict=True)):
+            first = self._first_twist + self._width * number
+            arm = node_points[self._space.owned_nodes[at]] - position[body]
+            one, column = np.ones(len(at)), np.full(len(at), first)
+            blocks += [(at * d + a, column + a, one) for a in range(d)]
+            blocks += [(at * d + a, column + d + b, sign * arm[:, c]) for a, b, c, sign in CROSS[d]]
+        return blocks

@@ -1,0 +1,110 @@
+"""The equations in PETSc's distributed matrices."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
+from rigidfluid.backends.dolfinx.forms import Forms
+from rigidfluid.backends.dolfinx.krylov import Krylov, StaleLU
+from rigidfluid.backends.dolfinx.reduced import Reduced
+from rigidfluid.backends.dolfinx.schur import schur_data
+from rigidfluid.backends.dolfinx.space import Space
+from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
+from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
+
+
+class Topology:
+    """What stays while the bodies under control change: the space, its forms and the matrix K."""
+
+    def __init__(self, numbering: Numbering, mesh: Mesh) -> None:
+        self.numbering = numbering
+        self.space = Space(numbering, mesh)
+        self.forms = Forms(self.space)
+        self.matrix = self.forms.new_matrix()
+
+
+class PetscDiscretisation:
+    """Pᵀ K P on MPI's processes, solved by a Krylov method.
+
+    Parameters
+    ----------
+    problem : FluidProblem
+        Equations and boundary conditions.
+    topology : Topology
+        The space.
+    solver : Krylov
+        Kept from topology to topology; it must have been told to forget the last one.
+    mesh : Mesh
+        The mesh, for its surfaces.
+    controlled : (n,) bool
+        Bodies whose twist is given.
+    """
+
+    def __init__(
+        self, problem: FluidProblem, topology: Topology, solver: Krylov, mesh: Mesh, controlled: BoolArray
+    ) -> None:
+        self.problem = problem
+        self.numbering = topology.numbering
+        self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies)
+        self._topology, self._solver = topology, solver
+        pinned = far_vertex(mesh, problem.bodies) if self.surfaces.enclosed and isinstance(solver, StaleLU) else None
+        self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pinned)
+        self._pinned = pinned
+
+    @property
+    def unknowns(self) -> int:
+        return self._constraint.unknowns
+
+    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
+        self._topology.space.move(points)
+        return self._topology.forms.mass_times(field)
+
+    def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
+        self._topology.space.move(points)
+        return self._topology.forms.strain_square(velocity)
+
+    def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
+        """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
+        s, space, constraint = system, self._topology.space, self._constraint
+        reduced, free = self._reduced(s), ~s.controlled
+        none = np.zeros(len(space.owned_vertices))
+        given = np.concatenate([s.given[space.owned_nodes].ravel(), none])
+        load = np.concatenate([space.owned_sums(s.load), none])
+        right_side = reduced.collect(load - reduced.times(given))
+        right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
+        guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
+        scale = self._solver.norm(right_side)
+        residual = right_side - reduced.apply(guess)
+        correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, tolerance * scale)
+        return self._solution(s, reduced, guess + correction, given, load)
+
+    def _reduced(self, system: CoupledSystem) -> Reduced:
+        s, topology, constraint = system, self._topology, self._constraint
+        topology.space.move(s.points)
+        topology.forms.assemble(topology.matrix, s.inertia, s.viscosity, s.advection)
+        operator = constraint.operator(s.node_points, s.position)
+        inertia = block_diag(*s.mass_matrix[~s.controlled]) if constraint.twists else np.zeros((0, 0))
+        schur = schur_data(topology.space, topology.forms, self.surfaces, s.points, s.inertia, s.viscosity)
+        return Reduced(constraint, topology.matrix, operator, inertia, schur)
+
+    def _pinned_pressure(self, pressure: FloatArray) -> float:
+        """Of the guess, at the vertex where it is pinned to zero; other solvers need no such vertex."""
+        own = 0.0 if self._pinned is None else float(pressure[self._pinned])
+        return float(self.surfaces.ranks.sum(own))
+
+    def _solution(
+        self, system: CoupledSystem, reduced: Reduced, x: FloatArray, given: FloatArray, load: FloatArray
+    ) -> Solution:
+        space, constraint, ranks = self._topology.space, self._constraint, self.surfaces.ranks
+        everything = reduced.expand(x) + given
+        size = space.owned_nodes.size * space.numbering.dimension
+        reaction = np.zeros_like(system.given)
+        reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
+        twist = system.twist.copy()
+        free = ~system.controlled
+        twist[free] = ranks.shared(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
+        return Solution(space.velocities(everything[:size]), space.pressures(everything[size:]), twist, reaction)

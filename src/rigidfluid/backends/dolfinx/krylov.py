@@ -1,0 +1,169 @@
+"""GMRES of PETSc behind a preconditioner that is kept from step to step."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, final
+
+from petsc4py import PETSc
+
+from rigidfluid.backends.dolfinx.reduced import Reduced
+from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
+from rigidfluid.core.ranks import Ranks
+from rigidfluid.core.types import FloatArray
+from rigidfluid.taylor_hood.stale_solver import MOST_ITERATIONS, StaleSolver
+
+Settings = Mapping[str, str | float | int | bool]
+_PREFIX = "rigidfluid_"
+
+
+class Krylov(StaleSolver[Reduced]):
+    """Right-preconditioned, so that the norm that stops the iteration is the true residual's.
+
+    Parameters
+    ----------
+    ranks : Ranks
+        The processes that share the vectors.
+    settings : mapping
+        PETSc options from the scene; they have the last word.
+    """
+
+    defaults: ClassVar[Settings]
+    """PETSc options."""
+
+    def __init__(self, ranks: Ranks, settings: Settings) -> None:
+        super().__init__(ranks)
+        self._settings = dict(settings)
+        self._ksp: Any = None
+        self._operator = _Operator()
+
+    @final
+    def make(self, matrix: Reduced) -> None:
+        assembled = matrix.as_matrix()
+        shell = PETSc.Mat().createPython(assembled.getSizes(), self._operator, comm=assembled.comm)
+        shell.setUp()
+        self._ksp = PETSc.KSP().create(assembled.comm)
+        self._ksp.setOptionsPrefix(_PREFIX)
+        self._ksp.setOperators(shell, assembled)
+        self._ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
+        self._ksp.setPCSide(PETSc.PC.Side.RIGHT)
+        self.prepare(self._ksp, matrix, shell)
+        self._configure(self.defaults | self.chosen(matrix) | self._settings)
+        self._ksp.setUp()
+        self.finish(self._ksp, matrix)
+
+    @final
+    def drop(self) -> None:
+        if self._ksp is not None:
+            self._ksp.destroy()
+            self._ksp = None
+
+    @final
+    def iterate(
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
+    ) -> tuple[FloatArray, int, bool]:
+        self._operator.apply = apply
+        self._ksp.setTolerances(rtol=0.0, atol=tolerance, max_it=MOST_ITERATIONS)
+        _, pmat = self._ksp.getOperators()
+        correction, right_side = pmat.createVecs()
+        right_side.array[:] = residual
+        self._ksp.solve(right_side, correction)
+        found: FloatArray = correction.array.copy()
+        return found, self._ksp.getIterationNumber(), self._ksp.getConvergedReason() > 0
+
+    def chosen(self, matrix: Reduced) -> Settings:
+        """PETSc options that depend on the matrix."""
+        return {}
+
+    @abstractmethod
+    def prepare(self, ksp: Any, matrix: Reduced, shell: Any) -> None:
+        """What must be there before the options are read."""
+
+    @abstractmethod
+    def finish(self, ksp: Any, matrix: Reduced) -> None:
+        """What can be there only after."""
+
+    def _configure(self, settings: Settings) -> None:
+        database = PETSc.Options(_PREFIX)
+        for key, value in settings.items():
+            database[key] = value
+        self._ksp.setFromOptions()
+
+
+@final
+class StaleLU(Krylov):
+    """LU factors of the whole matrix, by MUMPS."""
+
+    price = 30
+    when_fresh = 3
+    defaults: ClassVar[Settings] = {
+        "ksp_type": "gmres",
+        "ksp_gmres_restart": MOST_ITERATIONS,
+        "pc_type": "lu",
+        "pc_factor_mat_solver_type": "mumps",
+        "mat_mumps_icntl_14": 60,  # per cent of memory for pivots beyond the estimate
+    }
+
+    def prepare(self, ksp: Any, matrix: Reduced, shell: Any) -> None:
+        """Nothing: factors need the matrix alone."""
+
+    def finish(self, ksp: Any, matrix: Reduced) -> None:
+        """Nothing."""
+
+
+@final
+class StaleSchur(Krylov):
+    """Upper block triangle [[A, Bᵀ], [0, S]]: A, with the bodies' rows, by an inner iteration, S by Cahouet–Chabard."""
+
+    price = 8
+    when_fresh = 20
+    defaults: ClassVar[Settings] = {
+        "ksp_type": "fgmres",
+        "ksp_gmres_restart": MOST_ITERATIONS,
+        "pc_type": "fieldsplit",
+        "pc_fieldsplit_type": "schur",
+        "pc_fieldsplit_schur_fact_type": "upper",
+        "pc_fieldsplit_schur_precondition": "a11",
+        "fieldsplit_velocity_ksp_type": "gmres",
+        "fieldsplit_velocity_ksp_rtol": 1e-2,
+        "fieldsplit_velocity_ksp_max_it": 30,
+        "fieldsplit_pressure_ksp_type": "preonly",
+        "fieldsplit_pressure_pc_type": "python",
+    }
+
+    def chosen(self, matrix: Reduced) -> Settings:
+        return velocity_options(matrix)
+
+    def prepare(self, ksp: Any, matrix: Reduced, shell: Any) -> None:
+        constraint = matrix.constraint
+        moving, first = constraint.velocities + constraint.twists, constraint.first_column
+        comm = ksp.comm
+        velocity = PETSc.IS().createStride(moving, first=first, step=1, comm=comm)
+        pressure = PETSc.IS().createStride(constraint.pressures, first=first + moving, step=1, comm=comm)
+        ksp.getPC().setType("fieldsplit")
+        ksp.getPC().setFieldSplitIS(("velocity", velocity), ("pressure", pressure))
+        if matrix.schur.enclosed:
+            shell.setNullSpace(_constant_pressure(shell, moving))
+
+    def finish(self, ksp: Any, matrix: Reduced) -> None:
+        _, pressure = ksp.getPC().getFieldSplitSchurGetSubKSP()
+        pressure.getPC().setPythonContext(CahouetChabard(matrix.schur))
+
+
+class _Operator:
+    """What PETSc calls for A x."""
+
+    def __init__(self) -> None:
+        self.apply: Callable[[FloatArray], FloatArray] | None = None
+
+    def mult(self, _matrix: Any, x: Any, y: Any) -> None:
+        assert self.apply is not None
+        y.array[:] = self.apply(x.array_r)
+
+
+def _constant_pressure(matrix: Any, moving: int) -> Any:
+    vector = matrix.createVecRight()
+    vector.array[moving:] = 1.0
+    vector.normalize()
+    return PETSc.NullSpace().create(vectors=[vector], comm=matrix.comm)

@@ -1,0 +1,78 @@
+"""The coupled matrix Pᵀ K P with the bodies' inertia, as an operator and as a matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
+from rigidfluid.backends.dolfinx.schur import SchurData
+from rigidfluid.core.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """``matrix`` K and ``operator`` P of one step, ``inertia`` (t, t) of the free bodies' twists.
+
+    ``schur``: what the Schur complement of the pressures is made of.
+    """
+
+    constraint: DistributedConstraint
+    matrix: Any
+    operator: Any
+    inertia: FloatArray
+    schur: SchurData
+
+    def apply(self, x: FloatArray) -> FloatArray:
+        """(Pᵀ K P + inertia) x, of this process' unknowns."""
+        given, everything, image, result = self._vectors
+        given.array[:] = x
+        self.operator.mult(given, everything)
+        self.matrix.mult(everything, image)
+        self.operator.multTranspose(image, result)
+        found: FloatArray = result.array.copy()
+        twists = self.constraint.twist_slice
+        if twists.stop > twists.start:
+            found[twists] += self.inertia @ x[twists]
+        return found
+
+    def expand(self, x: FloatArray) -> FloatArray:
+        """P x, of this process' velocities and pressures."""
+        given, everything, _, _ = self._vectors
+        given.array[:] = x
+        self.operator.mult(given, everything)
+        return np.asarray(everything.array.copy())
+
+    def collect(self, forces: FloatArray) -> FloatArray:
+        """Pᵀ of forces on this process' velocities and pressures."""
+        _, _, image, result = self._vectors
+        image.array[:] = forces
+        self.operator.multTranspose(image, result)
+        return np.asarray(result.array.copy())
+
+    def times(self, everything: FloatArray) -> FloatArray:
+        """K times this process' velocities and pressures."""
+        _, source, image, _ = self._vectors
+        source.array[:] = everything
+        self.matrix.mult(source, image)
+        return np.asarray(image.array.copy())
+
+    def as_matrix(self) -> Any:
+        """A PETSc matrix."""
+        made = self.matrix.PtAP(self.operator)
+        twists = self.constraint.twist_slice
+        made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        if twists.stop > twists.start:
+            numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column
+            made.setValues(numbers, numbers, self.inertia, addv=PETSc.InsertMode.ADD)
+        made.assemble()
+        return made
+
+    @cached_property
+    def _vectors(self) -> tuple[Any, Any, Any, Any]:
+        everything, reduced = self.matrix.createVecRight(), self.operator.createVecRight()
+        return reduced, everything, everything.duplicate(), reduced.duplicate()
