@@ -1,17 +1,15 @@
 """The harmonic map that moves the mesh."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mesh_tools import ball, edges_of, ellipsoid, nobody, upright
 from scipy.sparse import csc_array
 from threaded_ranks import on_ranks
 
-from rigidfluid.core.distribution import distributed, whole
+from rigidfluid.core.distribution import distributed
 from rigidfluid.core.extension import FactorisedExtension
 from rigidfluid.core.frames import to_body_frame
-from rigidfluid.core.mesh_motion import MeshMotion, stiffness
+from rigidfluid.core.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.types import Pose
@@ -120,7 +118,7 @@ class OnTheRoot:
     """An extension that the root solves for all."""
 
     def __init__(self, mesh, matrix, held):
-        self._part = mesh.part
+        self._part, self._free = mesh.part, ~held
         entries, ids = matrix.tocoo(), mesh.part.vertices
         sent = (entries.data, ids[entries.coords[0]], ids[entries.coords[1]], ids, held)
         pieces = mesh.ranks.collected(sent)
@@ -139,7 +137,7 @@ class OnTheRoot:
             for vertices, given in pieces:
                 everywhere[vertices] = given
             self._solver.fill(everywhere)
-        values[:] = self._part.ranks.shared(everywhere)[self._part.vertices]
+        values[self._free] = self._part.ranks.shared(everywhere)[self._part.vertices[self._free]]
 
 
 @pytest.mark.parametrize("case", ["ellipse", "solid"])
@@ -149,8 +147,21 @@ def test_a_mesh_in_parts_moves_as_the_whole_does(case, request):
 
     def moved(ranks):
         part = distributed(mesh if ranks.is_root else None, ranks)
-        points = MeshMotion(part, bodies, pose, OnTheRoot).move(new)
-        return whole(replace(part, points=points))
+        return part.part.vertices, MeshMotion(part, bodies, pose, OnTheRoot).move(new)
 
     expected = MeshMotion(mesh, bodies, pose).move(new)
-    np.testing.assert_allclose(on_ranks(3, moved)[0].points, expected, rtol=0, atol=1e-13)
+    for vertices, points in on_ranks(7, moved):
+        np.testing.assert_allclose(points, expected[vertices], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("case", ["ellipse", "solid"])
+def test_a_part_s_vertices_are_held_where_the_facet_is_another_s(case, request):
+    bodies, _, mesh = request.getfixturevalue(case)
+    expected = held_components(mesh, len(bodies))
+
+    def held(ranks):
+        part = distributed(mesh if ranks.is_root else None, ranks)
+        return part.part.vertices, held_components(part, len(bodies))
+
+    for vertices, components in on_ranks(7, held):
+        assert np.array_equal(components, expected[vertices])
