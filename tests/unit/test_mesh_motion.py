@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 from mesh_tools import ball, edges_of, ellipsoid, nobody, upright
+from scipy.sparse import csc_array
+from threaded_ranks import on_ranks
 
+from rigidfluid.core.distribution import distributed
+from rigidfluid.core.extension import FactorisedExtension
 from rigidfluid.core.frames import to_body_frame
-from rigidfluid.core.mesh_motion import MeshMotion, stiffness
+from rigidfluid.core.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.types import Pose
@@ -108,3 +112,56 @@ def test_small_cells_keep_their_shape_better_than_large_ones(disk):
 def test_a_box_without_bodies_stands_still():
     mesh = generate_mesh([], nobody(2), LOWER, UPPER, 0.4, 0.1, 0.5)
     assert np.array_equal(MeshMotion(mesh, [], nobody(2)).move(nobody(2)), mesh.points)
+
+
+class OnTheRoot:
+    """An extension that the root solves for all."""
+
+    def __init__(self, mesh, matrix, held):
+        self._part, self._free = mesh.part, ~held
+        entries, ids = matrix.tocoo(), mesh.part.vertices
+        sent = (entries.data, ids[entries.coords[0]], ids[entries.coords[1]], ids, held)
+        pieces = mesh.ranks.collected(sent)
+        if pieces is not None:
+            data, rows, columns, vertices, fixed = map(np.concatenate, zip(*pieces, strict=True))
+            count = mesh.part.counts[0]
+            everywhere = np.zeros(count, dtype=bool)
+            everywhere[vertices[fixed]] = True
+            self._solver = FactorisedExtension(csc_array((data, (rows, columns)), shape=(count, count)), everywhere)
+
+    def fill(self, values):
+        pieces = self._part.ranks.collected((self._part.vertices, values))
+        everywhere = None
+        if pieces is not None:
+            everywhere = np.empty(self._part.counts[0])
+            for vertices, given in pieces:
+                everywhere[vertices] = given
+            self._solver.fill(everywhere)
+        values[self._free] = self._part.ranks.shared(everywhere)[self._part.vertices[self._free]]
+
+
+@pytest.mark.parametrize("case", ["ellipse", "solid"])
+def test_a_mesh_in_parts_moves_as_the_whole_does(case, request):
+    bodies, pose, mesh = request.getfixturevalue(case)
+    new = Pose(pose.position + 0.03, upright(*pose.position).orientation)
+
+    def moved(ranks):
+        part = distributed(mesh if ranks.is_root else None, ranks)
+        return part.part.vertices, MeshMotion(part, bodies, pose, OnTheRoot).move(new)
+
+    expected = MeshMotion(mesh, bodies, pose).move(new)
+    for vertices, points in on_ranks(9, moved):
+        np.testing.assert_allclose(points, expected[vertices], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("case", ["ellipse", "solid"])
+def test_a_part_s_vertices_are_held_where_the_facet_is_another_s(case, request):
+    bodies, _, mesh = request.getfixturevalue(case)
+    expected = held_components(mesh, len(bodies))
+
+    def held(ranks):
+        part = distributed(mesh if ranks.is_root else None, ranks)
+        return part.part.vertices, held_components(part, len(bodies))
+
+    for vertices, components in on_ranks(9, held):
+        assert np.array_equal(components, expected[vertices])

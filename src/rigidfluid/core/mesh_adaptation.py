@@ -1,4 +1,7 @@
-"""Decides when a mesh that only moves must be made anew, and carries the fluid over."""
+"""Decides when a mesh that only moves must be made anew, and carries the fluid over.
+
+The root makes each mesh and holds it whole meanwhile; every rank moves its own part.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.distribution import distributed, whole
 from rigidfluid.core.mesh_motion import MeshMotion
 from rigidfluid.core.mesh_quality import cell_quality
 from rigidfluid.core.remesh import initial_mesh, remesh
@@ -43,15 +47,18 @@ class Mover:
         """The mesh around the bodies' initial pose."""
         if self._sizes is None:
             return None
-        s = self._system
-        return initial_mesh(s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes)
+        s, ranks = self._system, self._system.backend.ranks
+        with ranks.together():
+            args = s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes
+            mesh = initial_mesh(*args) if ranks.is_root else None
+        return distributed(mesh, ranks)
 
     def moved(self, state: State, pose: Pose) -> Mesh | None:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
         points = self._map(state.reference).move(pose)
-        worst = float(cell_quality(points, state.reference.mesh.cells).min())
+        worst = worst_quality(state.reference.mesh, points)
         if worst < TANGLED:
             raise StepRejected(
                 "mesh",
@@ -65,14 +72,12 @@ class Mover:
         """The same state, on a new mesh if a step to ``pose`` asks for one."""
         if state.reference is None or state.reference.tick == state.tick or not self._asks(state, pose):
             return state
-        assert self._sizes is not None
         assert state.mesh is not None
-        s = self._system
         try:
-            mesh = remesh(state.mesh, s.bodies, state.pose, s.walls, self._sizes)
+            mesh = self._remade(state.mesh, state.pose)
         except MeshError:
             return state  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
-        fluid, loss = s.backend.transfer(state.fluid, state.mesh, mesh)
+        fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
             mesh=mesh,
@@ -81,12 +86,19 @@ class Mover:
             ledger=state.ledger.after_transfer(loss),
         )
 
+    def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
+        assert self._sizes is not None
+        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        with ranks.together():
+            made = None if present is None else remesh(present, s.bodies, pose, s.walls, self._sizes)
+        return distributed(made, ranks)
+
     def _asks(self, state: State, pose: Pose) -> bool:
         assert state.reference is not None
         if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
             return True
         points = self._map(state.reference).move(pose)
-        worst = float(cell_quality(points, state.reference.mesh.cells).min())
+        worst = worst_quality(state.reference.mesh, points)
         return worst < min(self._quality, 0.5 * state.reference.quality)
 
     def _map(self, reference: Reference) -> MeshMotion:
@@ -99,7 +111,12 @@ class Mover:
 
 def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
     """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
-    return Reference(mesh, pose, gaps, float(cell_quality(mesh.points, mesh.cells).min()), tick)
+    return Reference(mesh, pose, gaps, worst_quality(mesh, mesh.points), tick)
+
+
+def worst_quality(mesh: Mesh, points: FloatArray) -> float:
+    """Quality of the worst cell of the whole mesh, with its vertices at ``points`` (N, d) [1]."""
+    return float(mesh.ranks.least(cell_quality(points, mesh.cells).min()))
 
 
 def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.sparse import csc_array
 
+from rigidfluid.core.distribution import surface_vertices
 from rigidfluid.core.extension import Extension, FactorisedExtension
 from rigidfluid.core.frames import to_body_frame, to_world
 from rigidfluid.core.interfaces import Body
@@ -50,7 +51,7 @@ class MeshMotion:
         self._points = mesh.points
         self._bodies = tuple(bodies)
         self._pose = reference_pose
-        self._surfaces = [np.unique(mesh.facets[mesh.markers == i]) for i in range(len(bodies))]
+        self._surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
         self._held = held_components(mesh, len(bodies))
         matrix = stiffness(mesh)
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
@@ -88,16 +89,17 @@ class MeshMotion:
 def held_components(mesh: Mesh, bodies: int) -> BoolArray:
     """Which components of the displacement are given, (N, d): all on a body, the normal one on a face of the box."""
     held = np.zeros(mesh.points.shape, dtype=bool)
-    for surface in range(mesh.markers.max() + 1):
+    for surface in range(bodies + 2 * mesh.points.shape[1]):
         components = slice(None) if surface < bodies else (surface - bodies) // 2
-        held[np.unique(mesh.facets[mesh.markers == surface]), components] = True
+        held[surface_vertices(mesh, surface), components] = True
     return held
 
 
 def stiffness(mesh: Mesh) -> csc_array:
-    """Matrix of ∫(1 + τ) ∇u·∇v for linear elements, (N, N)."""
+    """Matrix of ∫(1 + τ) ∇u·∇v for linear elements over this rank's cells, (N, N)."""
     volume = np.abs(cell_volumes(mesh.points, mesh.cells))
-    tau = (1.0 - volume.min() / volume.max()) / (volume / volume.max())
+    smallest, largest = mesh.ranks.least(volume.min()), mesh.ranks.greatest(volume.max())
+    tau = (1.0 - smallest / largest) / (volume / largest)
     corners = mesh.points[mesh.cells]
     inner = np.linalg.inv(corners[:, 1:] - corners[:, :1])
     gradients = np.concatenate([-inner.sum(axis=2, keepdims=True), inner], axis=2)

@@ -1,0 +1,64 @@
+"""Several ranks in one process, a thread for each."""
+
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier, BrokenBarrierError
+
+from rigidfluid.core.ranks import ROOT, Ranks
+
+
+class ThreadedRanks(Ranks):
+    """What the ranks hand each other goes through pickles, so that none sees another's arrays."""
+
+    def __init__(self, rank, board):
+        self.rank, self.size, self._board = rank, len(board.items), board
+
+    def gathered(self, item):
+        self._board.barrier.wait()
+        self._board.items[self.rank] = pickle.dumps(item)
+        self._board.barrier.wait()
+        return [pickle.loads(each) for each in self._board.items]
+
+    def collected(self, item):
+        items = self.gathered(item)
+        return items if self.is_root else None
+
+    def shared(self, item):
+        return self.gathered(item if self.is_root else None)[ROOT]
+
+    def scattered(self, items):
+        return self.gathered(items)[ROOT][self.rank]
+
+    def exchanged(self, items):
+        return [theirs[self.rank] for theirs in self.gathered(items)]
+
+    def abort(self):
+        self._board.barrier.abort()
+
+    def __reduce__(self):
+        raise TypeError("ranks do not travel")
+
+
+class _Board:
+    def __init__(self, size):
+        self.items, self.barrier = [None] * size, Barrier(size)
+
+
+def on_ranks(size, work):
+    """What ``work(ranks)`` gives on each of ``size`` ranks; where one fails, all end and its error is raised."""
+    board = _Board(size)
+
+    def one(rank):
+        ranks = ThreadedRanks(rank, board)
+        try:
+            return work(ranks)
+        except BaseException:
+            ranks.abort()
+            raise
+
+    with ThreadPoolExecutor(size) as pool:
+        jobs = [pool.submit(one, rank) for rank in range(size)]
+    failures = [failure for job in jobs if (failure := job.exception()) is not None]
+    if failures:
+        raise min(failures, key=lambda failure: isinstance(failure, BrokenBarrierError))
+    return [job.result() for job in jobs]
