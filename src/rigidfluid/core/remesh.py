@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from typing import Any
@@ -140,12 +141,32 @@ def best_remeshed(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], Float
 
 def remeshed_once(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], FloatArray], gradation: float) -> Mesh:
     """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
-    new = orient(with_kept_facets(run_mmg(mesh, bodies, size_at(mesh.points), gradation), mesh, bodies))
+    given = replace(mesh, points=rounded_points(mesh))
+    made = run_mmg(given, bodies, significant(size_at(given.points)), gradation)
+    new = orient(with_kept_facets(made, mesh, given.points, bodies))
     check_mesh(new, quality=WORST_QUALITY)
     before, after = (float(np.sum(cell_volumes(m.points, m.cells))) for m in (mesh, new))
     if abs(after - before) > 1e-12 * before:
         raise MeshError("mesh", f"a volume of {after!r} after re-meshing", f"{before!r} as before", REMEDY)
     return new
+
+
+def rounded_points(mesh: Mesh) -> FloatArray:
+    """Points rounded to a millionth of the shortest edge, (N, d).
+
+    MMG amplifies round-off to another mesh: two runs that agree to round-off shall get the same one.
+    """
+    pairs = np.array(list(combinations(range(mesh.cells.shape[1]), 2)))
+    edges = np.diff(mesh.points[mesh.cells[:, pairs]], axis=2)
+    shortest = float(np.linalg.norm(edges, axis=-1).min())
+    unit = 2.0 ** (np.floor(np.log2(shortest)) - 20)
+    return np.asarray(np.round(mesh.points / unit) * unit)
+
+
+def significant(values: FloatArray) -> FloatArray:
+    """Positive values rounded to 24 binary digits."""
+    fraction, exponent = np.frexp(values)
+    return np.asarray(np.ldexp(np.round(fraction * 2.0**24), exponent - 24))
 
 
 def lowest_quality(mesh: Mesh) -> float:
@@ -204,14 +225,15 @@ def box_corners(mesh: Mesh, bodies: int) -> IntArray:
     return corners
 
 
-def with_kept_facets(new: Mesh, old: Mesh, bodies: int) -> Mesh:
+def with_kept_facets(new: Mesh, old: Mesh, given: FloatArray, bodies: int) -> Mesh:
     """``new`` with the body facets and exact coordinates of ``old``, and its other facets exactly on their faces.
 
-    MMG scales coordinates and back, so that they return changed by round-off; vertices are recognised by nearness.
+    MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
+    nearness.
     """
     kept = old.markers < bodies
     old_vertices = np.unique(old.facets[kept])
-    found = cKDTree(new.points).query(old.points[old_vertices])
+    found = cKDTree(new.points).query(given[old_vertices])
     distance, place = np.asarray(found[0]), np.asarray(found[1])
     shortest = 1e-9 * np.ptp(old.points, axis=0).max()
     if len(np.unique(place)) < len(place) or np.any(distance > shortest):

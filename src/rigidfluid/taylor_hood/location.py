@@ -24,7 +24,7 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
     missing = np.arange(len(targets))
     for count in _CANDIDATES:
         _, near = centres.query(targets[missing], k=min(count, len(cells)))
-        near = near.reshape(len(missing), -1)
+        near = near.reshape(len(missing), min(count, len(cells)))
         found = barycentric(points, cells[near], targets[missing, None])
         best = np.argmax(found.min(axis=2), axis=1)
         rows = np.arange(len(missing))

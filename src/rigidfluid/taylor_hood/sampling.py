@@ -61,7 +61,7 @@ def _located(mesh: Mesh, points: FloatArray) -> tuple[_Served, FloatArray]:
     cell, coordinates = locate(mesh.points, mesh.cells, points)
     if mesh.part is None:
         return _Served(cell, coordinates), np.zeros(len(points))
-    depth = barycentric(mesh.points, mesh.cells[cell], points).min(axis=1, initial=np.inf)
+    depth = barycentric(mesh.points, mesh.cells[cell], points).min(axis=1)
     return _Served(cell, coordinates), depth
 
 
