@@ -88,10 +88,9 @@ def difference_plot(pairs: Sequence[Pair]) -> Figure:
 
 
 def most_different(pairs: Sequence[Pair], most: int) -> list[int]:
-    """Numbers of the bodies with the largest differences over the quantities' ranges, at most so many, in order."""
-    compared = [each for pair in pairs for each in pair.differences.values() if not each.is_global]
-    scores = np.max([each.values.max(axis=0) / (each.range or np.inf) for each in compared], axis=0)
-    return sorted(np.argsort(-scores, kind="stable")[:most].tolist())
+    """Numbers of the bodies with the largest differences of position, at most so many, in order."""
+    largest = np.max([pair.differences["position"].values.max(axis=0) for pair in pairs], axis=0)
+    return sorted(np.argsort(-largest, kind="stable")[:most].tolist())
 
 
 def _draw(axes: Axes, time: FloatArray, values: FloatArray, name: str, number: int) -> None:

@@ -87,10 +87,14 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
 
 
 def _can_resume(scene: Scene, folder: Path) -> bool:
+    """Whether there is a checkpoint of the same scene, and all of the tables up to it."""
     try:
-        return bool(json.loads(earlier_run(folder).scene) == scene.to_dict())
+        checkpoint = earlier_run(folder)
     except OutputError:
         return False
+    tables = {folder / f"{name}.csv": length for name, length in checkpoint.lengths.items()}
+    whole = all(table.is_file() and table.stat().st_size >= length for table, length in tables.items())
+    return whole and bool(json.loads(checkpoint.scene) == scene.to_dict())
 
 
 def _time_reached(folder: Path) -> float:
