@@ -56,7 +56,8 @@ BACKENDS = f"""
 
         def advance(self, fluid, mesh, step):
             made = super().advance(fluid, mesh, step)
-            made.hydrodynamic_wrench.force[-1, 0] = self.options.push
+            # a negative push is no number
+            made.hydrodynamic_wrench.force[-1, 0] = self.options.push if self.options.push > 0 else float("nan")
             return made
 
     class Failing(Dry):
@@ -302,11 +303,15 @@ def test_bad_input(backends: list[str], setting: str, texts: tuple[str, ...], tm
     assert not (tmp_path / "out").exists()
 
 
-def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    result = compare_command(BOUNCE, *options("dry", "pushed"), "--out", tmp_path / "file")
+@pytest.mark.parametrize("name", ["dry.toml", "dry.log", "comparison.json", "comparison.html"])
+def test_files_that_cannot_be_written(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(subprocess, "Popen", None)
+    if name.startswith("comparison"):
+        monkeypatch.setattr(runs, "run_apart", lambda *_, **__: "a fault")
+    (tmp_path / name).mkdir()
+    result = compare_command(BOUNCE, *options("dry", "pushed"), "--out", tmp_path)
     assert result.exit_code == 2
-    assert result.stderr.startswith("Error: ")
+    assert result.stderr.startswith(f"Error: {tmp_path / name}: ")
 
 
 def test_scenes_as_text_read_back() -> None:
@@ -440,6 +445,15 @@ def test_results_that_cannot_be_read_are_a_failure(monkeypatch: pytest.MonkeyPat
     comparison, _ = compare(BOUNCE, ["dry", "pushed"], SHORT, tmp_path)
     assert all("summary.json" in run.error for run in comparison.failed)
     assert len(comparison.failed) == 2
+
+
+def test_a_run_that_ends_in_no_numbers(started: list[tuple[str, bool]], tmp_path: Path) -> None:
+    result = compare_command(BOUNCE, *options("dry", "pushed", settings=(*SHORT, "fluid.push=-1.0")), "--out", tmp_path)
+    assert result.exit_code == 0, result.stderr
+    force = json.loads((tmp_path / "comparison.json").read_text())["pairs"][0]["differences"]["hydrodynamic_force"]
+    assert force["largest"] is None
+    assert force["body"] == "right_disk"
+    assert (tmp_path / "differences.svg").read_text().count("<!-- no difference -->") == 5
 
 
 def test_progress(started: list[tuple[str, bool]], tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 from rigidfluid.comparison.differences import UNITS, Difference, Pair
@@ -54,12 +55,12 @@ class Comparison:
             time, body = self.place(pair, difference)
             differences[name] = {
                 "unit": UNITS[name],
-                "largest": difference.largest,
-                "relative": difference.relative,
-                "range": difference.range,
+                "largest": _finite(difference.largest),
+                "relative": _finite(difference.relative),
+                "range": _finite(difference.range),
                 "time": time,
                 "body": body,
-                "final": difference.final,
+                "final": _finite(difference.final),
             }
         return {
             "reference": pair.reference,
@@ -74,6 +75,11 @@ class Comparison:
 def seconds_per_step(summary: dict[str, Any]) -> float:
     """Wall time over accepted steps [s]."""
     return float(summary["wall_time"] / max(summary["steps"], 1))
+
+
+def _finite(value: float | None) -> float | None:
+    """The number, or None where there is none: JSON knows no infinity."""
+    return value if value is not None and isfinite(value) else None
 
 
 def _run_entry(run: Run) -> dict[str, Any]:

@@ -75,7 +75,7 @@ def difference_plot(pairs: Sequence[Pair]) -> Figure:
         for pair, colour in zip(pairs, cycle(PALETTE)):
             largest = pair.differences[name].values.max(axis=1)
             axes.plot(pair.time, np.where(largest > 0.0, largest, np.nan), color=colour, label=pair.other)
-        if any(pair.differences[name].largest > 0.0 for pair in pairs):
+        if any(pair.differences[name].largest != 0.0 for pair in pairs):  # also where it is no number
             axes.set_yscale("log")
         else:
             axes.text(0.5, 0.5, "no difference", transform=axes.transAxes, ha="center", va="center")
