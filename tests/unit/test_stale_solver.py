@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from rigidfluid.backends.scikit_fem import stale_solver
-from rigidfluid.backends.scikit_fem.stale_solver import StaleSolver
 from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood import stale_solver
+from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 N = 200
 RIGHT = np.eye(N)[0]

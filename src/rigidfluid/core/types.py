@@ -172,6 +172,11 @@ class FluidProblem:
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None
 
+    @property
+    def inert_density(self) -> float:
+        """The density in the left side: 0 in Stokes flow."""
+        return self.density if self.inertia else 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Step:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from rigidfluid.core.types import FloatArray, IntArray
+from rigidfluid.taylor_hood.numbering import EDGES
 
 _CANDIDATES = (8, 64, 512)
 _INSIDE = -1e-10
@@ -44,8 +45,8 @@ def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) ->
 
 
 def quadratic_basis(coordinates: FloatArray) -> FloatArray:
-    """The P2 basis (N, b) at barycentric ``coordinates`` (N, d+1): vertices, then edges in scikit-fem's order."""
-    edges = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}[coordinates.shape[1]]
+    """The P2 basis (N, b) at barycentric ``coordinates`` (N, d+1): vertices, then edges in the order of `EDGES`."""
+    edges = EDGES[coordinates.shape[1] - 1]
     vertices = coordinates * (2.0 * coordinates - 1.0)
     middles = [4.0 * coordinates[:, i] * coordinates[:, j] for i, j in edges]
     return np.column_stack([vertices, *middles])

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.backends.scikit_fem.constraint import rigid_velocity
-from rigidfluid.backends.scikit_fem.space import TaylorHood
 from rigidfluid.core.types import FluidState, Mesh, Pose, Twist
+from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
 
 
-def at_rest(space: TaylorHood, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
+def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
     """Fluid at rest, but for the nodes that move with a body."""
-    velocity = np.zeros((space.nodes, space.dimension))
-    node_points = space.node_points(mesh.points)
+    node_points = surfaces.numbering.node_points(mesh.points)
+    velocity = np.zeros_like(node_points)
     twists = np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
-    for body in range(len(twists)):
-        nodes = np.unique(space.facet_nodes(mesh.facets[mesh.markers == body]))
+    for body, nodes in enumerate(surfaces.body_nodes):
         velocity[nodes] = rigid_velocity(twists[body], node_points[nodes] - pose.position[body])
-    pressure = np.zeros(space.vertices)
+    pressure = np.zeros(len(mesh.points))
     return {
         "velocity": velocity,
         "velocity_previous": velocity,

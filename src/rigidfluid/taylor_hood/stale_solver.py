@@ -8,9 +8,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from rigidfluid.backends.scikit_fem.factorization import Factors, factorise
 from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood.factorization import Factors, factorise
 
 # One factorisation costs about as much as this many iterations (PARDISO, 15,000 to 150,000 unknowns),
 _ITERATIONS_PER_FACTORISATION = 30

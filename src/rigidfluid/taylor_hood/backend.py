@@ -1,0 +1,138 @@
+"""A fluid backend of Taylor–Hood elements P2–P1, but for how its equations are assembled and solved."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import ClassVar, final
+
+import numpy as np
+from pydantic import Field
+
+from rigidfluid.core.interfaces import FluidBackend, PartOptions
+from rigidfluid.core.types import (
+    Advance,
+    BoolArray,
+    Fields,
+    FloatArray,
+    FluidProblem,
+    FluidState,
+    Mesh,
+    Pose,
+    Step,
+    Twist,
+)
+from rigidfluid.taylor_hood.discretisation import Discretisation
+from rigidfluid.taylor_hood.numbering import Numbering
+
+
+class TaylorHoodOptions(PartOptions):
+    """Keys of ``[fluid]`` that these backends read."""
+
+    tolerance: float = Field(1e-9, ge=1e-13, lt=1, description="Relative residual of each step's linear system [1]")
+
+
+class TaylorHoodBackend(FluidBackend):
+    """ALE Navier–Stokes or Stokes on triangles or tetrahedra, bodies coupled monolithically.
+
+    Each step solves  ρ(d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, v) + ρ(((u* - w)·∇)uⁿ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) - (p, ∇·v) = (f, v),
+    (∇·u, q) = 0  on the new mesh, with u* extrapolated and w the mesh velocity by the same derivative weights, for
+    velocities that move rigidly with each body (Maury 1999, doi:10.1006/jcph.1999.6342), plus the bodies' own inertia.
+    """
+
+    Options: ClassVar[type[PartOptions]] = TaylorHoodOptions
+
+    options: TaylorHoodOptions
+    problem: FluidProblem
+
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
+        super().__init__(options, problem)
+        self._numbering: Numbering | None = None
+        self._latest: tuple[BoolArray, Discretisation] | None = None
+
+    @abstractmethod
+    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+        """The equations on this topology with these bodies ``controlled`` (n,).
+
+        The same ``numbering`` comes again for other bodies and after ``forget``.
+        """
+
+    @abstractmethod
+    def drop_factors(self) -> None:
+        """Forget what the solutions of earlier systems have left behind."""
+
+    @final
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        from rigidfluid.taylor_hood.transfer import initial
+
+        made = initial(self._for_projection(_given(mesh)), self.options.tolerance, _given(mesh), pose, twist)
+        self.drop_factors()
+        return made
+
+    @final
+    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+        from rigidfluid.taylor_hood.advance import advance
+
+        discretisation = self._on(_given(mesh), step.controlled)
+        return advance(discretisation, self.options.tolerance, fluid, _given(mesh), step)
+
+    @final
+    def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
+        from rigidfluid.taylor_hood.discretisation import kinetic_energy
+        from rigidfluid.taylor_hood.transfer import transfer
+
+        source, before = self._numbering_of(old), kinetic_energy(self._any(old), old.points, fluid["velocity"])
+        self.drop_factors()
+        target = self._for_projection(new)
+        moved = transfer(source, target, self.options.tolerance, fluid, old, new)
+        self.drop_factors()
+        return moved, before - kinetic_energy(target, new.points, moved["velocity"])
+
+    @final
+    def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
+        numbering = self._numbering_of(mesh)
+        pressure = numbering.node_points(fluid["pressure"])
+        return Fields(numbering.node_points(mesh.points), numbering.cell_nodes, fluid["velocity"], pressure)
+
+    @final
+    def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        from rigidfluid.taylor_hood.sampling import Samples
+
+        # All processes ask alike: the root asks, and shares the answer.
+        samples = Samples(mesh, self._numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
+        found = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
+        return mesh.ranks.shared(found)
+
+    @final
+    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+        return self._on(_given(mesh), controlled).unknowns
+
+    @final
+    def forget(self) -> None:
+        self.drop_factors()
+        self._latest = None
+
+    def _numbering_of(self, mesh: Mesh) -> Numbering:
+        """A topology is known by its array of cells."""
+        if self._numbering is None or self._numbering.cells is not mesh.cells:
+            self._numbering = Numbering(mesh.cells, len(mesh.points))
+            self._latest = None
+        return self._numbering
+
+    def _on(self, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+        numbering = self._numbering_of(mesh)
+        if self._latest is None or not np.array_equal(self._latest[0], controlled):
+            self._latest = controlled, self.discretise(numbering, mesh, controlled)
+        return self._latest[1]
+
+    def _for_projection(self, mesh: Mesh) -> Discretisation:
+        return self._on(mesh, np.ones(self.problem.bodies, dtype=bool))
+
+    def _any(self, mesh: Mesh) -> Discretisation:
+        """On this topology, whichever bodies are controlled."""
+        self._numbering_of(mesh)
+        return self._for_projection(mesh) if self._latest is None else self._latest[1]
+
+
+def _given(mesh: Mesh | None) -> Mesh:
+    assert mesh is not None, "backends of finite elements declare needs_mesh"
+    return mesh

@@ -1,0 +1,83 @@
+"""The paper's operator P: every velocity on a body is its twist's, every prescribed velocity leaves the unknowns.
+
+All unknowns = P · (free velocities, twists of the free bodies, pressures) + given values, where on a body
+u = U + ω × r. The coupled system is Pᵀ K P with the bodies' own inertia added on the twists.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+
+from rigidfluid.core.types import BoolArray, FloatArray, Mesh
+from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
+
+# Entries of ω × r: (velocity component, component of ω, component of r, sign).
+CROSS = {
+    2: ((0, 0, 1, -1.0), (1, 0, 0, 1.0)),
+    3: ((0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0), (2, 0, 1, 1.0), (2, 1, 0, -1.0)),
+}
+
+
+class Constraint:
+    """Which unknowns are free on one mesh topology, and the operator P for the bodies' present places.
+
+    Parameters
+    ----------
+    surfaces : Surfaces
+        Nodes on bodies and faces.
+    mesh : Mesh
+        The mesh.
+    controlled : (n,) bool
+        Bodies whose twist is given.
+    """
+
+    def __init__(self, surfaces: Surfaces, mesh: Mesh, controlled: BoolArray) -> None:
+        self.surfaces = surfaces
+        self.controlled = controlled
+        self._numbering = numbering = surfaces.numbering
+        free = np.concatenate([surfaces.velocity_free.ravel(), np.ones(numbering.vertices, dtype=bool)])
+        self.pinned = far_vertex(mesh, len(controlled)) if surfaces.enclosed else None
+        if self.pinned is not None:
+            free[surfaces.velocity_free.size + self.pinned] = False
+        self.free_unknowns = np.flatnonzero(free)
+        self._build_pattern()
+
+    def _build_pattern(self) -> None:
+        """Lay out P once, with the free velocities first, the twists next and the pressures last."""
+        d = self._numbering.dimension
+        size = d + (1 if d == 2 else 3)
+        free_bodies = np.flatnonzero(~self.controlled)
+        is_velocity = self.free_unknowns < self._numbering.nodes * d
+        velocities = int(is_velocity.sum())
+        self.twist_start = velocities
+        self.unknowns = len(self.free_unknowns) + size * len(free_bodies)
+        self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_bodies))
+        rows, columns = [self.free_unknowns], [self.free_columns]
+        for place, body in enumerate(free_bodies):
+            nodes, start = self.surfaces.body_nodes[body], velocities + size * place
+            rows += [nodes * d + a for a in range(d)] + [nodes * d + a for a, *_ in CROSS[d]]
+            columns += [np.full(len(nodes), start + a) for a in range(d)]
+            columns += [np.full(len(nodes), start + d + b) for _, b, *_ in CROSS[d]]
+        row, column = np.concatenate(rows), np.concatenate(columns)
+        shape = (self._numbering.unknowns, self.unknowns)
+        numbering = sparse.coo_array((np.arange(1.0, len(row) + 1), (row, column)), shape=shape)
+        self.operator, self.transposed = numbering.tocsr(), numbering.T.tocsr()
+        self._order = self.operator.data.astype(np.int64) - 1
+        self._transposed_order = self.transposed.data.astype(np.int64) - 1
+
+    def place(self, node_points: FloatArray, position: FloatArray) -> None:
+        """Fill P for nodes at ``node_points`` (nodes, d) and bodies centred at ``position`` (n, d)."""
+        d = self._numbering.dimension
+        values = [np.ones(len(self.free_unknowns))]
+        for body in np.flatnonzero(~self.controlled):
+            arm = node_points[self.surfaces.body_nodes[body]] - position[body]
+            values += [np.ones(len(arm) * d), *(sign * arm[:, c] for _, _, c, sign in CROSS[d])]
+        flat = np.concatenate(values)
+        self.operator.data = flat[self._order]
+        self.transposed.data = flat[self._transposed_order]
+
+    def given(self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray) -> FloatArray:
+        """All unknowns (nodes·d + vertices,) with the prescribed velocities in place and zero elsewhere."""
+        velocity = self.surfaces.prescribed(time, node_points, position, twist, self.controlled)
+        return np.concatenate([velocity.ravel(), np.zeros(self._numbering.vertices)])

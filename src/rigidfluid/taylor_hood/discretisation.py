@@ -1,0 +1,47 @@
+"""What a backend of Taylor–Hood elements supplies: the equations on one topology, assembled and solved."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from rigidfluid.core.types import FloatArray, FluidProblem
+from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.surfaces import Surfaces
+
+
+class Discretisation(Protocol):
+    """P2–P1 on one topology, or on one process' part of it; ``unknowns`` of all."""
+
+    problem: FluidProblem
+    numbering: Numbering
+    surfaces: Surfaces
+
+    @property
+    def unknowns(self) -> int:
+        """How many unknowns a step solves for."""
+
+    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
+        """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
+
+    def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
+        """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
+
+    def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
+        """To a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
+
+
+def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
+    """½ ρ ∫ |u|² [energy]; zero in Stokes flow, which has no inertia."""
+    problem, ranks = discretisation.problem, discretisation.surfaces.ranks
+    if not problem.inertia:
+        return 0.0
+    return 0.5 * problem.density * float(ranks.sum(np.sum(velocity * discretisation.mass_times(points, velocity))))
+
+
+def dissipation(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
+    """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""
+    rate = discretisation.surfaces.ranks.sum(discretisation.strain_square(points, velocity))
+    return discretisation.problem.dynamic_viscosity * float(rate)

@@ -1,0 +1,144 @@
+"""The nodes on bodies and faces, and the velocities that are prescribed there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from rigidfluid.core.rigid import cross, moment
+from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.taylor_hood.facets import facet_weights
+from rigidfluid.taylor_hood.numbering import Numbering
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face of the domain on one topology: its ``condition``, ``facets`` (F, d) with their ``facet_nodes``
+    (F, 3 | 6), and all ``nodes`` on it, also those of facets that other processes hold."""
+
+    condition: BoundaryCondition
+    facets: IntArray
+    facet_nodes: IntArray
+    nodes: IntArray
+
+
+class Surfaces:
+    """Which velocities are free on one mesh topology, and the values of the others.
+
+    Parameters
+    ----------
+    numbering : Numbering
+        The nodes.
+    mesh : Mesh
+        Its facets say which nodes lie on which surface.
+    conditions : sequence of BoundaryCondition
+        One per face of the domain.
+    bodies : int
+        How many.
+    """
+
+    def __init__(self, numbering: Numbering, mesh: Mesh, conditions: Sequence[BoundaryCondition], bodies: int) -> None:
+        self.numbering = numbering
+        self.ranks = mesh.ranks
+        d = numbering.dimension
+        on = [mesh.facets[mesh.markers == surface] for surface in range(bodies + len(conditions))]
+        nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
+        self.body_nodes: list[IntArray] = nodes[:bodies]
+        self.faces = [
+            Face(c, on[c.surface], numbering.facet_nodes(on[c.surface]), nodes[c.surface]) for c in conditions
+        ]
+        self.velocity_free: BoolArray = np.ones((numbering.nodes, d), dtype=bool)
+        for face in self.faces:
+            self.velocity_free[face.nodes] &= _free_components(face.condition, d)
+        for body in self.body_nodes:
+            self.velocity_free[body] = False
+        self.dirichlet_nodes = np.setdiff1d(
+            np.flatnonzero(~self.velocity_free.any(axis=1)), np.concatenate([*self.body_nodes, np.empty(0, np.int64)])
+        )
+        self.enclosed = not any(condition.type == "pressure" for condition in conditions)
+
+    def prescribed(
+        self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray, controlled: BoolArray
+    ) -> FloatArray:
+        """Velocity (nodes, d) with the prescribed values in place and zero elsewhere.
+
+        ``twist`` (n, d+k) is read for the ``controlled`` (n,) bodies alone.
+        """
+        velocity = np.zeros_like(node_points)
+        for face in self.faces:
+            if face.condition.type == "velocity" and face.condition.value is not None:
+                velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
+        for face in self.faces:
+            if face.condition.type == "wall":
+                velocity[face.nodes] = 0.0
+        if self.enclosed:
+            self._balance(velocity, node_points)
+        for body in np.flatnonzero(controlled):
+            nodes = self.body_nodes[body]
+            velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
+        return velocity
+
+    def _balance(self, velocity: FloatArray, node_points: FloatArray) -> None:
+        """Scale inflow and outflow of an enclosed flow to be equal on this mesh; else a pinned vertex leaks.
+
+        Quadratic elements see a prescribed flux up to their error, near the walls' corners above all.
+        """
+        held = [face for face in self.faces if face.condition.type == "velocity"]
+        if not held:
+            return
+        flow = self.ranks.sum(
+            np.array(
+                [
+                    np.sum(
+                        facet_weights(node_points, face.facets) * (velocity[face.facet_nodes] @ face.condition.normal)
+                    )
+                    for face in held
+                ]
+            )
+        )
+        passed = np.abs(flow).sum()
+        for face, part in zip(held, flow, strict=True):
+            if part != 0.0:
+                velocity[face.nodes] *= 1.0 - np.sign(part) * flow.sum() / passed
+
+    def resultants(self, node_force: FloatArray, node_points: FloatArray, position: FloatArray) -> FloatArray:
+        """Force and torque (n, d+k) of ``node_force`` (nodes, d) over each body's nodes.
+
+        With several processes a node's force is the sum of what they have there.
+        """
+        torques = 1 if self.numbering.dimension == 2 else 3
+        found = np.zeros((len(self.body_nodes), self.numbering.dimension + torques))
+        for body, nodes in enumerate(self.body_nodes):
+            arm, force = node_points[nodes] - position[body], node_force[nodes]
+            found[body] = np.concatenate([force.sum(axis=0), moment(arm, force).sum(axis=0)])
+        return np.asarray(self.ranks.sum(found))
+
+
+def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:
+    """U + ω × r, (N, d), for a twist (d+k,) and arms (N, d)."""
+    d = arm.shape[1]
+    return np.asarray(twist[:d] + cross(twist[d:], arm))
+
+
+def far_vertex(mesh: Mesh, bodies: int) -> int | None:
+    """The vertex farthest from all bodies: where an enclosed flow's pressure is pinned, so that no gap feels it.
+
+    None in all processes but one.
+    """
+    ranks = mesh.ranks
+    surface = np.concatenate(ranks.gathered(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
+    if len(surface) == 0:
+        surface = mesh.points[:1]
+    distance = np.asarray(cKDTree(surface).query(mesh.points)[0])
+    local = int(np.argmax(distance))
+    return local if int(np.argmax(ranks.gathered(distance[local]))) == ranks.rank else None
+
+
+def _free_components(condition: BoundaryCondition, dimension: int) -> BoolArray:
+    across = np.abs(condition.normal) > 0.5
+    if condition.type == "slip":
+        return ~across
+    return across if condition.type == "pressure" else np.zeros(dimension, dtype=bool)

@@ -1,0 +1,87 @@
+"""States whose velocity comes from elsewhere, from another mesh or a blow; it is projected to zero divergence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.types import FloatArray, FluidState, Mesh, Pose, Twist
+from rigidfluid.taylor_hood.coupled import CoupledSystem
+from rigidfluid.taylor_hood.discretisation import Discretisation, kinetic_energy
+from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.sampling import Samples
+from rigidfluid.taylor_hood.state import at_rest
+from rigidfluid.taylor_hood.surfaces import rigid_velocity
+
+_TIGHTER, _TIGHTEST = 1e-3, 1e-13
+"""What divergence is left shows, over the step, as a blow of pressure: projections are solved so much better."""
+
+
+def transfer(
+    source: Numbering, target: Discretisation, tolerance: float, fluid: FluidState, old: Mesh, new: Mesh
+) -> FluidState:
+    """The state on ``new``.
+
+    Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
+    one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
+    are not divergence-free on the new mesh, which would show as a blow of pressure at the next step: each level is
+    projected, on the mesh where it belongs.
+    """
+    on_nodes = Samples(old, source, target.numbering.node_points(new.points))
+    on_vertices = Samples(old, source, new.points)
+    moved = dict(fluid)
+    moved["points_previous"] = new.points - on_vertices.linear(old.points - fluid["points_previous"])
+    for suffix, points in (("", new.points), ("_previous", moved["points_previous"])):
+        moved["pressure" + suffix] = on_vertices.linear(fluid["pressure" + suffix])
+        velocity = on_nodes.quadratic(fluid["velocity" + suffix])
+        position = fluid["position" + suffix]
+        _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
+        moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
+    return moved
+
+
+def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
+
+    A blow on the bodies sends a wave of pressure through the fluid, which is projection: the flow is a potential flow.
+    """
+    state = dict(at_rest(target.surfaces, mesh, pose, twist))
+    if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
+        projected = project(target, tolerance, state["velocity"], mesh.points, pose.position)
+        state["velocity"] = state["velocity_previous"] = projected
+    return state, kinetic_energy(target, mesh.points, state["velocity"])
+
+
+def project(
+    target: Discretisation, tolerance: float, velocity: FloatArray, points: FloatArray, position: FloatArray
+) -> FloatArray:
+    """The divergence-free velocity nearest to ``velocity`` in L², unchanged on bodies and prescribed faces.
+
+    ``target`` takes all bodies as controlled.
+    """
+    numbering, bodies = target.numbering, len(target.surfaces.body_nodes)
+    width = numbering.dimension + (1 if numbering.dimension == 2 else 3)
+    system = CoupledSystem(
+        points=points,
+        node_points=numbering.node_points(points),
+        inertia=1.0,
+        viscosity=0.0,
+        advection=np.zeros_like(velocity),
+        load=target.mass_times(points, velocity),
+        given=np.where(target.surfaces.velocity_free, 0.0, velocity),
+        position=position,
+        mass_matrix=np.zeros((bodies, width, width)),
+        body_load=np.zeros((bodies, width)),
+        controlled=np.ones(bodies, dtype=bool),
+        velocity=velocity,
+        pressure=np.zeros(numbering.vertices),
+        twist=np.zeros((bodies, width)),
+    )
+    return target.solve(system, max(_TIGHTER * tolerance, _TIGHTEST)).velocity
+
+
+def _move_with_bodies(
+    target: Discretisation, velocity: FloatArray, points: FloatArray, position: FloatArray, twist: FloatArray
+) -> None:
+    node_points = target.numbering.node_points(points)
+    for body, nodes in enumerate(target.surfaces.body_nodes):
+        velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
