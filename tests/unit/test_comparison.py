@@ -521,7 +521,7 @@ def test_an_interruption_ends_the_process(monkeypatch: pytest.MonkeyPatch, tmp_p
     monkeypatch.setattr(child, "_GRACE", 0.01)
     with pytest.raises(KeyboardInterrupt):
         child.run_apart(BOUNCE, tmp_path / "run", tmp_path / "log", resume=False, watch=interrupted)
-    assert [process.returncode for process in processes] == [-signal.SIGTERM]
+    assert [process.returncode for process in processes] == [-signal.SIGKILL]
 
 
 def test_interruption_tells_how_to_go_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from rigidfluid.core.writer import writing
@@ -14,7 +15,7 @@ from rigidfluid.core.writer import writing
 _POLL = 1.0
 """Seconds between two looks at the process."""
 _GRACE = 5.0
-"""Seconds that an interrupted process has to end by itself: Ctrl-C reaches it too, a signal to us alone does not."""
+"""Seconds that it has to end by itself after Ctrl-C, which reaches it too; a signal to us alone does not."""
 
 
 def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Callable[[], None]) -> str:
@@ -56,7 +57,8 @@ def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Call
         try:
             _await(process, watch)
         except KeyboardInterrupt:
-            _end(process)
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(_GRACE)
             raise
         finally:
             process.kill()
@@ -78,13 +80,6 @@ def _await(process: subprocess.Popen[bytes], watch: Callable[[], None]) -> None:
             watch()
         else:
             return
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    try:
-        process.wait(_GRACE)
-    except subprocess.TimeoutExpired:
-        process.terminate()
 
 
 def _failure(code: int, log: Path) -> str:
