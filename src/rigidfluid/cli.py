@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
     from rigidfluid.checks import Report
+    from rigidfluid.comparison.compare import CompareProgress
+    from rigidfluid.comparison.comparison import Comparison as BackendComparison
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
     from rigidfluid.crosscheck import Comparison
@@ -40,10 +42,16 @@ Assignments = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Set a value, as contact.range=0.02 or body.0.density=1.5."),
 ]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
+CompareFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_compare.")
+]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 Continue = Annotated[
     bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything anew.")
+]
+Backends = Annotated[
+    list[str] | None, typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.")
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 
@@ -105,6 +113,31 @@ def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: Jso
         from rigidfluid.crosscheck import crosscheck as run_both
 
         _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)
+
+
+@app.command()
+def compare(
+    scene: SceneFile,
+    backends: Backends = None,
+    assignments: Assignments = None,
+    out: CompareFolder = None,
+    json_file: JsonFile = None,
+    resume: Continue = True,
+) -> None:
+    """Run a scene with several fluid backends, and say how far the results are apart; exit code 1 if one fails."""
+    with _reported("The same command goes on."):
+        from rigidfluid.comparison import compare as compare_backends
+
+        with _compare_bar() as show:
+            comparison, written = compare_backends(
+                scene, backends or [], assignments or [], out, fresh=not resume, progress=show
+            )
+        if json_file is not None:
+            _write_json(comparison.to_dict(), json_file)
+        _print_backends(comparison)
+        _print(f"wrote to {written[0].parent}: {', '.join(path.name for path in written)}")
+    if comparison.failed:
+        raise typer.Exit(FOUND_ERRORS)
 
 
 @app.command()
@@ -208,6 +241,19 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
 
 @contextmanager
 def _study_bar(name: str) -> Iterator[Callable[[StudyProgress], None]]:
+    with _runs_bar(name) as update:
+        yield lambda now: update(now.done, now.total, now.settings)
+
+
+@contextmanager
+def _compare_bar() -> Iterator[Callable[[CompareProgress], None]]:
+    with _runs_bar("compare") as update:
+        yield lambda now: update(now.done, now.total, now.backend)
+
+
+@contextmanager
+def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
+    """A bar over several runs: of ``done`` of ``total``, and a word about the present one."""
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -222,9 +268,9 @@ def _study_bar(name: str) -> Iterator[Callable[[StudyProgress], None]]:
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(name, total=None, now="")
 
-        def show(now: StudyProgress) -> None:
-            text = f"run {min(int(now.done) + 1, now.total)} of {now.total}: {now.settings}"
-            bar.update(task, total=now.total, completed=now.done, now=text)
+        def show(done: float, total: int, about: str) -> None:
+            text = f"run {min(int(done) + 1, total)} of {total}: {about}"
+            bar.update(task, total=total, completed=done, now=text)
 
         yield show
 
@@ -298,6 +344,23 @@ def _print_comparison(comparison: Comparison, json_file: Path | None) -> None:
     Console().print(table, means)
     if json_file is not None:
         _write_json([asdict(row) for row in comparison.rows], json_file)
+
+
+def _print_backends(comparison: BackendComparison) -> None:
+    from rigidfluid.comparison.tables import HEADER, cost_rows, difference_rows, meaning
+
+    for pair in comparison.pairs:
+        table = Table(*HEADER, title=f"{pair.other} beside {pair.reference}")
+        for row in difference_rows(comparison, pair):
+            table.add_row(*map(Text, row))
+        Console().print(table)
+        _print(meaning(pair))
+    costs = Table("", *(run.backend for run in comparison.runs))
+    for row in cost_rows(comparison):
+        costs.add_row(*map(Text, row))
+    Console().print(costs)
+    for run in comparison.failed:
+        _complain(f"{run.backend} failed: {run.error}")
 
 
 def _print_rows(rows: Iterable[DataclassInstance], json_file: Path | None) -> None:

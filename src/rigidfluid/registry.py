@@ -140,9 +140,11 @@ class Registry:
         return [entry.name for entry in self.entries if entry.kind is kind and entry.available]
 
     def _remedy(self, kind: Kind[Any], name: str) -> str:
+        unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]
+        hints = "".join(f" {entry.name!r} is not usable here: {entry.hint}" for entry in unusable)
         failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}." for one in self.unloaded)
         guess = suggestion(name, self.names(kind))
-        return (guess or "`rigidfluid plugins` lists what is installed.") + failures
+        return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
 
 
 def suggestion(word: str, words: Iterable[str]) -> str:

@@ -57,6 +57,7 @@ def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
         assert f"{figure:.5g}" in page
     assert "size_body = 0.08" in page
     assert "of it: advance [s]" in page
+    assert f"{summary['peak_memory'] / 1e6:.5g}" in page
 
 
 def test_the_same_run_gives_the_same_files(fall: Path, written: list[Path]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
+from rigidfluid.core.memory import peak_memory
 from rigidfluid.core.records import LEDGER_COLUMNS
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.strength import chosen_strengths
@@ -24,7 +25,7 @@ FIGURES = (
     *("time", "unknowns", "cells", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
-"""Keys of summary.json that hold numbers, or tables and lists of them."""
+"""Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ENERGIES = (*LEDGER_COLUMNS, "relative_residual")
 """Keys of its table ``energy``."""
 
@@ -46,6 +47,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "remeshes": simulation.remeshes,
         "wall_time": simulation.elapsed,
         "wall_time_per_stage": simulation.watch.seconds,
+        "peak_memory": peak_memory(),
         **reynolds_numbers(simulation.scene, system, history),
         "smallest_gap": _finite(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},

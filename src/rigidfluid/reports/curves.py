@@ -36,6 +36,14 @@ def add_legend(figure: Figure | SubFigure) -> None:
         figure.legend(list(named.values()), list(named), loc="outside upper center", ncols=5)
 
 
+def widen(axes: Axes, least: float) -> None:
+    """Show at least this span, so that a drift of nothing looks like nothing."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
+
+
 def _draw_spread(axes: Axes, time: FloatArray, values: FloatArray, count: int) -> None:
     """Median, the middle 90 % and the extremes of those bodies that have a value at each time."""
     known = np.isfinite(values).any(axis=1)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from rigidfluid.core.types import FloatArray
-from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies
+from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels
 
@@ -23,7 +23,7 @@ def position_plot(results: Results) -> Figure:
     for k, axes in enumerate(panels):
         draw_bodies(axes, results.time, position[..., k], results.names)
         axes.set_ylabel(f"{axes_names[k]} [length]")
-        _widen(axes, 0.1 * float(results.system.upper[k] - results.system.lower[k]))
+        widen(axes, 0.1 * float(results.system.upper[k] - results.system.lower[k]))
     add_legend(right)
     panels[-1].set_xlabel("time [time]")
     return figure
@@ -138,11 +138,3 @@ def _draw_weight(left: Axes, right: Axes, results: Results, k: int) -> None:
         return
     for axes in (left, right):
         axes.axhline(-weight[0], color=BLACK, linewidth=0.8, linestyle=":", label="opposite of the submerged weight")
-
-
-def _widen(axes: Axes, least: float) -> None:
-    """Show at least this span, so that a drift of nothing looks like nothing."""
-    low, high = axes.get_ylim()
-    if high - low < least:
-        middle = 0.5 * (low + high)
-        axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)

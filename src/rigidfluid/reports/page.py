@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.scene_text import scene_text
 from rigidfluid.reports.html import document, picture, table
 
 _MOST_BODIES = 8
@@ -40,6 +40,7 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
     str
         HTML.
     """
+    scene = escape(scene_text(summary["scene"]))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
         *(f'<p class="note">{escape(note)}</p>' for note in notes),
@@ -50,7 +51,7 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
         "<h2>Cost</h2>",
         table(_cost(summary)),
         "<h2>Scene</h2>",
-        f"<details open><summary>With all defaults</summary><pre>{escape(_toml(summary['scene']))}</pre></details>",
+        f"<details open><summary>With all defaults</summary><pre>{scene}</pre></details>",
         "<h2>Versions</h2>",
         table(summary["versions"].items()),
     ]
@@ -82,23 +83,5 @@ def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
     yield "wall time [s]", summary["wall_time"]
     for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
         yield f"of it: {stage} [s]", seconds
-
-
-def _toml(scene: Mapping[str, Any]) -> str:
-    """The scene's tables as in a scene file; JSON's numbers, strings and lists are TOML's too."""
-    return "\n\n".join(text for name, table in scene.items() for text in _tables(name, table))
-
-
-def _tables(name: str, table: Any) -> Iterable[str]:
-    if isinstance(table, list):
-        for entry in table:
-            yield from _one_table(f"[[{name}]]", name, entry)
-    else:
-        yield from _one_table(f"[{name}]", name, table)
-
-
-def _one_table(title: str, name: str, table: Mapping[str, Any]) -> Iterable[str]:
-    plain = {key: value for key, value in table.items() if not isinstance(value, Mapping)}
-    yield "\n".join([title, *(f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in plain.items())])
-    for key in table.keys() - plain.keys():
-        yield from _one_table(f"[{name}.{key}]", f"{name}.{key}", table[key])
+    if summary.get("peak_memory") is not None:
+        yield "peak memory of the process [MB]", summary["peak_memory"] / 1e6

@@ -1,0 +1,91 @@
+"""One run in a process of its own, so that memory, threads and a crash stay with its backend."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from rigidfluid.core.writer import writing
+
+_POLL = 1.0
+"""Seconds between two looks at the process."""
+_GRACE = 5.0
+"""Seconds that it has to end by itself after Ctrl-C, which reaches it too; a signal to us alone does not."""
+
+
+def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Callable[[], None]) -> str:
+    """Run ``rigidfluid run`` and wait for its end.
+
+    Parameters
+    ----------
+    scene : Path
+        Scene file.
+    folder : Path
+        Where the run writes.
+    log : Path
+        What it prints goes there.
+    resume : bool
+        Go on from the checkpoint in ``folder``.
+    watch : callable
+        Called about once a second.
+
+    Returns
+    -------
+    str
+        Why it failed; empty where it did not.
+
+    Raises
+    ------
+    OutputError
+        Where the log cannot be written.
+    """
+    # -P: modules come from where they came from here, and not from the working directory
+    command = [sys.executable, "-P", "-m", "rigidfluid", "run", str(scene), "--out", str(folder)]
+    with writing(log), log.open("wb") as output:
+        process = subprocess.Popen(
+            [*command, "--resume"] if resume else command,
+            env=_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+        try:
+            _await(process, watch)
+        except KeyboardInterrupt:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(_GRACE)
+            raise
+        finally:
+            process.kill()
+            process.wait()
+    return "" if process.returncode == 0 else _failure(process.returncode, log)
+
+
+def _environment() -> dict[str, str]:
+    """This process' modules, and plain text."""
+    paths = [path or str(Path.cwd()) for path in sys.path]
+    return os.environ | {"PYTHONPATH": os.pathsep.join(paths), "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
+
+
+def _await(process: subprocess.Popen[bytes], watch: Callable[[], None]) -> None:
+    while True:
+        try:
+            process.wait(_POLL)
+        except subprocess.TimeoutExpired:
+            watch()
+        else:
+            return
+
+
+def _failure(code: int, log: Path) -> str:
+    """The signal that ended it, or the error that it printed last."""
+    if code < 0:
+        return f"ended by a signal: {signal.strsignal(-code)}"
+    lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
+    last = next((line for line in reversed(lines) if line.strip()), f"exit code {code}")
+    return last.removeprefix("Error: ") if last.startswith("Error: ") else f"{last} (more in {log.name})"
