@@ -126,7 +126,7 @@ class StaleSchur(Krylov):
         "pc_fieldsplit_schur_fact_type": "upper",
         "pc_fieldsplit_schur_precondition": "a11",
         "fieldsplit_velocity_ksp_type": "gmres",
-        "fieldsplit_velocity_ksp_rtol": 1e-2,
+        "fieldsplit_velocity_ksp_rtol": 0.1,
         "fieldsplit_velocity_ksp_max_it": 30,
         "fieldsplit_pressure_ksp_type": "preonly",
         "fieldsplit_pressure_pc_type": "python",
