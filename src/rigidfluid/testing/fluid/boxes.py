@@ -159,4 +159,4 @@ def _marked(points: FloatArray, cells: IntArray) -> Mesh:
 def _near(points: FloatArray, ball: int) -> FloatArray:
     """1 on the ball, 0 beyond a margin around it, smooth between, (N,)."""
     apart = np.linalg.norm(points - CENTRES[ball, : points.shape[1]], axis=1) - RADII[ball]
-    return np.cos(0.5 * np.pi * np.clip(apart / _MARGIN, 0.0, 1.0)) ** 2
+    return np.asarray(np.cos(0.5 * np.pi * np.clip(apart / _MARGIN, 0.0, 1.0)) ** 2)

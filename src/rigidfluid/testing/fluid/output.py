@@ -10,7 +10,7 @@ from rigidfluid.core.mesh_motion import stiffness
 from rigidfluid.core.mesh_quality import cell_volumes
 from rigidfluid.core.types import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
-from rigidfluid.testing.fluid.boxes import balls_pose, box, box_with_balls, samples
+from rigidfluid.testing.fluid.boxes import box, box_with_balls, samples
 from rigidfluid.testing.fluid.exact import LinearFlow, enclosed, problem
 
 
