@@ -11,10 +11,9 @@ import numpy as np
 from scipy.special import roots_jacobi
 
 from rigidfluid.core.boundary import faces
-from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.topology import boundary_facets, orient
 from rigidfluid.core.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.testing.arrangement import Arrangement, in_a_box
+from rigidfluid.testing.arrangement import in_a_box
 
 CENTRES, RADII = np.array([[0.3, 0.35, 0.5], [0.68, 0.62, 0.45]]), (0.12, 0.1)
 """The two balls [length]."""
@@ -33,9 +32,16 @@ def box(dimension: int, divisions: int) -> Mesh:
     return orient(_marked(points, cells))
 
 
+@cache
 def box_with_balls(dimension: int) -> Mesh:
-    """The mesh of the unit box around the two balls."""
-    return _arranged(dimension).mesh
+    """The unit box around the two balls."""
+    return _around(balls_pose(dimension), 1.0)
+
+
+def finer_box_with_balls(dimension: int, shift: FloatArray) -> Mesh:
+    """Other, smaller cells around the two balls, displaced by ``shift`` (2, d), with smaller facets on them."""
+    start = balls_pose(dimension)
+    return _around(replace(start, position=start.position + shift), 0.7)
 
 
 def balls_pose(dimension: int) -> Pose:
@@ -94,16 +100,6 @@ def ball_moments(mesh: Mesh, ball: int) -> tuple[float, FloatArray]:
     return float(volumes.sum()), np.asarray(volumes @ centroids / volumes.sum())
 
 
-def remeshed(mesh: Mesh, shift: FloatArray) -> Mesh:
-    """Other, smaller cells around the same facets of the two balls, which are displaced by ``shift`` (2, d)."""
-    from rigidfluid.core.remesh import remesh
-
-    dimension = mesh.points.shape[1]
-    start = balls_pose(dimension)
-    pose = replace(start, position=start.position + shift)
-    return remesh(mesh, _arranged(dimension).bodies, pose, (), Sizes(0.12 if dimension == 2 else 0.2, 0.1))
-
-
 def on_ball(mesh: Mesh, ball: int) -> FloatArray:
     """Vertices and middles of the facets of a ball, (N, d) [length]."""
     corners = mesh.points[mesh.facets[mesh.markers == ball]]
@@ -133,12 +129,12 @@ def samples(dimension: int, count: int = 40) -> FloatArray:
     return np.random.default_rng(0).uniform(0.02, 0.98, (count, dimension))
 
 
-@cache
-def _arranged(dimension: int) -> Arrangement:
+def _around(pose: Pose, scale: float) -> Mesh:
+    dimension = pose.position.shape[1]
     semi_axes = np.tile(np.array(RADII)[:, None], dimension)
-    sizes = (0.15, 0.06) if dimension == 2 else (0.3, 0.1)
+    away, on_ball = (0.15, 0.06) if dimension == 2 else (0.3, 0.1)
     corners = np.zeros(dimension), np.ones(dimension)
-    return in_a_box(semi_axes, balls_pose(dimension), corners, range(2 * dimension), sizes)
+    return in_a_box(semi_axes, pose, corners, range(2 * dimension), (scale * away, scale * on_ball)).mesh
 
 
 def _path(corner: IntArray, axes: tuple[int, ...], shape: tuple[int, ...]) -> IntArray:
