@@ -9,8 +9,8 @@ import pytest
 
 from rigidfluid.core.types import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
-from rigidfluid.testing.fluid.boxes import box, quadrature, samples, swayed
-from rigidfluid.testing.fluid.exact import LinearFlow, Waves, enclosed
+from rigidfluid.testing.fluid.boxes import box, quadrature, renumbered, samples, swayed
+from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Waves, enclosed, problem
 from rigidfluid.testing.fluid.flow import Flow
 
 UNEVEN = np.array([1.0, 0.5, 0.5, 1.0, 1.0])
@@ -38,9 +38,14 @@ class AccuracyContract(FluidContract):
         """u = A x + b: its difference in time along the vertices' paths is what the mesh velocity carries."""
         exact = LinearFlow.shear(dimension)
         flow = self.empty(enclosed(dimension, exact.velocity, exact.source), box(dimension, 3)).after(None)
+        points, weights = quadrature(box(dimension, 1))
+        kinetic = 0.5 * DENSITY * float(weights @ np.sum(exact.velocity(0.0, points) ** 2, axis=1))
+        strain = exact.gradient + exact.gradient.T
         for length in 0.1 * UNEVEN:
             flow = flow.after(length, points=swayed(flow.reference.points, _sway(flow.time + length, dimension)))
             self._check(flow, exact)
+            self.assert_close(flow.advance.kinetic_energy, kinetic, scale=10.0)
+            self.assert_close(flow.advance.dissipation, 0.5 * VISCOSITY * np.sum(strain**2), scale=10.0)
 
     def test_uniform_flow_stays_uniform_on_a_mesh_in_motion(self, dimension: int) -> None:
         """Geometric conservation: however the mesh moves, and however unequal the steps."""
@@ -52,6 +57,23 @@ class AccuracyContract(FluidContract):
             velocity, pressure = flow.probe(points)
             self.assert_close(velocity, np.broadcast_to(drift, velocity.shape))
             self.assert_close(pressure, 0.0, scale=10.0)
+
+    def test_an_enclosed_flow_does_not_depend_on_the_numbering(self, dimension: int) -> None:
+        """What flows in flows out, but not as interpolated on the faces: no single vertex may take the difference."""
+
+        def through(_time: float, points: FloatArray) -> FloatArray:
+            velocity, across = np.zeros_like(points), points[:, 1:]
+            parabola, sine = 6.0 * across * (1.0 - across), 0.5 * np.pi * np.sin(np.pi * across)
+            velocity[:, 0] = np.prod(np.where(points[:, :1] < 0.5, parabola, sine), axis=1)
+            return velocity
+
+        sides = {"left": "velocity", "right": "velocity"}
+        posed, mesh = problem(dimension, sides, dict.fromkeys(sides, through)), box(dimension, 3)
+        flow, other = (self.empty(posed, whole).after(None) for whole in (mesh, renumbered(mesh)))
+        points = samples(dimension)
+        (velocity, pressure), (velocity_there, pressure_there) = flow.probe(points), other.probe(points)
+        self.assert_close(velocity_there, velocity)
+        self.assert_close(pressure_there, pressure, scale=10.0 * float(np.abs(pressure).max()))
 
     def test_orders_in_space(self, dimension: int) -> None:
         """Steady Navier–Stokes flow: velocity of order 3 and pressure of order 2 in L²."""

@@ -33,7 +33,7 @@ class BalancesContract(FluidContract):
     @pytest.mark.parametrize("inertia", [False, True], ids=["stokes", "navier-stokes"])
     def test_flow_between_a_plane_of_symmetry_and_a_wall(self, dimension: int, inertia: bool) -> None:
         """Driven by pressures: u = Δp/(2μL)(1 - y²), in → out the power Δp Q, all of it dissipated."""
-        flow = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None).after(None)
+        flow = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None).after(0.1)
         points, advance = samples(dimension), flow.advance
         velocity, pressure = flow.probe(points)
         exact = np.zeros_like(points)
@@ -62,8 +62,8 @@ class BalancesContract(FluidContract):
             self.assert_close(energies, 0.0)
 
     def test_force_balances_the_pressures(self, dimension: int) -> None:
-        """Stokes flow past held bodies between planes of symmetry: Σ F = Δp · area; Δp Q is dissipated."""
-        flow = self.with_balls(_channel(dimension, inertia=False)).after(None)
+        """Stokes flow past held bodies between planes of symmetry: Σ F = Δp · area at once; Δp Q is dissipated."""
+        flow = self.with_balls(_channel(dimension, inertia=False)).after(0.1)
         force = flow.advance.hydrodynamic_wrench.force
         self.assert_close(force[:, 0].sum(), DROP, scale=10.0)
         assert np.all(force[:, 0] > 0.1 * DROP)
@@ -76,7 +76,7 @@ class BalancesContract(FluidContract):
         twist = np.zeros((2, 3 if dimension == 2 else 6))
         chosen = slice(0, dimension) if motion == 0 else slice(dimension, None)
         twist[:, chosen] = np.random.default_rng(3).normal(size=twist[:, chosen].shape)
-        flow = self.with_balls(problem(dimension, bodies=2, inertia=False), pose=pose).after(None, twist=twist)
+        flow = self.with_balls(problem(dimension, bodies=2, inertia=False), pose=pose).after(0.1, twist=twist)
         driven = -np.sum(components(flow.advance.hydrodynamic_wrench) * twist)
         self.assert_close(flow.advance.dissipation, driven, scale=driven)
         self.assert_close(flow.advance.boundary_power, 0.0, scale=driven)

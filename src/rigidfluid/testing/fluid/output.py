@@ -42,7 +42,7 @@ class OutputContract(FluidContract):
         """By round-off outside, the value on the face; further out, one that the nearest cell has."""
         exact = LinearFlow.steady(dimension)
         flow = self.empty(enclosed(dimension, exact.velocity, exact.source), box(dimension, 3)).after(None)
-        for distance in (1e-9, 0.5):
+        for distance in (1e-9, 3.0):
             for axis in range(dimension):
                 outside, on_face = samples(dimension), samples(dimension)
                 outside[:, axis], on_face[:, axis] = 1.0 + distance, 1.0
