@@ -177,7 +177,8 @@ class FluidProblem:
 class Step:
     """All that a backend needs to go one step on; the time scheme is in the weights, not in the backend.
 
-    ``derivative`` (3,) [1/time], all zero for a steady flow: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹. ``extrapolation`` (2,): uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
+    ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
+    uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
     ``points`` (N, d): the mesh at the new time, None without a mesh.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
