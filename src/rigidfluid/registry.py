@@ -196,7 +196,7 @@ def _entries(manager: pluggy.PluginManager, origins: dict[str, str]) -> Iterable
             offered: Any = implementation.function()
             for part in offered:
                 _check_class(kind, part, implementation.plugin_name)
-                hint = _missing(part)
+                hint = missing_packages(part)
                 yield Entry(kind, part.name, part, origins[implementation.plugin_name], not hint, hint)
 
 
@@ -217,7 +217,7 @@ def _derives(part: Any, parent: type[Any]) -> bool:
     return inspect.isclass(part) and issubclass(part, parent)
 
 
-def _missing(part: type[Part]) -> str:
+def missing_packages(part: type[Part]) -> str:
     """How to get the packages that a part needs and this machine lacks; empty where it lacks none."""
     missing = [package for package in part.requires if find_spec(package.partition(".")[0]) is None]
     return " ".join(f"Package {package} is missing: install {part.requires[package]}." for package in missing)

@@ -35,12 +35,6 @@ def divergence(discretisation, points, velocity):
     return (matrix @ np.concatenate([velocity.ravel(), np.zeros(len(points))]))[velocity.size :]
 
 
-def test_an_enclosed_flows_pressure_has_zero_mean(spinning):
-    state, flow = spinning.state, on(spinning, spinning.state.mesh)
-    pressure = flow.numbering.node_points(state.fluid["pressure"][:, None]) @ np.ones((1, 2))
-    assert abs(flow.mass_times(state.mesh.points, pressure).sum()) < 1e-9 * np.abs(pressure).max()
-
-
 def test_both_levels_are_carried_over(spinning):
     before = spinning.state
     energy = kinetic_energy(on(spinning, before.mesh), before.mesh.points, before.fluid["velocity"])

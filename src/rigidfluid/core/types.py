@@ -160,7 +160,7 @@ class BoundaryCondition:
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
-    With ``inertia`` False the left side is left out (Stokes).
+    With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` face the pressure has zero mean.
     ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions.
     """
 
@@ -182,7 +182,8 @@ class FluidProblem:
 class Step:
     """All that a backend needs to go one step on; the time scheme is in the weights, not in the backend.
 
-    ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹. ``extrapolation`` (2,): uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
+    ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
+    uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
     ``points`` (N, d): the mesh at the new time, None without a mesh.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).

@@ -13,6 +13,7 @@
 from rigidfluid.testing.arrangement import Arrangement
 from rigidfluid.testing.body import BodyContract
 from rigidfluid.testing.detector import DetectorContract
+from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 
-__all__ = ["Arrangement", "BodyContract", "DetectorContract", "ForceLawContract"]
+__all__ = ["Arrangement", "BodyContract", "DetectorContract", "FluidBackendContract", "ForceLawContract"]

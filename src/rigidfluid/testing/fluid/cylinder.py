@@ -1,0 +1,58 @@
+"""Steady flow past a cylinder at Re 20: Schäfer & Turek, benchmark 2D-1 (doi:10.1007/978-3-322-89849-4_39)."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.boundary import FaceVelocity, inward_normal
+from rigidfluid.core.remesh import initial_mesh
+from rigidfluid.core.size_field import Sizes
+from rigidfluid.core.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.testing.fluid.base import FluidContract
+from rigidfluid.testing.fluid.flow import Flow
+
+DRAG, LIFT, PRESSURE_DIFFERENCE = 5.57953523384, 0.010618948146, 0.11752016697
+"""Converged values of John & Matthies (2001)."""
+
+LOWER, UPPER, POSE = np.zeros(2), np.array([2.2, 0.41]), Pose(np.array([[0.2, 0.2]]), np.zeros((1, 1)))
+ITERATIONS = 12
+
+
+class CylinderContract(FluidContract):
+    """Drag, lift and pressure difference on a mesh that is coarse beside that of the validation."""
+
+    cylinder_tolerances: ClassVar[tuple[float, float, float]] = (0.005, 0.05, 0.01)
+    """Relative, of drag, lift and pressure difference."""
+
+    def test_flow_past_a_cylinder(self) -> None:
+        """Steady steps, each advected by the one before, from Stokes flow to Re 20."""
+        inflow = FaceVelocity(np.array([0.3, 0.0]), LOWER, UPPER, axis=0, parabolic=True)
+        conditions = (
+            BoundaryCondition(1, "left", "velocity", inward_normal(0, 2), inflow),
+            BoundaryCondition(2, "right", "pressure", inward_normal(1, 2), _nothing),
+            BoundaryCondition(3, "bottom", "wall", inward_normal(2, 2)),
+            BoundaryCondition(4, "top", "wall", inward_normal(3, 2)),
+        )
+        backend = self.make_backend(FluidProblem(2, 1, 1.0, 1e-3, True, conditions))
+        flow = Flow.start(backend, self.make_mesh(_mesh()), POSE)
+        for _ in range(ITERATIONS):
+            flow = flow.after(None)
+        coefficients = flow.advance.hydrodynamic_wrench.force[0] * 2.0 / (0.2**2 * 0.1)
+        front, back = flow.probe(np.array([[0.15, 0.2], [0.25, 0.2]]))[1]
+        found = np.array([*coefficients, front - back])
+        published = np.array([DRAG, LIFT, PRESSURE_DIFFERENCE])
+        assert np.all(np.abs(found / published - 1.0) < self.cylinder_tolerances), found / published - 1.0
+
+
+@cache
+def _mesh() -> Mesh:
+    cylinder = Sphere(SphereOptions(radius=0.05), 2)
+    return initial_mesh([cylinder], POSE, LOWER, UPPER, (), Sizes(0.05, 0.005))
+
+
+def _nothing(time: float, points: FloatArray) -> FloatArray:
+    return np.zeros(len(points))

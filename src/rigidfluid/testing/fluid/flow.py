@@ -1,0 +1,177 @@
+"""A backend taken from step to step as the loop does, with the motion of mesh and bodies given beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.interfaces import FluidBackend
+from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
+from rigidfluid.core.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """What the n bodies are: ``mass`` (n,), ``inertia`` (n, k, k), and which twists are given, ``controlled`` (n,)."""
+
+    mass: FloatArray
+    inertia: FloatArray
+    controlled: BoolArray
+
+    @classmethod
+    def of(cls, pose: Pose, mass: float = 1.0, controlled: bool = True) -> Bodies:
+        """Bodies of one mass, with an inertia that couples the axes in 3D."""
+        count, dimension = pose.position.shape
+        inertia = np.eye(1) if dimension == 2 else np.array([[1.0, 0.2, 0.1], [0.2, 1.5, 0.3], [0.1, 0.3, 2.0]])
+        scale = 0.004 * mass
+        return cls(np.full(count, mass), np.tile(scale * inertia, (count, 1, 1)), np.full(count, controlled))
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Fluid and bodies at one time; ``after`` gives the next, and leaves this one as it is.
+
+    ``reference``: the mesh that the motion of ``mesh`` starts from.
+    """
+
+    backend: FluidBackend
+    reference: Mesh
+    mesh: Mesh
+    fluid: FluidState
+    bodies: Bodies
+    pose: Pose
+    twist: Twist
+    time: float = 0.0
+    past: tuple[Pose, Twist, float] | None = None
+    latest: tuple[Step, Advance] | None = None
+
+    @classmethod
+    def start(
+        cls,
+        backend: FluidBackend,
+        mesh: Mesh,
+        pose: Pose,
+        bodies: Bodies | None = None,
+        twist: FloatArray | None = None,
+    ) -> Flow:
+        """Fluid at rest until bodies are set in motion with ``twist`` (n, d+k)."""
+        moving = as_twist(np.zeros((len(pose.position), size(pose))) if twist is None else twist, pose)
+        fluid, _ = backend.initial(mesh, pose, moving)
+        return cls(backend, mesh, mesh, fluid, bodies or Bodies.of(pose), pose, moving)
+
+    def after(self, length: float | None, **changes: Any) -> Flow:
+        """The flow a step later; see `step_after` for what may be given."""
+        return self.taken(self.step_after(length, **changes), length)
+
+    def taken(self, step: Step, length: float | None) -> Flow:
+        """The flow after this step."""
+        advance = self.backend.advance(self.fluid, self.mesh, step)
+        assert step.points is not None
+        past = None if length is None else (self.pose, self.twist, length)
+        return replace(
+            self,
+            mesh=replace(self.mesh, points=step.points),
+            fluid=advance.fluid,
+            pose=step.pose,
+            twist=advance.twist,
+            time=step.time,
+            past=past,
+            latest=(step, advance),
+        )
+
+    @property
+    def step(self) -> Step:
+        """The step that led here."""
+        assert self.latest is not None, "no step was taken"
+        return self.latest[0]
+
+    @property
+    def advance(self) -> Advance:
+        """What the backend returned for it."""
+        assert self.latest is not None, "no step was taken"
+        return self.latest[1]
+
+    def step_after(
+        self,
+        length: float | None,
+        points: FloatArray | None = None,
+        pose: Pose | None = None,
+        twist: FloatArray | None = None,
+        push: FloatArray | None = None,
+    ) -> Step:
+        """The step from here.
+
+        Parameters
+        ----------
+        length : float or None
+            Its length [time]; None for a steady flow, all weights of the time derivative zero.
+        points : (N, d) array, optional
+            Where it takes the mesh [length].
+        pose : Pose, optional
+            Where it takes the bodies.
+        twist : (n, d+k) array, optional
+            Of the controlled bodies; else they rest.
+        push : (n, d+k) array, optional
+            Force and torque on the bodies besides the fluid's [force | force·length].
+        """
+        pose = pose or self.pose
+        before = None if self.past is None else self.past[2]
+        weights = np.zeros(3) if length is None else derivative_weights(length, before)
+        extrapolation = np.array([1.0, 0.0]) if length is None else extrapolation_weights(length, before)
+        nothing = np.zeros((len(pose.position), size(pose)))
+        pushed = nothing if push is None else push
+        d = pose.position.shape[1]
+        poses, twists = [self.pose], [self.twist]
+        if self.past is not None:
+            poses.append(self.past[0])
+            twists.append(self.past[1])
+        mass_matrix, load = newton_euler(
+            self.bodies.mass,
+            self.bodies.inertia,
+            pose,
+            poses,
+            twists,
+            weights,
+            Wrench(pushed[:, :d], pushed[:, d:]),
+        )
+        return Step(
+            time=self.time + (length or 0.0),
+            derivative=weights,
+            extrapolation=extrapolation,
+            pose=pose,
+            points=self.mesh.points if points is None else points,
+            mass_matrix=mass_matrix,
+            load=load,
+            controlled=self.bodies.controlled,
+            controlled_twist=nothing if twist is None else twist,
+        )
+
+    def probe(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Velocity (N, d) and pressure (N,) at ``points`` (N, d)."""
+        return self.backend.probe(self.fluid, self.mesh, points)
+
+
+def size(pose: Pose) -> int:
+    """Components of a twist, d + k."""
+    return 3 if pose.position.shape[1] == 2 else 6
+
+
+def as_twist(components: FloatArray, pose: Pose) -> Twist:
+    """A twist from its components (n, d+k)."""
+    d = pose.position.shape[1]
+    return Twist(components[:, :d].copy(), components[:, d:].copy())
+
+
+def components(record: Twist | Wrench) -> FloatArray:
+    """Twists or wrenches as rows, (n, d+k)."""
+    rows = (record.velocity, record.angular_velocity) if isinstance(record, Twist) else (record.force, record.torque)
+    return np.concatenate(rows, axis=1)
+
+
+def figures(advance: Advance) -> Mapping[str, FloatArray]:
+    """All of a result that does not depend on how a backend lays out its state."""
+    energies = np.array([advance.kinetic_energy, advance.dissipation, advance.boundary_power])
+    return {"twist": components(advance.twist), "wrench": components(advance.hydrodynamic_wrench), "energies": energies}

@@ -1,0 +1,20 @@
+"""What every fluid backend must satisfy."""
+
+from __future__ import annotations
+
+from rigidfluid.testing.fluid.accuracy import AccuracyContract
+from rigidfluid.testing.fluid.balances import BalancesContract
+from rigidfluid.testing.fluid.cylinder import CylinderContract
+from rigidfluid.testing.fluid.memory import MemoryContract
+from rigidfluid.testing.fluid.output import OutputContract
+from rigidfluid.testing.fluid.transfer import TransferContract
+
+
+class FluidBackendContract(
+    AccuracyContract, BalancesContract, CylinderContract, TransferContract, MemoryContract, OutputContract
+):
+    """Fluid and bodies in 2D and 3D, by results alone and not by how a backend lays out its state.
+
+    Set the class attribute ``backend``, and ``options`` if it has some. Override ``make_backend`` for one that is made
+    in another way, and ``make_mesh`` where each process holds a part of the mesh.
+    """

@@ -1,0 +1,278 @@
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from scipy.sparse import identity
+
+from rigidfluid.backends.dolfinx import Dolfinx
+from rigidfluid.backends.scikit_fem import ScikitFem
+from rigidfluid.core.types import Advance, FluidState, Mesh, Step, Wrench
+from rigidfluid.testing import FluidBackendContract
+
+
+class TestScikitFem(FluidBackendContract):
+    backend = ScikitFem
+    options: ClassVar[Mapping[str, Any]] = {"tolerance": 1e-12}
+
+
+class TestDolfinx(FluidBackendContract):
+    backend = Dolfinx
+    options: ClassVar[Mapping[str, Any]] = {"tolerance": 1e-12}
+
+
+class TestDolfinxBySchurComplement(FluidBackendContract):
+    backend = Dolfinx
+    options: ClassVar[Mapping[str, Any]] = {"tolerance": 1e-11, "solver": "schur"}
+
+
+class Changed(ScikitFem):
+    """A backend whose steps are changed on the way in and out."""
+
+    def given(self, fluid: FluidState, mesh: Mesh, step: Step) -> tuple[FluidState, Mesh, Step]:
+        return fluid, mesh, step
+
+    def found(self, advance: Advance) -> Advance:
+        return advance
+
+    def advance(self, fluid, mesh, step):
+        return self.found(super().advance(*self.given(fluid, mesh, step)))
+
+
+class Overrunning(Changed):
+    """Writes over what it is given."""
+
+    def given(self, fluid, mesh, step):
+        fluid["velocity"][:] *= 1.0 + 1e-6
+        return fluid, mesh, step
+
+
+class SteadyTwist(Changed):
+    """Takes no notice of the twists given."""
+
+    def given(self, fluid, mesh, step):
+        return fluid, mesh, replace(step, controlled_twist=np.zeros_like(step.controlled_twist))
+
+
+class FirstOrder(Changed):
+    """BDF1 where BDF2 is asked for, in steps of one length."""
+
+    def given(self, fluid, mesh, step):
+        newest = step.derivative[0] / (1.5 if step.derivative[2] else 1.0)
+        return fluid, mesh, replace(step, derivative=newest * np.array([1.0, -1.0, 0.0]))
+
+
+class StillMesh(Changed):
+    """Has the mesh at its new place all the time."""
+
+    def given(self, fluid, mesh, step):
+        return fluid, replace(mesh, points=step.points), step
+
+
+class Heavy(Changed):
+    """Weights of the time derivative that do not add up to zero."""
+
+    def given(self, fluid, mesh, step):
+        return fluid, mesh, replace(step, derivative=step.derivative * np.array([1.001, 1.0, 1.0]))
+
+
+class Coarse(Changed):
+    """Advected by a velocity that is linear in each cell."""
+
+    def given(self, fluid, mesh, step):
+        vertices = fluid["velocity"][: len(mesh.points)]
+        return {**fluid, "velocity": self._discretisations.space(mesh).node_points(vertices)}, mesh, step
+
+
+class Unloaded(Changed):
+    """Does not let anything push the bodies."""
+
+    def given(self, fluid, mesh, step):
+        return fluid, mesh, replace(step, load=np.zeros_like(step.load))
+
+
+class TurnedRound(Changed):
+    """Torques of the wrong sign."""
+
+    def found(self, advance):
+        wrench = advance.hydrodynamic_wrench
+        return replace(advance, hydrodynamic_wrench=Wrench(wrench.force, -wrench.torque))
+
+
+class Overstated(Changed):
+    """Forces that are too large by a thousandth."""
+
+    def found(self, advance):
+        wrench = advance.hydrodynamic_wrench
+        return replace(advance, hydrodynamic_wrench=Wrench(1.001 * wrench.force, wrench.torque))
+
+
+class HalfDissipated(Changed):
+    """|∇u|² in place of ½ |∇u + ∇uᵀ|² would be that in a channel."""
+
+    def found(self, advance):
+        return replace(advance, dissipation=0.5 * advance.dissipation)
+
+
+class Closed(Changed):
+    """Sees no power at the faces."""
+
+    def found(self, advance):
+        return replace(advance, boundary_power=0.0)
+
+
+class Counting(Changed):
+    """Remembers something outside the state."""
+
+    steps = 0
+
+    def found(self, advance):
+        self.steps += 1
+        return replace(advance, kinetic_energy=advance.kinetic_energy * (1.0 + 1e-15 * self.steps))
+
+
+class Wordy(Changed):
+    """Keeps something else than floats in the state."""
+
+    def found(self, advance):
+        return replace(advance, fluid={**advance.fluid, "position": advance.fluid["position"].astype(np.float32)})
+
+
+class Hoarding(ScikitFem):
+    """Keeps its caches."""
+
+    def forget(self):
+        pass
+
+
+class Silent(ScikitFem):
+    """Does not tell what energy a transfer loses."""
+
+    def transfer(self, fluid, old, new):
+        return super().transfer(fluid, old, new)[0], 0.0
+
+
+class Late(ScikitFem):
+    """Transfers the newer level alone."""
+
+    def transfer(self, fluid, old, new):
+        state, lost = super().transfer(fluid, old, new)
+        return {**state, "velocity_previous": state["velocity"]}, lost
+
+
+class Sluggish(ScikitFem):
+    """Starts from rest whatever the bodies do."""
+
+    def initial(self, mesh, pose, twist):
+        return super().initial(mesh, pose, replace(twist, velocity=np.zeros_like(twist.velocity)))
+
+
+class Restless(ScikitFem):
+    """Starts with a little velocity."""
+
+    def initial(self, mesh, pose, twist):
+        state, energy = super().initial(mesh, pose, twist)
+        return {**state, "velocity": state["velocity"] + 1e-12}, energy
+
+
+class Blind(ScikitFem):
+    """Sees nothing outside the box."""
+
+    def probe(self, fluid, mesh, points):
+        velocity, pressure = super().probe(fluid, mesh, points)
+        return np.where(np.any(points > 1.0, axis=1)[:, None], 0.0, velocity), pressure
+
+
+class Straight(ScikitFem):
+    """Probes a velocity that is linear in each cell."""
+
+    def probe(self, fluid, mesh, points):
+        vertices = fluid["velocity"][: len(mesh.points)]
+        return super().probe(
+            {**fluid, "velocity": self._discretisations.space(mesh).node_points(vertices)}, mesh, points
+        )
+
+
+class Delayed(ScikitFem):
+    """Shows the velocity of the step before."""
+
+    def fields(self, fluid, mesh):
+        return replace(super().fields(fluid, mesh), velocity=fluid["velocity_previous"])
+
+
+class Disordered(ScikitFem):
+    """Cells whose middle nodes come in another order."""
+
+    def fields(self, fluid, mesh):
+        fields = super().fields(fluid, mesh)
+        order = [*range(mesh.cells.shape[1]), *reversed(range(mesh.cells.shape[1], fields.cells.shape[1]))]
+        return replace(fields, cells=fields.cells[:, order])
+
+
+class Stiffer(ScikitFem):
+    """Extends with another matrix than the one given."""
+
+    def extension(self, mesh, stiffness, held):
+        return super().extension(mesh, stiffness + 0.01 * identity(len(held), format="csc"), held)
+
+
+class Miscounting(ScikitFem):
+    """Counts the unknowns without the bodies'."""
+
+    def unknowns(self, mesh, controlled):
+        return super().unknowns(mesh, np.ones_like(controlled))
+
+
+@pytest.mark.parametrize(
+    ("fault", "test", "arguments"),
+    [
+        (Overrunning, "test_a_step_changes_nothing_that_it_is_given", (2,)),
+        (SteadyTwist, "test_newton_euler_holds_for_free_bodies", (2,)),
+        (SteadyTwist, "test_the_power_that_drives_bodies_is_dissipated", (2, 0)),
+        (FirstOrder, "test_order_in_time", (True,)),
+        (StillMesh, "test_a_shear_flow_is_exact_on_a_mesh_in_motion", (2,)),
+        (Heavy, "test_uniform_flow_stays_uniform_on_a_mesh_in_motion", (2,)),
+        (Straight, "test_orders_in_space", (2,)),
+        (Coarse, "test_flow_past_a_cylinder", ()),
+        (Unloaded, "test_newton_euler_holds_for_free_bodies", (2,)),
+        (TurnedRound, "test_the_power_that_drives_bodies_is_dissipated", (2, 1)),
+        (TurnedRound, "test_fluid_and_bodies_accelerate_as_one", (3, False)),
+        (Overstated, "test_force_balances_the_pressures", (2,)),
+        (Overstated, "test_fluid_and_bodies_accelerate_as_one", (2, True)),
+        (HalfDissipated, "test_flow_between_a_plane_of_symmetry_and_a_wall", (2, False)),
+        (HalfDissipated, "test_the_power_that_drives_bodies_is_dissipated", (2, 1)),
+        (Closed, "test_energy_carried_through_the_faces", (2,)),
+        (Counting, "test_going_on_from_a_checkpoint_is_bit_identical", (2,)),
+        (Wordy, "test_the_state_is_a_flat_mapping_of_float_arrays", (2,)),
+        (Hoarding, "test_going_on_from_a_checkpoint_is_bit_identical", (2,)),
+        (Silent, "test_the_energy_lost_is_told", (2,)),
+        (Late, "test_a_linear_flow_is_kept", (2,)),
+        (Late, "test_another_numbering_changes_nothing", (2,)),
+        (Sluggish, "test_bodies_set_in_motion_take_fluid_along", (2,)),
+        (Restless, "test_bodies_at_rest_leave_the_fluid_at_rest", (2,)),
+        (Disordered, "test_cells_of_the_fields_fill_the_mesh", (3,)),
+        (Stiffer, "test_an_extension_is_harmonic", (2,)),
+        (Overrunning, "test_a_rejected_step_leaves_no_trace", (2,)),
+        (Blind, "test_probes_outside_give_what_is_near", (2,)),
+        (Delayed, "test_fields_are_what_probes_find", (2,)),
+        (Miscounting, "test_a_free_body_has_its_twist_as_unknowns", (2,)),
+    ],
+)
+def test_the_contract_refuses(fault: type[ScikitFem], test: str, arguments: tuple[Any, ...]) -> None:
+    class Faulty(TestScikitFem):
+        backend = fault
+
+    with pytest.raises(AssertionError):
+        getattr(Faulty(), test)(*arguments)
+
+
+def test_a_backend_without_its_packages_is_skipped() -> None:
+    class Absent(ScikitFem):
+        requires: ClassVar = {"a_package_that_is_not_there": "that-package"}
+
+    class Contract(FluidBackendContract):
+        backend = Absent
+
+    with pytest.raises(pytest.skip.Exception, match="install that-package"):
+        Contract().skip_without_packages()
