@@ -82,7 +82,7 @@ class Coarse(Changed):
 
     def given(self, fluid, mesh, step):
         vertices = fluid["velocity"][: len(mesh.points)]
-        return {**fluid, "velocity": self._discretisations.space(mesh).node_points(vertices)}, mesh, step
+        return {**fluid, "velocity": self.numbering_of(mesh).node_points(vertices)}, mesh, step
 
 
 class Unloaded(Changed):
@@ -189,9 +189,7 @@ class Straight(ScikitFem):
 
     def probe(self, fluid, mesh, points):
         vertices = fluid["velocity"][: len(mesh.points)]
-        return super().probe(
-            {**fluid, "velocity": self._discretisations.space(mesh).node_points(vertices)}, mesh, points
-        )
+        return super().probe({**fluid, "velocity": self.numbering_of(mesh).node_points(vertices)}, mesh, points)
 
 
 class Delayed(ScikitFem):

@@ -37,7 +37,7 @@ class Constraint:
         self.controlled = controlled
         self._numbering = numbering = surfaces.numbering
         free = np.concatenate([surfaces.velocity_free.ravel(), np.ones(numbering.vertices, dtype=bool)])
-        self.pinned = far_vertex(mesh, len(controlled)) if surfaces.enclosed else None
+        self.pinned = far_vertex(surfaces, mesh) if surfaces.enclosed else None
         if self.pinned is not None:
             free[surfaces.velocity_free.size + self.pinned] = False
         self.free_unknowns = np.flatnonzero(free)

@@ -20,15 +20,18 @@ _ANALYSE_AND_FACTORISE, _SOLVE = 12, 33
 _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 
-def _pardiso_settings() -> NDArray[np.int32]:
+def _pardiso_settings(pivots: int, matching: int) -> NDArray[np.int32]:
     """PARDISO's iparm; no iterative refinement, which the Krylov iteration around the factors does better."""
-    given, nested_dissection, pivots, scaling, matching = 1, 2, 13, 1, 1
+    given, nested_dissection = 1, 2
     iparm = np.zeros(64, dtype=np.int32)
-    iparm[[0, 1, 9, 10, 12]] = given, nested_dissection, pivots, scaling, matching
+    iparm[[0, 1, 9, 10, 12]] = given, nested_dissection, pivots, matching, matching
     return iparm
 
 
-_SETTINGS = _pardiso_settings()
+_PERTURBED_PIVOTS = 13
+# Scaled and matched first: most often exact. Where it runs into a pivot that it has to replace by 1e-13, the factors may
+# be worthless; without matching, and with 1e-8 in the place of small pivots, they always make a good preconditioner.
+_EXACT, _SAFE = _pardiso_settings(13, 1), _pardiso_settings(8, 0)
 
 
 class Factors(Protocol):
@@ -54,23 +57,31 @@ class _Pardiso:
     """pypardiso's solve() compares the whole matrix at every call; the solve phase alone is what we call here."""
 
     def __init__(self, matrix: sparse.csr_array) -> None:
-        from pypardiso.pardiso_wrapper import PyPardisoError
-
         self._matrix = matrix
-        self._solver = copy.copy(_library())
-        self._solver.pt = np.zeros_like(self._solver.pt)
-        self._solver.iparm = _SETTINGS.copy()
-        self._solver.set_phase(_ANALYSE_AND_FACTORISE)
-        try:
-            self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
-        except PyPardisoError as error:
-            raise _singular(matrix, error) from error
+        self._solver = _factorised(matrix, _EXACT)
+        if self._solver.iparm[_PERTURBED_PIVOTS] > 0:
+            self._solver.free_memory(everything=True)
+            self._solver = _factorised(matrix, _SAFE)
         self._solver.set_phase(_SOLVE)
         weakref.finalize(self, self._solver.free_memory, everything=True)
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         solution: FloatArray = self._solver._call_pardiso(self._matrix, right_side)
         return solution
+
+
+def _factorised(matrix: sparse.csr_array, settings: NDArray[np.int32]) -> Any:
+    from pypardiso.pardiso_wrapper import PyPardisoError
+
+    solver = copy.copy(_library())
+    solver.pt = np.zeros_like(solver.pt)
+    solver.iparm = settings.copy()
+    solver.set_phase(_ANALYSE_AND_FACTORISE)
+    try:
+        solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
+    except PyPardisoError as error:
+        raise _singular(matrix, error) from error
+    return solver
 
 
 class _SuperLU:

@@ -123,18 +123,19 @@ def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:
     return np.asarray(twist[:d] + cross(twist[d:], arm))
 
 
-def far_vertex(mesh: Mesh, bodies: int) -> int | None:
+def far_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
     """The vertex farthest from all bodies: where an enclosed flow's pressure is pinned, so that no gap feels it.
 
-    None in all processes but one.
+    Not on the boundary, if there is another: a corner's pressure may be felt by nobody. None in all processes but one.
     """
-    ranks = mesh.ranks
-    surface = np.concatenate(ranks.gathered(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
-    if len(surface) == 0:
-        surface = mesh.points[:1]
-    distance = np.asarray(cKDTree(surface).query(mesh.points)[0])
-    local = int(np.argmax(distance))
-    return local if int(np.argmax(ranks.gathered(distance[local]))) == ranks.rank else None
+    ranks, bodies = surfaces.ranks, len(surfaces.body_nodes)
+    on_bodies = np.concatenate(ranks.gathered(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
+    origin = on_bodies if len(on_bodies) else mesh.points[:1]
+    distance = np.asarray(cKDTree(origin).query(mesh.points)[0])
+    inside = surfaces.velocity_free[: len(mesh.points)].all(axis=1)
+    preference = distance + np.where(inside, float(ranks.greatest(distance.max())), 0.0)
+    local = int(np.argmax(preference))
+    return local if int(np.argmax(ranks.gathered(preference[local]))) == ranks.rank else None
 
 
 def _free_components(condition: BoundaryCondition, dimension: int) -> BoolArray:

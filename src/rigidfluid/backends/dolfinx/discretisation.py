@@ -51,7 +51,7 @@ class PetscDiscretisation:
         self.numbering = topology.numbering
         self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies)
         self._topology, self._solver = topology, solver
-        pinned = far_vertex(mesh, problem.bodies) if self.surfaces.enclosed and isinstance(solver, StaleLU) else None
+        pinned = far_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, StaleLU) else None
         self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pinned)
         self._pinned = pinned
 
