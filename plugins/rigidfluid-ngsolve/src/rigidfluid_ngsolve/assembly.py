@@ -1,0 +1,100 @@
+"""The integrals of the Taylor–Hood system as NGSolve's forms, in the numbers of the rest of rigidfluid."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from rigidfluid.core.types import FloatArray, IntArray
+from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid_ngsolve.mesh import NodeMesh
+
+_ORDER_OF_FIELD = 2
+"""NGSolve takes the order of quadrature from the test and trial functions, not from a field that convects."""
+
+
+class FormAssembly:
+    """Matrices and loads on the cells of ``numbering``; forms and sparsity are made once.
+
+    Parameters
+    ----------
+    numbering : Numbering
+        The topology.
+    convection : bool
+        Whether there is any; without it ``advection`` is not read.
+    """
+
+    def __init__(self, numbering: Numbering, convection: bool) -> None:
+        import ngsolve as ngs
+
+        self.numbering = numbering
+        self._mesh = NodeMesh(numbering)
+        velocities = ngs.VectorNodalFESpace(self._mesh.ngsolve, order=2)
+        space = velocities * ngs.H1(self._mesh.ngsolve, order=1)
+        self._field = ngs.GridFunction(velocities)
+        self._inertia, self._viscosity = ngs.Parameter(0.0), ngs.Parameter(0.0)
+        (u, p), (v, q) = space.TnT()
+        # One integral each: NGSolve multiplies all functions of an integral with each other.
+        self._form = ngs.BilinearForm(space)
+        self._form += self._inertia * u * v * ngs.dx
+        self._form += self._viscosity * ngs.InnerProduct(_twice_strain(u), ngs.grad(v)) * ngs.dx
+        self._form += (-p * ngs.div(v) - q * ngs.div(u)) * ngs.dx
+        if convection:
+            self._form += ngs.grad(u) * self._field * v * ngs.dx(bonus_intorder=_ORDER_OF_FIELD)
+        self._load = ngs.LinearForm(self._field * velocities.TestFunction() * ngs.dx)
+        self._strain_square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
+        self._order: IntArray | None = None
+
+    def matrix(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> sparse.csr_array:
+        self._take(points, advection)
+        self._inertia.Set(inertia)
+        self._viscosity.Set(viscosity)
+        self._form.Assemble()
+        entries, columns, starts = self._form.mat.CSR()
+        if self._order is None:
+            self._order, self._indices, self._indptr = _renumbered(self.numbering, columns, starts)
+        data = np.asarray(entries)[self._order]
+        return sparse.csr_array((data, self._indices, self._indptr), shape=(self.numbering.unknowns,) * 2)
+
+    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
+        self._take(points, field)
+        self._load.Assemble()
+        return _nodal(self._load.vec, field.shape[1]).copy()
+
+    def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
+        from ngsolve import Integrate
+
+        self._take(points, velocity)
+        return float(Integrate(self._strain_square, self._mesh.ngsolve, order=2))
+
+    def _take(self, points: FloatArray, field: FloatArray) -> None:
+        self._mesh.move(points)
+        _nodal(self._field.vec, field.shape[1])[:] = field
+
+
+def _twice_strain(velocity: Any) -> Any:
+    from ngsolve import grad
+
+    return grad(velocity) + grad(velocity).trans
+
+
+def _nodal(vector: Any, dimension: int) -> FloatArray:
+    """A view (nodes, d) of the entries of a vector of `VectorNodalFESpace`, which holds one component after another."""
+    return np.asarray(vector.FV().NumPy().reshape(dimension, -1).T)
+
+
+def _renumbered(numbering: Numbering, columns: Any, starts: Any) -> tuple[IntArray, IntArray, IntArray]:
+    """From NGSolve's sparsity to that in the unknowns of ``numbering``: which entry comes where, indices, indptr.
+
+    NGSolve numbers the first components of all nodes, then the second ones, …, then the pressures.
+    """
+    d, nodes = numbering.dimension, numbering.nodes
+    velocities = np.arange(nodes * d).reshape(nodes, d).T.ravel()
+    unknown = np.concatenate([velocities, nodes * d + np.arange(numbering.vertices)])
+    entries = np.arange(len(columns))
+    theirs = sparse.csr_array((entries, np.asarray(columns), np.asarray(starts)), shape=(len(unknown),) * 2).tocoo()
+    made = sparse.coo_array((entries, (unknown[theirs.row], unknown[theirs.col])), shape=theirs.shape).tocsr()
+    made.sort_indices()
+    return made.data, made.indices.astype(np.int32), made.indptr.astype(np.int32)

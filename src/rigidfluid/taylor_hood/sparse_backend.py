@@ -1,0 +1,42 @@
+"""A backend that assembles SciPy's sparse matrices and leaves constraint, solution and step to this room."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, final
+
+from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.taylor_hood.backend import TaylorHoodBackend
+from rigidfluid.taylor_hood.discretisation import Discretisation
+from rigidfluid.taylor_hood.numbering import Numbering
+
+if TYPE_CHECKING:
+    from rigidfluid.taylor_hood.sparse import Assembly
+
+
+class SparseBackend(TaylorHoodBackend):
+    """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
+
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
+        from rigidfluid.taylor_hood.stale_factors import StaleFactors
+
+        super().__init__(options, problem)
+        self._solver = StaleFactors()
+        self._assembly: Assembly | None = None
+
+    @abstractmethod
+    def assembly(self, numbering: Numbering) -> Assembly:
+        """The integrals over the cells of a topology that was not seen before."""
+
+    @final
+    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+
+        if self._assembly is None or self._assembly.numbering is not numbering:
+            self._assembly = self.assembly(numbering)
+        return SparseDiscretisation(self.problem, self._assembly, self._solver, mesh, controlled)
+
+    @final
+    def drop_factors(self) -> None:
+        self._solver.forget()
