@@ -16,7 +16,7 @@ from rigidfluid.taylor_hood.numbering import Numbering
 class ReferenceTables:
     """Basis values and gradients on the reference simplex at quadrature points, and its exact mass matrix.
 
-    ``value`` (Q, b), ``gradient`` (Q, b, d), ``weight`` (Q,): rule of degree 5, exact for the convection.
+    ``value`` (Q, b), ``gradient`` (Q, b, d), ``weight`` (Q,): exact to degree 5, for the convection.
     ``flat_gradient`` (S, b, d), ``flat_linear`` (S, d+1), ``flat_weight`` (S,): degree 2, for stress and divergence.
     ``mass`` (b, b).
     """
@@ -45,7 +45,8 @@ def reference_tables(dimension: int) -> ReferenceTables:
         gradient = np.moveaxis(np.array([grad for _, grad in basis]), 2, 0).copy()
         return points, weight, value, gradient
 
-    _, weight, value, gradient = tabulate(5)
+    # In tetrahedra scikit-fem's rule of order 5 is exact to degree 4 only, and that of order 6 to degree 5.
+    _, weight, value, gradient = tabulate(5 if dimension == 2 else 6)
     points, flat_weight, _, flat_gradient = tabulate(2)
     linear = np.column_stack([1.0 - points.sum(axis=0), points.T])
     return ReferenceTables(
