@@ -30,8 +30,10 @@ def _pardiso_settings(pivots: int, matching: int) -> NDArray[np.int32]:
 
 _PERTURBED_PIVOTS = 13
 # Scaled and matched first: most often exact. Where it runs into a pivot that it has to replace by 1e-13, the factors may
-# be worthless; without matching, and with 1e-8 in the place of small pivots, they always make a good preconditioner.
+# be worthless; without matching, and with 1e-8 in the place of small pivots, they make a preconditioner that serves.
 _EXACT, _SAFE = _pardiso_settings(13, 1), _pardiso_settings(8, 0)
+_WORTHLESS = 1e-6
+"""Relative residual of a solution by factors with perturbed pivots, from which on they are not used."""
 
 
 class Factors(Protocol):
@@ -59,15 +61,19 @@ class _Pardiso:
     def __init__(self, matrix: sparse.csr_array) -> None:
         self._matrix = matrix
         self._solver = _factorised(matrix, _EXACT)
-        if self._solver.iparm[_PERTURBED_PIVOTS] > 0:
+        if self._solver.iparm[_PERTURBED_PIVOTS] > 0 and self._residual() > _WORTHLESS:
             self._solver.free_memory(everything=True)
             self._solver = _factorised(matrix, _SAFE)
-        self._solver.set_phase(_SOLVE)
         weakref.finalize(self, self._solver.free_memory, everything=True)
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         solution: FloatArray = self._solver._call_pardiso(self._matrix, right_side)
         return solution
+
+    def _residual(self) -> float:
+        right_side = self._matrix @ np.ones(self._matrix.shape[0])
+        left = right_side - self._matrix @ self.solve(right_side)
+        return float(np.linalg.norm(left) / np.linalg.norm(right_side))
 
 
 def _factorised(matrix: sparse.csr_array, settings: NDArray[np.int32]) -> Any:
@@ -81,6 +87,7 @@ def _factorised(matrix: sparse.csr_array, settings: NDArray[np.int32]) -> Any:
         solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
     except PyPardisoError as error:
         raise _singular(matrix, error) from error
+    solver.set_phase(_SOLVE)
     return solver
 
 

@@ -12,7 +12,7 @@ from rigidfluid.taylor_hood.sampling import Samples
 from rigidfluid.taylor_hood.state import at_rest
 from rigidfluid.taylor_hood.surfaces import rigid_velocity
 
-_TIGHTER, _TIGHTEST = 1e-3, 1e-12
+_TIGHTER, _TIGHTEST = 1e-3, 1e-11
 """What divergence is left shows, over the step, as a blow of pressure: projections are solved so much better."""
 
 
