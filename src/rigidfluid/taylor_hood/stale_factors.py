@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 from scipy import sparse
@@ -12,15 +12,16 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from rigidfluid.core.ranks import ALONE
 from rigidfluid.core.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
-from rigidfluid.taylor_hood.stale_solver import MOST_ITERATIONS, StaleSolver
+from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 
 @final
 class StaleFactors(StaleSolver["sparse.csr_array"]):
     """LU by `factorise`; one costs about as much as 30 iterations (PARDISO, 15,000 to 150,000 unknowns)."""
 
-    price = 30
-    when_fresh = 3
+    price: ClassVar[int] = 30
+    when_fresh: ClassVar[int] = 3
+    most: ClassVar[int] = 60
 
     def __init__(self) -> None:
         super().__init__(ALONE)
@@ -45,7 +46,7 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
             residual,
             rtol=0.0,
             atol=tolerance,
-            restart=MOST_ITERATIONS,
+            restart=self.most,
             maxiter=1,
             callback=norms.append,
             callback_type="pr_norm",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Generic, TypeVar, final
+from typing import ClassVar, Generic, TypeVar, final
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
 
 Matrix = TypeVar("Matrix")
-MOST_ITERATIONS = 60
 
 
 class StaleSolver(ABC, Generic[Matrix]):
@@ -22,11 +21,13 @@ class StaleSolver(ABC, Generic[Matrix]):
     The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the price
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
-    ``price`` of a preconditioner in iterations, and ``when_fresh``, those that a solve then takes.
+    ``price`` of a preconditioner in iterations, ``when_fresh``, those that a solve then takes, and the ``most`` that may
+    be spent on one.
     """
 
-    price: int
-    when_fresh: int
+    price: ClassVar[int]
+    when_fresh: ClassVar[int]
+    most: ClassVar[int]
 
     def __init__(self, ranks: Ranks) -> None:
         self._ranks = ranks
@@ -63,7 +64,7 @@ class StaleSolver(ABC, Generic[Matrix]):
         if not converged:
             raise StepRejected(
                 "fluid.tolerance",
-                f"a linear system that does not converge to {tolerance:.1e} in {MOST_ITERATIONS} iterations",
+                f"a linear system that does not converge to {tolerance:.1e} in {self.most} iterations",
                 "a converging one",
                 "Shorten time.step or loosen fluid.tolerance.",
             )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, ClassVar, final
 
 from petsc4py import PETSc
@@ -12,7 +13,7 @@ from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
 from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.types import FloatArray
-from rigidfluid.taylor_hood.stale_solver import MOST_ITERATIONS, StaleSolver
+from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 Settings = Mapping[str, str | float | int | bool]
 _PREFIX = "rigidfluid_"
@@ -49,9 +50,10 @@ class Krylov(StaleSolver[Reduced]):
         self._ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
         self._ksp.setPCSide(PETSc.PC.Side.RIGHT)
         self.prepare(self._ksp, matrix, shell)
-        self._configure(self.defaults | self.chosen(matrix) | self._settings)
-        self._ksp.setUp()
-        self.finish(self._ksp, matrix)
+        with self._options(dict(self.defaults) | dict(self.chosen(matrix))):
+            self._ksp.setFromOptions()
+            self._ksp.setUp()
+            self.finish(self._ksp, matrix)
 
     @final
     def drop(self) -> None:
@@ -64,7 +66,7 @@ class Krylov(StaleSolver[Reduced]):
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
     ) -> tuple[FloatArray, int, bool]:
         self._operator.apply = apply
-        self._ksp.setTolerances(rtol=0.0, atol=tolerance, max_it=MOST_ITERATIONS)
+        self._ksp.setTolerances(rtol=0.0, atol=tolerance, max_it=self.most)
         _, pmat = self._ksp.getOperators()
         correction, right_side = pmat.createVecs()
         right_side.array[:] = residual
@@ -84,22 +86,29 @@ class Krylov(StaleSolver[Reduced]):
     def finish(self, ksp: Any, matrix: Reduced) -> None:
         """What can be there only after."""
 
-    def _configure(self, settings: Settings) -> None:
+    @contextmanager
+    def _options(self, defaults: Settings) -> Iterator[None]:
+        """Settings in PETSc's database while the solver is set up; the scene's stay, so that PETSc tells the unread."""
         database = PETSc.Options(_PREFIX)
-        for key, value in settings.items():
+        for key, value in (dict(defaults) | self._settings).items():
             database[key] = value
-        self._ksp.setFromOptions()
+        try:
+            yield
+        finally:
+            for key in set(defaults) - set(self._settings):
+                database.delValue(key)
 
 
 @final
 class StaleLU(Krylov):
     """LU factors of the whole matrix, by MUMPS."""
 
-    price = 30
-    when_fresh = 3
+    price: ClassVar[int] = 30
+    when_fresh: ClassVar[int] = 3
+    most: ClassVar[int] = 60
     defaults: ClassVar[Settings] = {
         "ksp_type": "gmres",
-        "ksp_gmres_restart": MOST_ITERATIONS,
+        "ksp_gmres_restart": 60,
         "pc_type": "lu",
         "pc_factor_mat_solver_type": "mumps",
         "mat_mumps_icntl_14": 60,  # per cent of memory for pivots beyond the estimate
@@ -116,11 +125,12 @@ class StaleLU(Krylov):
 class StaleSchur(Krylov):
     """Upper block triangle [[A, Bᵀ], [0, S]]: A, with the bodies' rows, by an inner iteration, S by Cahouet–Chabard."""
 
-    price = 8
-    when_fresh = 20
+    price: ClassVar[int] = 8
+    when_fresh: ClassVar[int] = 20
+    most: ClassVar[int] = 200
     defaults: ClassVar[Settings] = {
         "ksp_type": "fgmres",
-        "ksp_gmres_restart": MOST_ITERATIONS,
+        "ksp_gmres_restart": 200,
         "pc_type": "fieldsplit",
         "pc_fieldsplit_type": "schur",
         "pc_fieldsplit_schur_fact_type": "upper",
