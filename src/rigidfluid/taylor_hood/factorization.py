@@ -29,8 +29,8 @@ def _pardiso_settings(pivots: int, matching: int) -> NDArray[np.int32]:
 
 
 _PERTURBED_PIVOTS = 13
-# Scaled and matched first: most often exact. Where it runs into a pivot that it has to replace by 1e-13, the factors may
-# be worthless; without matching, and with 1e-8 in the place of small pivots, they make a preconditioner that serves.
+# Scaled and matched first: most often exact. Where a pivot had to be replaced by 1e-13, the factors may be worthless;
+# without matching, and with 1e-8 in the place of small pivots, they make a preconditioner that serves.
 _EXACT, _SAFE = _pardiso_settings(13, 1), _pardiso_settings(8, 0)
 _WORTHLESS = 1e-6
 """Relative residual of a solution by factors with perturbed pivots, from which on they are not used."""

@@ -21,8 +21,8 @@ class StaleSolver(ABC, Generic[Matrix]):
     The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the price
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
-    ``price`` of a preconditioner in iterations, ``when_fresh``, those that a solve then takes, and the ``most`` that may
-    be spent on one.
+    ``price`` of a preconditioner in iterations, ``when_fresh``, those that a solve then takes, and the ``most`` that
+    may be spent on one.
     """
 
     price: ClassVar[int]

@@ -13,6 +13,7 @@ from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
 from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.types import FloatArray
+from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 Settings = Mapping[str, str | float | int | bool]
@@ -41,6 +42,17 @@ class Krylov(StaleSolver[Reduced]):
 
     @final
     def make(self, matrix: Reduced) -> None:
+        try:
+            self._make(matrix)
+        except PETSc.Error as error:
+            raise StepRejected(
+                "fluid.backend",
+                f"a preconditioner that PETSc cannot make ({error})",
+                "one that it can",
+                "Shorten time.step, or look at the keys of fluid.petsc.",
+            ) from error
+
+    def _make(self, matrix: Reduced) -> None:
         assembled = matrix.as_matrix()
         shell = PETSc.Mat().createPython(assembled.getSizes(), self._operator, comm=assembled.comm)
         shell.setUp()

@@ -64,7 +64,7 @@ class CahouetChabard:
     """S⁻¹ ≈ -(2 μ M⁻¹ + inertia L⁻¹), M the mass and L the Laplace matrix of the pressures.
 
     Exact for A = inertia I - 2 μ ∇∇· on a whole space: what ∇u + ∇uᵀ makes of gradients (Cahouet and Chabard 1988,
-    doi:10.1002/fld.1650080802).
+    doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
     """
 
     def __init__(self, data: SchurData) -> None:
@@ -76,7 +76,9 @@ class CahouetChabard:
             matrix = _assembled(data.forms.pressure_laplacian)
             first = matrix.getOwnershipRange()[0]
             held = (first + np.flatnonzero(data.open)).astype(PETSc.IntType)
+            diagonal = matrix.getDiagonal()
             matrix.zeroRowsColumns(held, 1.0)
+            matrix.setDiagonal(diagonal)
             if data.enclosed:
                 matrix.setNullSpace(PETSc.NullSpace().create(constant=True, comm=matrix.comm))
             self._laplacian = _solver(matrix, "hypre", 1e-2)
@@ -93,7 +95,6 @@ class CahouetChabard:
             self._mass.solve(source, y)
             y.scale(-2.0 * self._data.viscosity)
         if self._laplacian is not None:
-            source.array[self._data.open] = 0.0
             self._laplacian.solve(source, self._image)
             y.axpy(-self._data.inertia, self._image)
 

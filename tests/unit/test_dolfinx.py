@@ -1,0 +1,88 @@
+"""The DOLFINx backend beside scikit-fem's: two engines, one scheme, the same answer."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+from falling import falling_disk
+
+from rigidfluid.core.scene import Scene
+from rigidfluid.core.simulation import Simulation
+
+pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
+
+BALLS = {
+    "scene": {"name": "two_balls", "dimension": 3},
+    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0, 0.0]},
+    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
+    "boundary": [{"on": "left", "type": "velocity", "velocity": [0.2, 0.0, 0.0], "profile": "parabolic"}]
+    + [{"on": "right", "type": "pressure", "pressure": 0.3}, {"on": "front", "type": "slip"}],
+    "body": [
+        {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
+        {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
+    ],
+    "mesh": {"size": 0.6, "size_body": 0.2},
+    "time": {"step": 0.02, "end": 0.1},
+    "output": {"every": 0.1},
+}
+
+
+def three_dimensional(**fluid):
+    driven = {**BALLS["body"][1], "prescribed": {"velocity": [0.0, -0.2, 0.0], "angular_velocity": [0.0, 0.0, 1.0]}}
+    return Scene.from_dict({**BALLS, "fluid": BALLS["fluid"] | fluid, "body": [BALLS["body"][0], driven]})
+
+
+def two_dimensional(**fluid):
+    sizes = {"mesh": {"size": 0.3, "size_body": 0.05}, "time": {"step": 0.004, "end": 0.02}, "output": {"every": 0.02}}
+    return falling_disk(fluid=fluid, body={"angular_velocity": 5.0}, **sizes)
+
+
+def after(scene, steps):
+    simulation = Simulation(scene, None, False)
+    for _ in range(steps):
+        simulation._advance()
+    return simulation
+
+
+def assert_same(one, other, tolerance):
+    for name, field in one.state.fluid.items():
+        scale = np.abs(field).max()
+        np.testing.assert_allclose(other.state.fluid[name], field, rtol=0, atol=tolerance * scale, err_msg=name)
+    force = one.state.hydrodynamic_wrench.force
+    np.testing.assert_allclose(
+        other.state.hydrodynamic_wrench.force, force, rtol=0, atol=tolerance * np.abs(force).max()
+    )
+    assert other.state.ledger.kinetic == pytest.approx(one.state.ledger.kinetic, rel=tolerance)
+
+
+@pytest.mark.parametrize("make", [two_dimensional, three_dimensional])
+@pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
+def test_both_backends_take_the_same_steps_on_one_mesh(make, model):
+    engines = {"backend": "scikit-fem"}, {"backend": "dolfinx", "solver": "lu"}
+    runs = [after(make(model=model, tolerance=1e-11, **engine), 3) for engine in engines]
+    assert type(runs[0].system.backend) is not type(runs[1].system.backend)
+    assert_same(*runs, 1e-8)
+
+
+@pytest.mark.parametrize("make", [two_dimensional, three_dimensional])
+@pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
+def test_the_schur_complement_gives_what_factors_give(make, model):
+    runs = [after(make(backend="dolfinx", model=model, tolerance=1e-11, solver=kind), 3) for kind in ("lu", "schur")]
+    assert_same(*runs, 1e-7)
+
+
+def test_petscs_options_are_those_of_the_scene():
+    run = after(two_dimensional(backend="dolfinx", petsc={"pc_factor_mat_solver_type": "umfpack"}), 1)
+    assert run.system.backend._solver._ksp.getPC().getFactorSolverType() == "umfpack"
+
+
+def iterations(size, step):
+    scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
+    scene["mesh"], scene["time"]["step"] = {"size": 3 * size, "size_body": size}, step
+    simulation = after(Scene.from_dict(scene), 2)
+    return simulation.system.backend._solver._ksp.getIterationNumber()
+
+
+def test_iterations_depend_neither_on_the_cells_nor_on_the_step():
+    counts = [iterations(size, step) for size in (0.25, 0.125) for step in (0.0002, 0.002, 0.02)]
+    assert max(counts) <= 2 * min(counts), counts
