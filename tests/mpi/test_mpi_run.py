@@ -1,4 +1,7 @@
-"""`mpirun rigidfluid run`, in processes of their own, with a backend in which the root does all the work."""
+"""`mpirun rigidfluid run`, in processes of their own, with a backend in which the root does all the work.
+
+Where DOLFINx is installed its backend, which shares the work, makes the same run.
+"""
 
 import csv
 import json
@@ -15,6 +18,7 @@ from falling import SCENES
 from gathered_backend import install_gathered
 
 from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.registry import FLUID_BACKEND, Registry
 
 pytestmark = [
     pytest.mark.skipif(find_spec("mpi4py") is None, reason="mpi4py is not installed"),
@@ -73,15 +77,24 @@ def table(path):
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0] if name != "body"}
 
 
+def installed(backend):
+    entries = [entry for entry in Registry.load().entries if entry.kind is FLUID_BACKEND and entry.name == backend]
+    return any(entry.available for entry in entries)
+
+
 def succeeded(result):
     assert result.returncode == 0, result.stderr
     return result
 
 
-def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path):
-    succeeded(mpirun(1, *fall(tmp_path / "one")))
-    succeeded(mpirun(2, *fall(tmp_path / "two", time__end=0.02)))
-    said = succeeded(mpirun(2, *fall(tmp_path / "two", "--resume"))).stdout
+@pytest.mark.parametrize("backend", ["gathered", "dolfinx"])
+def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, backend):
+    if backend == "dolfinx" and not installed(backend):
+        pytest.skip("DOLFINx is not installed")
+    chosen = {"fluid__backend": f'"{backend}"'}
+    succeeded(mpirun(1, *fall(tmp_path / "one", **chosen)))
+    succeeded(mpirun(2, *fall(tmp_path / "two", time__end=0.02, **chosen)))
+    said = succeeded(mpirun(2, *fall(tmp_path / "two", "--resume", **chosen))).stdout
     assert said.count("wrote to") == 1
     one, two = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("one", "two"))
     assert (one["ranks"], two["ranks"]) == (1, 2)

@@ -184,11 +184,15 @@ def test_no_mesh_for_the_root_is_none_for_all(monkeypatch):
 
 
 def test_the_present_mesh_serves_all_where_none_can_be_made(monkeypatch):
+    tries = []
+
     def fail(*_):
+        tries.append(1)
         raise MeshError("mesh", "nothing", "a mesh", "Try again.")
 
     monkeypatch.setattr(mesh_adaptation, "remesh", fail)
-    assert [history.summary["remeshes"] for history in shared(2, end=0.02)] == [0, 0]
+    assert [history.summary["remeshes"] for history in shared(2)] == [0, 0]
+    assert tries
 
 
 def test_a_step_that_one_rank_rejects_is_tried_shorter_by_all(monkeypatch):
