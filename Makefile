@@ -5,7 +5,7 @@ BIN := .venv/bin
 
 PLUGINS := $(wildcard plugins/*)
 
-.PHONY: run test test-plugins install lint validate bench clean
+.PHONY: run test test-plugins test-dolfinx install lint validate bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -17,6 +17,11 @@ test: .venv/.installed-test
 
 test-plugins: .venv/.installed-plugins
 	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest) || exit 1; done
+
+# In Debian 13's packages, in a folder; see tools/dolfinx.
+test-dolfinx:
+	tools/dolfinx make
+	tools/dolfinx run python3 -m pytest tests/contract/test_fluid_backends.py tests/unit/test_dolfinx.py tests/mpi
 
 validate: .venv/.installed-test
 	$(BIN)/pytest -m validation
@@ -31,7 +36,7 @@ bench: .venv/.installed-bench
 	$(BIN)/python benchmarks/dry_spheres.py
 
 clean:
-	rm -rf .venv
+	rm -rf .venv .dolfinx
 
 # A stamp, since a venv that could not be finished leaves its python behind.
 .venv/.created:

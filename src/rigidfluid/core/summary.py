@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
 from rigidfluid.core.memory import peak_memory
+from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.records import LEDGER_COLUMNS
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.strength import chosen_strengths
@@ -48,7 +49,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "remeshes": simulation.remeshes,
         "wall_time": simulation.elapsed,
         "wall_time_per_stage": simulation.watch.seconds,
-        "peak_memory": peak_memory(),
+        "peak_memory": _of_all(system.backend.ranks, peak_memory()),
         **reynolds_numbers(simulation.scene, system, history),
         "smallest_gap": _finite(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
@@ -60,6 +61,12 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
 def _cells(mesh: Mesh) -> int:
     """Of the whole mesh."""
     return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
+
+
+def _of_all(ranks: Ranks, memory: int | None) -> int | None:
+    """The sum over the processes, where each knows its own [byte]."""
+    each = [part for part in ranks.gathered(memory) if part is not None]
+    return sum(each) if len(each) == ranks.size else None
 
 
 def _finite(value: float) -> float | None:
