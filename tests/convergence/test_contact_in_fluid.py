@@ -6,6 +6,9 @@ import pytest
 import rigidfluid
 from rigidfluid.core.scene import Scene
 
+UNCHANGED = {"size": 0.1, "size_body": 0.03, "quality": 0.01, "refinements": 0, "cells_per_gap": 1}
+"""A mesh that serves for the whole bounce."""
+
 
 def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
     return Scene.from_dict(
@@ -25,11 +28,20 @@ def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
     )
 
 
-@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
-def test_second_order_through_a_contact(stepping):
-    """Positions after the bounce; the mesh is the same, so differences are those of the steps."""
-    scenes = [bounce(step, contact={"stepping": stepping}) for step in (1e-3, 5e-4, 2.5e-4, 1.25e-4)]
-    heights = [rigidfluid.run(scene).bodies["y"][-1] for scene in scenes]
+@pytest.mark.parametrize(
+    ("stepping", "speed", "end", "longest"), [("substeps", 5.0, 0.032, 1e-3), ("implicit", 0.0, 0.036, 5e-4)]
+)
+def test_second_order_through_a_contact(stepping, speed, end, longest):
+    """Positions after the bounce; the mesh is the same, so differences are those of the steps.
+
+    A start at speed is a blow of its own, of which implicit steps are so exact that it would be all that is left.
+    """
+    heights = []
+    for step in longest / np.array([1.0, 2.0, 4.0, 8.0]):
+        scene = bounce(step, end, contact={"stepping": stepping}, velocity=[0.0, -speed]).to_dict()
+        history = rigidfluid.run(Scene.from_dict(scene | {"mesh": UNCHANGED}))
+        assert history.summary["remeshes"] == 0
+        heights.append(history.bodies["y"][-1])
     first, second, third = np.abs(np.diff(heights))
     assert np.log2(first / second) > 1.8
     assert np.log2(second / third) > 1.8
