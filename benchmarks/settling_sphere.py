@@ -1,0 +1,133 @@
+"""A sphere starts to settle in 3D: iterations of the Schur solver over cell size and step, backend `dolfinx`.
+
+python benchmarks/settling_sphere.py [--steps 20] [--page FILE]      also under mpirun
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigidfluid.core.memory import peak_memory
+from rigidfluid.core.scene import load_scene
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.threads import one_openblas_thread
+from rigidfluid.taylor_hood.stale_solver import StaleSolver
+
+SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"
+# (size, size_body, growth) of the mesh: 55,000, 160,000 and more than 300,000 unknowns.
+MESHES = ((1.2, 0.3, 0.2), (0.8, 0.16, 0.2), (0.62, 0.12, 0.2))
+STEPS = (0.1, 0.01, 0.001)
+"""Lengths of the step [s]."""
+FINEST = (MESHES[-1], 0.01)
+"""The case that takes all steps; the others take a third of them."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One case: iterations of each step's solution, and what the steps took."""
+
+    unknowns: int
+    step: float
+    iterations: list[int]
+    seconds: float
+    made: int
+    speed: float
+
+
+@contextmanager
+def counted(iterations: list[int]) -> Iterator[None]:
+    """Collects the iterations of every solution."""
+    solve = StaleSolver.solve
+
+    def counting(self, *arguments):  # type: ignore[no-untyped-def]
+        found = solve(self, *arguments)
+        iterations.append(found[1])
+        return found
+
+    StaleSolver.solve = counting  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        StaleSolver.solve = solve  # type: ignore[method-assign]
+
+
+def settle(mesh: tuple[float, float, float], step: float, steps: int) -> tuple[Row, int, bool]:
+    """The first steps of one case; also the memory of all processes and whether this one may print."""
+    sizes = zip(("size", "size_body", "growth"), mesh, strict=True)
+    settings = ["fluid.backend=dolfinx", f"time.step={step}", *(f"mesh.{key}={value}" for key, value in sizes)]
+    run = Simulation(load_scene(SCENE, settings), None, False)
+    iterations: list[int] = []
+    start = time.perf_counter()
+    with counted(iterations):
+        for _ in range(steps):
+            run._advance()
+    seconds = (time.perf_counter() - start) / steps
+    backend, ranks = run.system.backend, run.system.backend.ranks
+    unknowns = backend.unknowns(run.state.mesh, run.system.controlled)
+    speed = float(-run.state.twist.velocity[0, 1])
+    row = Row(unknowns, step, iterations, seconds, run.remeshes, speed)
+    return row, int(ranks.sum(peak_memory() or 0)), ranks.is_root
+
+
+PREAMBLE = """\
+# A sphere starts to settle
+
+Made on {date} by `{command}` on {cores} cores, {ranks}. The scene is `scenes/falling_sphere.toml`, at rest at first;
+backend `dolfinx`, `solver = "schur"`, relative residual 10⁻⁹. Iterations are FGMRES' for fluid and body together, with
+one velocity block and one Cahouet–Chabard block each.
+
+| unknowns | step [s] | steps | iterations: least, mean, most | seconds a step | speed reached [cm/s] |
+|---|---|---|---|---|---|
+"""
+
+
+def line(row: Row) -> str:
+    """Of the table."""
+    counts = row.iterations
+    least, mean, most = min(counts), sum(counts) / len(counts), max(counts)
+    return (
+        f"| {row.unknowns} | {row.step:g} | {len(counts)} | {least}, {mean:.1f}, {most} | {row.seconds:.2f} |"
+        f" {row.speed:.4g} |"
+    )
+
+
+def main() -> None:
+    """Read the arguments, measure, print, and write the page where asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--steps", type=int, default=20)
+    parser.add_argument("--page", type=Path, help="write a Markdown page here")
+    arguments = parser.parse_args()
+    rows, memory, speaks = [], 0, True
+    with one_openblas_thread():
+        for mesh in MESHES:
+            for step in STEPS:
+                steps = arguments.steps if (mesh, step) == FINEST else max(2, arguments.steps // 3)
+                row, memory, speaks = settle(mesh, step, steps)
+                rows.append(row)
+                if speaks:
+                    print(line(row), flush=True)
+    means = [sum(row.iterations) / len(row.iterations) for row in rows]
+    size = int(os.environ.get("OMPI_COMM_WORLD_SIZE", "1"))
+    text = PREAMBLE.format(
+        date=datetime.date.today(),
+        command=" ".join(["python benchmarks/settling_sphere.py", *sys.argv[1:]]),
+        cores=os.cpu_count(),
+        ranks="one process" if size == 1 else f"{size} processes of mpirun",
+    )
+    text += "\n".join(map(line, rows))
+    text += f"\n\nMean iterations differ by a factor of {max(means) / min(means):.2f} between all cases. Memory at its"
+    text += f" highest, of all processes: {memory / 2**30:.1f} GiB.\n"
+    if speaks and arguments.page:
+        arguments.page.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
