@@ -45,20 +45,24 @@ class _Board:
 
 
 def on_ranks(size, work):
-    """What ``work(ranks)`` gives on each of ``size`` ranks; where one fails, all end and its error is raised."""
-    board = _Board(size)
+    """What ``work(ranks)`` gives on each of ``size`` ranks; where one fails, all end and its error is raised.
+
+    The root works in the thread of the caller: libraries that mesh and factorise are at home there.
+    """
+    board, results, failures = _Board(size), [None] * size, []
 
     def one(rank):
         ranks = ThreadedRanks(rank, board)
         try:
-            return work(ranks)
-        except BaseException:
+            results[rank] = work(ranks)
+        except BaseException as failure:  # noqa: BLE001
+            failures.append(failure)
             ranks.abort()
-            raise
 
     with ThreadPoolExecutor(size) as pool:
-        jobs = [pool.submit(one, rank) for rank in range(size)]
-    failures = [failure for job in jobs if (failure := job.exception()) is not None]
+        for rank in range(1, size):
+            pool.submit(one, rank)
+        one(ROOT)
     if failures:
         raise min(failures, key=lambda failure: isinstance(failure, BrokenBarrierError))
-    return [job.result() for job in jobs]
+    return results
