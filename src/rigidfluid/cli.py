@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid import __version__
+from rigidfluid.core.launch import Launch
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
@@ -60,6 +62,9 @@ Refinement = Annotated[float, typer.Option(help="Vertices per length, relative t
 Steps = Annotated[int, typer.Option(help="Steps to run with: time.step over contact.substeps, half of it, …", min=1)]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
+LAUNCH = Launch.of()
+"""This process among those that share a run; the first one speaks for all."""
+
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 bench = typer.Typer(help="Measure on this machine what a paper measured on its own.")
 app.add_typer(bench, name="bench")
@@ -72,6 +77,12 @@ def main(context: typer.Context, version: Version = False) -> None:
         _print(f"rigidfluid {__version__}")
     elif context.invoked_subcommand is None:
         _print(context.get_help())
+    elif LAUNCH.size > 1 and context.invoked_subcommand != "run":
+        _complain(
+            f"Error: rigidfluid {context.invoked_subcommand}: found {LAUNCH.size} processes; allowed is one. "
+            "Start it without mpirun; only `rigidfluid run` can be shared."
+        )
+        raise typer.Exit(BAD_INPUT)
 
 
 @app.command()
@@ -84,7 +95,7 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
         loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
         with _progress_bar(loaded) as show:
-            history = simulate(loaded, folder, resume=resume, progress=show)
+            history = simulate(loaded, folder, resume=resume, progress=show, processes=LAUNCH.size)
         _print_end(history.summary, folder)
 
 
@@ -208,7 +219,10 @@ def schema() -> None:
 
 @contextmanager
 def _reported(on_interrupt: str = "") -> Iterator[None]:
-    """Turn an expected error into one paragraph on stderr and an exit code."""
+    """Turn an expected error into one paragraph on stderr and an exit code.
+
+    Expected errors are those of all processes. An interrupt or another error may be of one, and then ends the others.
+    """
     try:
         yield
     except RigidfluidError as error:
@@ -216,7 +230,13 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
     except KeyboardInterrupt:
         _complain(f"Interrupted. {on_interrupt}")
+        LAUNCH.end()
         raise typer.Exit(INTERRUPTED) from None
+    except Exception:
+        if LAUNCH.size > 1:
+            Console(stderr=True, soft_wrap=True).print(Text(traceback.format_exc()))
+            LAUNCH.end()
+        raise
 
 
 @contextmanager
@@ -234,7 +254,7 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         TextColumn("left"),
     )
     console = Console(stderr=True)
-    with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
+    with Bar(*columns, console=console, disable=LAUNCH.rank > 0 or not console.is_terminal) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
         yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
 
@@ -390,8 +410,10 @@ def _figure(value: Any) -> str:
 
 
 def _print(text: str) -> None:
-    Console().print(Text(text), soft_wrap=True)
+    if LAUNCH.rank == 0:
+        Console().print(Text(text), soft_wrap=True)
 
 
 def _complain(text: str) -> None:
-    Console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
+    if LAUNCH.rank == 0:
+        Console(stderr=True).print(Text(text, style="red"), soft_wrap=True)

@@ -8,6 +8,7 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.frames import distance_to_body
 from rigidfluid.core.mesh_quality import cell_volumes
+from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.topology import check_mesh
 from rigidfluid.core.types import Pose, Wall
 
@@ -38,6 +39,20 @@ def box_walls(lower, upper, bodies):
         normal[face // 2] = 1 - 2 * (face % 2)
         walls.append(Wall(bodies + face, f"face {face}", np.array((lower, upper)[face % 2], dtype=float), normal))
     return walls
+
+
+def random_ellipsoids(dimension, seed):
+    """Ellipsoids of all shapes and tilts in the cells of a grid, their mesh, and the walls of the box around them."""
+    rng = np.random.default_rng(seed)
+    cells = np.stack(np.meshgrid(*[np.arange(2 if dimension == 3 else 3)] * dimension), axis=-1).reshape(-1, dimension)
+    bodies = [ellipsoid(*rng.uniform(0.15, 0.45, dimension)) for _ in cells]
+    position = cells + 0.5 + rng.uniform(-0.04, 0.04, cells.shape)
+    turn = rng.uniform(0, 3, (len(cells), 1)) if dimension == 2 else rng.normal(size=(len(cells), 4))
+    pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
+    lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
+    size = 0.04 if dimension == 2 else 0.2
+    mesh = generate_mesh(bodies, pose, lower, upper, 0.3, size, 0.5)
+    return bodies, box_walls(lower, upper, len(bodies)), pose, mesh
 
 
 def edges_of(simplices):

@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from marching_meshes import naive_distances, stars
-from mesh_tools import ball, box_walls, ellipsoid, upright
+from mesh_tools import ball, box_walls, random_ellipsoids, upright
 from numba import njit
 
 from rigidfluid.core.meshing import generate_mesh
 from rigidfluid.core.topology import boundary_facets
-from rigidfluid.core.types import Contacts, Mesh, Pose
+from rigidfluid.core.types import Contacts, Mesh
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError
@@ -24,20 +24,6 @@ REACH = 0.25
 
 def narrow_band(bodies, walls, **options):
     return NarrowBandDetector(NarrowBandOptions(**options), bodies, walls)
-
-
-def random_ellipsoids(dimension, seed):
-    """Ellipsoids of all shapes and tilts in the cells of a grid, their mesh, and the walls of the box around them."""
-    rng = np.random.default_rng(seed)
-    cells = np.stack(np.meshgrid(*[np.arange(2 if dimension == 3 else 3)] * dimension), axis=-1).reshape(-1, dimension)
-    bodies = [ellipsoid(*rng.uniform(0.15, 0.45, dimension)) for _ in cells]
-    position = cells + 0.5 + rng.uniform(-0.04, 0.04, cells.shape)
-    turn = rng.uniform(0, 3, (len(cells), 1)) if dimension == 2 else rng.normal(size=(len(cells), 4))
-    pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
-    lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
-    size = 0.04 if dimension == 2 else 0.2
-    mesh = generate_mesh(bodies, pose, lower, upper, 0.3, size, 0.5)
-    return bodies, box_walls(lower, upper, len(bodies)), pose, mesh
 
 
 def naive_gap(mesh, a, b):

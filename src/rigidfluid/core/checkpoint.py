@@ -1,4 +1,7 @@
-"""A state on disk: every array of the record tree, by its path, in one HDF5 file that is replaced as a whole."""
+"""A state on disk: every array of the record tree, by its path, in one HDF5 file that is replaced as a whole.
+
+Each rank has a file of its own. The ranks themselves are not stored: who reads a part of a mesh names them.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +16,15 @@ from typing import Any
 import h5py
 import numpy as np
 
+from rigidfluid.core.ranks import ALONE, Ranks
 from rigidfluid.core.state import State
 from rigidfluid.errors import OutputError
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What a run needs to go on: its ``state``, the ``scene`` as JSON, the ``outputs`` written so far with their
-    ``times``, the ``lengths`` of the tables in bytes, and what the run has cost."""
+    """What a rank of a run needs to go on: its ``state``, the ``scene`` as JSON, the ``times`` of its outputs, the
+    ``lengths`` of the tables in bytes, what the run has cost, and how many ``ranks`` have files like this."""
 
     state: State
     scene: str
@@ -30,33 +34,41 @@ class Checkpoint:
     rejected: int
     remeshes: int
     elapsed: float
+    ranks: int
 
 
-def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write beside ``path`` first, so that a run killed in the middle leaves the checkpoint before.
+def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Write beside ``path``, so that a run killed in the middle leaves the checkpoint before.
 
     The file is made in memory: on a full disk HDF5's own writing does not fail, it crashes.
     """
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
         _store(file, checkpoint)
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(image.getbuffer())
-    part.replace(path)
+    _staged(path).write_bytes(image.getbuffer())
 
 
-def read_checkpoint(path: Path) -> Checkpoint:
+def adopt_checkpoint(path: Path) -> None:
+    """Put what was staged in the place of the checkpoint before."""
+    _staged(path).replace(path)
+
+
+def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
     """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
     if not path.is_file():
         raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
     try:
         with h5py.File(path, "r") as file:
-            checkpoint: Checkpoint = _load(file, Checkpoint)
+            checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
     except (OSError, AttributeError, TypeError) as error:
         raise OutputError(
             str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
         ) from error
     return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def _staged(path: Path) -> Path:
+    return path.with_name(path.name + ".part")
 
 
 def _with_shared_cells(state: State) -> State:
@@ -72,25 +84,27 @@ def _store(group: h5py.Group, record: Any) -> None:
         value = record[name] if isinstance(record, Mapping) else getattr(record, name)
         if is_dataclass(value) or isinstance(value, Mapping):
             _store(group.create_group(name), value)
-        elif value is not None:
+        elif value is not None and not isinstance(value, Ranks):
             group.create_dataset(name, data=value)
 
 
-def _load(group: h5py.Group, kind: Any) -> Any:
+def _load(group: h5py.Group, kind: Any, ranks: Ranks) -> Any:
     hints = typing.get_type_hints(kind)
-    return kind(**{name: _value(group.get(name), hint) for name, hint in hints.items()})
+    return kind(**{name: _value(group.get(name), hint, ranks) for name, hint in hints.items()})
 
 
-def _value(stored: Any, hint: Any) -> Any:
+def _value(stored: Any, hint: Any, ranks: Ranks) -> Any:
+    if hint is Ranks:
+        return ranks
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         if stored is None:
             return None
         hint = next(option for option in typing.get_args(hint) if option is not type(None))
     if is_dataclass(hint):
-        return _load(stored, hint)
+        return _load(stored, hint, ranks)
     if typing.get_origin(hint) is not None and issubclass(typing.get_origin(hint), Mapping):
         inner = typing.get_args(hint)[1]
-        return {name: _value(item, inner) for name, item in stored.items()}
+        return {name: _value(item, inner, ranks) for name, item in stored.items()}
     if hint is str:
         return stored.asstr()[()]
     if typing.get_origin(hint) is tuple:

@@ -21,6 +21,7 @@ def run(
     *,
     resume: bool = False,
     progress: Callable[[Progress], None] | None = None,
+    processes: int | None = None,
 ) -> History:
     """Run a scene to its end.
 
@@ -34,11 +35,14 @@ def run(
         Go on from the checkpoint in ``out``; the result equals that of an uninterrupted run to the last bit.
     progress : callable or None
         Called after each accepted step.
+    processes : int or None
+        How many processes were started to share the run, each calling this; a backend that cannot share it among so
+        many is refused. None takes the backend's word.
 
     Returns
     -------
     History
-        Tables and summary, the same that ``out`` holds.
+        Tables and summary, the same that ``out`` holds; also where the run is shared, on all ranks.
 
     Raises
     ------
@@ -50,12 +54,13 @@ def run(
         Where even the shortest step fails; what was computed stays, and can be resumed.
     """
     with one_openblas_thread():
-        simulation = Simulation(scene, None if out is None else Path(out), resume)
+        simulation = Simulation(scene, None if out is None else Path(out), resume, processes)
         try:
             simulation.go(progress)
         except (RigidfluidError, KeyboardInterrupt) as error:
-            with suppress(OutputError):  # a full disk has been reported once
-                simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+            if simulation.alone or isinstance(error, RigidfluidError):  # an interrupt need not reach all ranks
+                with suppress(OutputError):  # a full disk has been reported once
+                    simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
             raise
         simulation.finish(status="complete")
     return simulation.history

@@ -16,8 +16,10 @@ from rigidfluid.core.clock import Clock
 from rigidfluid.core.contact_path import BodiesPath, answered, follow
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
+from rigidfluid.core.interfaces import FluidBackend
 from rigidfluid.core.mesh_adaptation import Mover, reference_of
 from rigidfluid.core.proximity import least_gaps, surroundings, travel
+from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
@@ -29,7 +31,7 @@ from rigidfluid.core.system import System, build_system
 from rigidfluid.core.types import Pose
 from rigidfluid.core.wrenches import nothing
 from rigidfluid.core.writer import CHECKPOINT, Writer, earlier_run
-from rigidfluid.errors import OutputError, StepError, StepRejected
+from rigidfluid.errors import OutputError, SceneError, StepError, StepRejected
 
 MOST_CORRECTIONS = 3
 """A step with a blow is tried so many times to learn how much fluid moves with the body."""
@@ -60,12 +62,16 @@ class Simulation:
         Folder for the results, or None.
     resume : bool
         Whether to go on from the checkpoint there.
+    processes : int or None
+        How many processes were started to share the run; None if the backend's own ranks are those.
     """
 
-    def __init__(self, scene: Scene, out: Path | None, resume: bool) -> None:
-        earlier = _earlier(scene, out) if resume else None
+    def __init__(self, scene: Scene, out: Path | None, resume: bool, processes: int | None = None) -> None:
         self.scene = scene
         self.system = build_system(scene)
+        self._ranks = self.system.backend.ranks
+        _refuse_lone_ranks(self.system.backend, processes)
+        earlier = _earlier(scene, out, self._ranks) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, self.system)
         self.mover = Mover(self.system, sizes, scene.mesh.quality if scene.mesh else 0.0)
@@ -78,6 +84,11 @@ class Simulation:
         else:
             assert out is not None
             self._take_up(out, earlier)
+
+    @property
+    def alone(self) -> bool:
+        """Whether no other process shares the run."""
+        return self._ranks.size == 1
 
     @property
     def elapsed(self) -> float:
@@ -107,9 +118,9 @@ class Simulation:
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover)
-        if out is not None and (out / CHECKPOINT).exists():
+        if self._ranks.shared(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
-        self._writer = None if out is None else Writer(out, self.scene.dimension, None)
+        self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
         self._record()
         self._output()
 
@@ -124,7 +135,7 @@ class Simulation:
         self._elapsed_before, self.rejected, self.remeshes = earlier.elapsed, earlier.rejected, earlier.remeshes
         self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
-        self._writer = Writer(out, self.scene.dimension, earlier)
+        self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
         self.history.extend(self._writer.records())
 
     def _advance(self) -> None:
@@ -224,6 +235,7 @@ class Simulation:
             rejected=self.rejected,
             remeshes=self.remeshes,
             elapsed=self.elapsed,
+            ranks=self._ranks.size,
         )
 
     def _stuck(self, rejection: StepRejected) -> StepError:
@@ -271,11 +283,21 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
     return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements)
 
 
-def _earlier(scene: Scene, out: Path | None) -> Checkpoint:
+def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
+    if processes not in (None, backend.ranks.size):
+        raise SceneError(
+            "fluid.backend",
+            f"{backend.name!r}, which runs in {backend.ranks.size}, and {processes} processes",
+            "as many processes as the backend shares a run among",
+            "Start one process, without mpirun, or choose a backend for several, such as 'dolfinx'.",
+        )
+
+
+def _earlier(scene: Scene, out: Path | None, ranks: Ranks) -> Checkpoint:
     """The checkpoint to resume; its scene must be this one, but for the end of time."""
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
-    checkpoint = earlier_run(out)
+    checkpoint = earlier_run(out, ranks)
     stored, given = json.loads(checkpoint.scene), scene.to_dict()
     stored["time"]["end"] = given["time"]["end"]
     if stored != given:

@@ -39,7 +39,7 @@ def attempt(
         contacts, gaps = surroundings(system, pose, mesh)
         nearest = int(np.argmin(gaps))
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
-    with watch("advance"):
+    with watch("advance"), system.backend.ranks.together():
         step = _step(system, state, time, size, path, mesh)
         advance = system.backend.advance(state.fluid, state.mesh, step)
     return State(

@@ -15,14 +15,14 @@ from rigidfluid.core.records import LEDGER_COLUMNS
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.strength import chosen_strengths
 from rigidfluid.core.system import System
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.types import FloatArray, Mesh
 
 if TYPE_CHECKING:
     from rigidfluid.core.simulation import Simulation
 
 _PACKAGES = ("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py")
 FIGURES = (
-    *("time", "unknowns", "cells", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
+    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
@@ -41,7 +41,8 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
         "unknowns": system.backend.unknowns(state.mesh, system.controlled),
-        "cells": 0 if state.mesh is None else len(state.mesh.cells),
+        "cells": 0 if state.mesh is None else _cells(state.mesh),
+        "ranks": system.backend.ranks.size,
         "steps": state.count,
         "rejected_steps": simulation.rejected,
         "remeshes": simulation.remeshes,
@@ -54,6 +55,11 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "energy": energy_balance(state.ledger),
         "auto_epsilon": chosen_strengths(system),
     }
+
+
+def _cells(mesh: Mesh) -> int:
+    """Of the whole mesh."""
+    return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
 
 
 def _finite(value: float) -> float | None:

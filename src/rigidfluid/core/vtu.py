@@ -1,4 +1,7 @@
-"""Fields for ParaView: one VTU file per output time on the mesh of that time, and a PVD file that lists them."""
+"""Fields for ParaView: one VTU file per output time on the mesh of that time, and a PVD file that lists them.
+
+Where ranks share the mesh, each writes a VTU file of its cells, and a PVTU file lists those of one time.
+"""
 
 from __future__ import annotations
 
@@ -42,8 +45,24 @@ def write_vtu(path: Path, fields: Fields) -> None:
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
+def write_pvtu(path: Path, pieces: Sequence[str]) -> None:
+    """List the VTU files of one time, their names relative to this one's folder."""
+    root = ET.Element(
+        "VTKFile", type="PUnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
+    )
+    grid = ET.SubElement(root, "PUnstructuredGrid", GhostLevel="0")
+    points = ET.SubElement(grid, "PPoints")
+    ET.SubElement(points, "PDataArray", type="Float64", Name="points", NumberOfComponents="3")
+    data = ET.SubElement(grid, "PPointData", Vectors="velocity", Scalars="pressure")
+    ET.SubElement(data, "PDataArray", type="Float32", Name="velocity", NumberOfComponents="3")
+    ET.SubElement(data, "PDataArray", type="Float32", Name="pressure")
+    for piece in pieces:
+        ET.SubElement(grid, "Piece", Source=piece)
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
 def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
-    """List VTU files with their times; ParaView opens them as one series, the mesh changing in time."""
+    """List VTU or PVTU files with their times; ParaView opens them as one series, the mesh changing in time."""
     root = ET.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
     collection = ET.SubElement(root, "Collection")
     for time, file in zip(times, files, strict=True):
@@ -54,11 +73,17 @@ def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
 def read_vtu(path: Path) -> Fields:
     """Read back what `write_vtu` has written; velocity and pressure are as precise as on disk, 7 digits.
 
+    The pieces that a PVTU file lists become one mesh.
+
     Raises
     ------
     OutputError
         Where the file is missing or is not of that kind.
     """
+    if path.suffix == ".pvtu":
+        with _reading(path):
+            pieces = [path.parent / piece.attrib["Source"] for piece in ET.parse(path).iter("Piece")]
+        return _joined([read_vtu(piece) for piece in pieces])
     with _reading(path):
         arrays = {array.get("Name"): _values(array) for array in ET.parse(path).iter("DataArray")}
         nodes, cells = len(arrays["points"]), len(arrays["types"])
@@ -83,6 +108,25 @@ def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
     with _reading(path):
         sets = list(ET.parse(path).iter("DataSet"))
         return tuple((float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in sets)
+
+
+def _joined(pieces: Sequence[Fields]) -> Fields:
+    """One mesh, with a single node where several pieces have the same to rounding."""
+    from scipy.spatial import cKDTree
+
+    points = np.concatenate([piece.points for piece in pieces])
+    first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
+    cells = np.concatenate([piece.cells + start for piece, start in zip(pieces, first[:-1], strict=True)])
+    same = cKDTree(points).query_pairs(1e-9 * float(np.ptp(points)), output_type="ndarray")
+    stands_for = np.arange(len(points))
+    np.minimum.at(stands_for, same[:, 1], same[:, 0])
+    kept, number = np.unique(stands_for, return_inverse=True)
+    return Fields(
+        points=points[kept],
+        cells=number[cells],
+        velocity=np.concatenate([piece.velocity for piece in pieces])[kept],
+        pressure=np.concatenate([piece.pressure for piece in pieces])[kept],
+    )
 
 
 @contextmanager

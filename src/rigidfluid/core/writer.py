@@ -1,4 +1,7 @@
-"""Puts a run on disk as it goes: tables each step, fields and a checkpoint each output, the summary at the end."""
+"""Puts a run on disk as it goes: tables each step, fields and a checkpoint each output, the summary at the end.
+
+Of a run that ranks share each writes its part of the fields and its checkpoint, and the root all that is there once.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +9,23 @@ import json
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
+from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, stage_checkpoint
+from rigidfluid.core.ranks import ROOT, Ranks
 from rigidfluid.core.records import Records, columns
 from rigidfluid.core.tables import Table, read_rows
 from rigidfluid.core.types import Fields
-from rigidfluid.core.vtu import write_pvd, write_vtu
+from rigidfluid.core.vtu import write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
 CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
 
 
 class Writer:
-    """The files of one run.
+    """The files of one run; every method is called by all ranks together.
 
     Parameters
     ----------
@@ -30,67 +35,123 @@ class Writer:
         2 or 3.
     resumed : Checkpoint or None
         Where an earlier run is taken up; None starts all files anew.
+    ranks : Ranks
+        Who shares the run.
 
     Raises
     ------
     OutputError
-        From every method, where the disk refuses.
+        From every method, where the disk refuses; on all ranks if it does on one.
     """
 
-    def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None) -> None:
-        self.out = out
-        with writing(out):
-            (out / FIELDS).mkdir(parents=True, exist_ok=True)
-            if resumed is None:
-                _clear(out)
+    def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None, ranks: Ranks) -> None:
+        self.out, self._ranks = out, ranks
+        self._tables: dict[str, Table] = {}
+        with self._writing_once(out) as is_mine:
+            if is_mine:
+                (out / FIELDS).mkdir(parents=True, exist_ok=True)
+                if resumed is None:
+                    _clear(out)
         lengths = {} if resumed is None else resumed.lengths
-        self._tables = {}
         for name, names in columns(dimension).items():
-            with writing(out / f"{name}.csv"):
-                self._tables[name] = Table(out / f"{name}.csv", names, lengths.get(name))
+            with self._writing_once(out / f"{name}.csv") as is_mine:
+                if is_mine:
+                    self._tables[name] = Table(out / f"{name}.csv", names, lengths.get(name))
 
     @property
     def lengths(self) -> dict[str, int]:
-        """Bytes in each table."""
+        """Bytes in each table; the root has them all."""
         return {name: table.length for name, table in self._tables.items()}
 
     def records(self) -> Records:
         """The rows that are on disk."""
-        return {name: read_rows(self.out / f"{name}.csv") for name in self._tables}
+        return self._ranks.shared({name: read_rows(self.out / f"{name}.csv") for name in self._tables})
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
-        for name, rows in records.items():
-            with writing(self.out / f"{name}.csv"):
-                self._tables[name].extend(rows)
+        with self._ranks.together():
+            for name, table in self._tables.items():
+                with writing(self.out / f"{name}.csv"):
+                    table.extend(records[name])
 
     def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
         """Write the fields of the last of ``times``, and the series of all of them."""
-        names = [f"{FIELDS}/{i:06d}.vtu" for i in range(len(times))]
-        with writing(self.out / names[-1]):
-            write_vtu(self.out / names[-1], fields)
-            write_pvd(self.out / SERIES, times, names)
+        if self._ranks.size == 1:
+            names, pieces = [f"{FIELDS}/{i:06d}.vtu" for i in range(len(times))], []
+            own = names[-1]
+        else:
+            names = [f"{FIELDS}/{i:06d}.pvtu" for i in range(len(times))]
+            pieces = [f"{len(times) - 1:06d}.{rank}.vtu" for rank in range(self._ranks.size)]
+            own = f"{FIELDS}/{pieces[self._ranks.rank]}"
+        with self._ranks.together(), writing(self.out / own):
+            write_vtu(self.out / own, fields)
+        with self._writing_once(self.out / names[-1]) as is_mine:
+            if is_mine and pieces:
+                write_pvtu(self.out / names[-1], pieces)
+            if is_mine:
+                write_pvd(self.out / SERIES, times, names)
 
     def checkpoint(self, checkpoint: Checkpoint) -> None:
-        """Replace the checkpoint."""
-        with writing(self.out / CHECKPOINT):
-            write_checkpoint(self.out / CHECKPOINT, checkpoint)
+        """Replace the checkpoint, no rank before all have written theirs."""
+        path = self.out / checkpoint_name(self._ranks.rank)
+        for work in (partial(stage_checkpoint, path, checkpoint), partial(adopt_checkpoint, path)):
+            with self._ranks.together(), writing(path):
+                work()
 
     def summary(self, summary: dict[str, Any]) -> None:
         """Write the summary."""
-        with writing(self.out / SUMMARY):
-            (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        with self._writing_once(self.out / SUMMARY) as is_mine:
+            if is_mine:
+                (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
 
     @property
     def files(self) -> list[str]:
         """The files of a finished run; those with fields are listed in the series."""
-        names = [*(f"{name}.csv" for name in self._tables), SERIES, CHECKPOINT]
-        return [str(self.out / name) for name in names if (self.out / name).exists()] + [str(self.out / SUMMARY)]
+        checkpoints = [checkpoint_name(rank) for rank in range(self._ranks.size)]
+        names = [*(f"{name}.csv" for name in self._tables), SERIES, *checkpoints]
+        present = [str(self.out / name) for name in names if (self.out / name).exists()]
+        return self._ranks.shared([*present, str(self.out / SUMMARY)])
+
+    @contextmanager
+    def _writing_once(self, path: Path) -> Iterator[bool]:
+        """Whether this rank is to write a file that is there once; its failure is everyone's."""
+        with self._ranks.together(), writing(path):
+            yield self._ranks.is_root
 
 
-def earlier_run(out: Path) -> Checkpoint:
-    """The checkpoint of the run in a folder; raises OutputError where there is none."""
-    return read_checkpoint(out / CHECKPOINT)
+def checkpoint_name(rank: int) -> str:
+    """The file of one rank's checkpoint."""
+    return CHECKPOINT if rank == ROOT else f"state.{rank}.h5"
+
+
+def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
+    """This rank's checkpoint of the run in a folder; called by all ranks together.
+
+    Raises
+    ------
+    OutputError
+        Where there is none, it was written by another number of ranks, or the ranks' files are not of one time.
+    """
+    for my_turn in (ranks.is_root, not ranks.is_root):
+        with ranks.together():
+            if my_turn:
+                checkpoint = read_checkpoint(out / checkpoint_name(ranks.rank), ranks)
+                _refuse_other_ranks(out, checkpoint.ranks, ranks.size)
+    ticks = ranks.gathered(checkpoint.state.tick)
+    if min(ticks) < max(ticks):
+        found = f"checkpoints of different times, {min(ticks)} and {max(ticks)} shortest steps after the start"
+        raise OutputError(str(out), found, "one time in the files of all processes", "Run without --resume.")
+    return checkpoint
+
+
+def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
+    if found != now:
+        raise OutputError(
+            str(out),
+            f"a run of {found} {'process' if found == 1 else 'processes'}",
+            f"a run of {now}, as many as there are now",
+            f"Resume it with {found}, or run without --resume.",
+        )
 
 
 @contextmanager
@@ -109,9 +170,9 @@ def writing(path: Path) -> Iterator[None]:
 
 def _clear(out: Path) -> None:
     """Remove an earlier run's files, so that two runs never mix."""
-    for name in (CHECKPOINT, SUMMARY, SERIES):
+    for name in (SUMMARY, SERIES):
         (out / name).unlink(missing_ok=True)
-    for file in (out / FIELDS).glob("*.vtu"):
+    for file in (*out.glob("state*.h5"), *(out / FIELDS).glob("*vtu")):
         file.unlink()
     (out / "report.html").unlink(missing_ok=True)
     shutil.rmtree(out / "report", ignore_errors=True)

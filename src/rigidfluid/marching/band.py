@@ -1,4 +1,4 @@
-"""Which vertices belong to a band around a surface. Arrays in, an answer out."""
+"""Which vertices belong to a band around a surface. Arrays in, answers out."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+import numpy as np
 from numba import njit
 
 
@@ -16,16 +17,33 @@ def in_band(points, neighbours, vertex, distance, width, slack):
     if distance <= width or slack == 0.0:
         return distance <= width
     short = (distance - width) / slack
+    if len(neighbours.elsewhere) > 0 and neighbours.elsewhere[vertex] >= short * short:
+        return True
     for k in range(neighbours.start[vertex], neighbours.start[vertex + 1]):
-        square = 0.0
-        for i in range(points.shape[1]):
-            square += (points[neighbours.members[k], i] - points[vertex, i]) ** 2
-        if square >= short * short:
+        if _square(points, vertex, neighbours.members[k]) >= short * short:
             return True
     return False
+
+
+@njit(cache=True, nogil=True)
+def longest_edges(points, neighbours, vertices):
+    """Square of the longest edge at each of some vertices, (v,)."""
+    longest = np.zeros(len(vertices))
+    for row in range(len(vertices)):
+        for k in range(neighbours.start[vertices[row]], neighbours.start[vertices[row] + 1]):
+            longest[row] = max(longest[row], _square(points, vertices[row], neighbours.members[k]))
+    return longest
 
 
 @njit(cache=True, nogil=True, forceinline=True)
 def square_in_band(points, neighbours, vertex, square, width, slack):
     """`in_band` from the squared distance, which mostly needs no root."""
     return square <= width * width or (slack > 0.0 and in_band(points, neighbours, vertex, sqrt(square), width, slack))
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _square(points, a, b):
+    total = 0.0
+    for i in range(points.shape[1]):
+        total += (points[b, i] - points[a, i]) ** 2
+    return total

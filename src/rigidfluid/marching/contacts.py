@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import inf, sqrt
 from typing import NamedTuple
@@ -13,12 +13,14 @@ import numpy as np
 from rigidfluid.core.broad_phase import near_pairs, near_walls
 from rigidfluid.core.interfaces import Body
 from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, reset
-from rigidfluid.marching.field import Accuracy, march_from
+from rigidfluid.marching.field import Accuracy, Wave, march_from
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
+from rigidfluid.marching.shared import Gaps, SharedMesh
 from rigidfluid.marching.topology import Numbers, Topology
 from rigidfluid.marching.tree import Tree
-from rigidfluid.marching.workers import Workers
+from rigidfluid.marching.workers import Workers, same_topology
 from rigidfluid.marching.workspace import Workspace
 
 ROUNDED_UP = 1.0 + 1e-9
@@ -29,12 +31,22 @@ TO_CORNER = {2: 0.5, 3: 1.0 / sqrt(3.0)}
 
 
 class _Scope(NamedTuple):
-    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
+    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted.
+
+    ``march(surfaces, width, slack, work=...)`` leaves a field in a workspace; ``facets_of(surface)`` are those whose
+    gaps are measured here.
+    """
 
     topology: Topology
     points: FloatArray
     position: FloatArray
     reach: float
+    march: Callable[..., Wave]
+    facets_of: Callable[[int], Numbers]
+
+
+_Near = tuple[int, list[int]]
+"""A body, and the surfaces that may be near it."""
 
 
 class _Touch(NamedTuple):
@@ -88,18 +100,46 @@ class ContactFinder:
         self._several = several
         self._whole_domain = whole_domain
         self._workers = Workers(threads)
+        self._shared: SharedMesh | None = None
 
     def find(self, pose: Pose, mesh: Mesh, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap)."""
         near = self._near(pose.position, reach)
         touches: list[_Touch] = []
+        if mesh.part is not None:
+            self._refuse_first_order(mesh.ranks.size)
         if near:
-            topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
-            scope = _Scope(topology, points, pose.position, reach)
-            touches = self._workers.map(partial(self._touches_of, scope), near)
+            search = self._in_the_whole if mesh.part is None else self._in_parts
+            touches = search(pose.position, mesh, reach, near)
         return self._contacts(sorted(touches, key=lambda touch: touch[:3]), mesh.points.shape[1])
 
-    def _near(self, position: FloatArray, reach: float) -> list[tuple[int, list[int]]]:
+    def _in_the_whole(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> list[_Touch]:
+        topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
+        march = partial(march_from, topology, points, accuracy=self._accuracy)
+        scope = _Scope(topology, points, position, reach, march, topology.facets_of)
+        return self._workers.map(partial(self._touches_of, scope), near)
+
+    def _in_parts(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> list[_Touch]:
+        """As in the whole; each rank measures the facets of its part, and all judge what all have found."""
+        if self._shared is None or not same_topology(mesh, self._shared.mesh):
+            self._shared = SharedMesh(mesh)
+        shared = self._shared
+        points, work = shared.points(mesh), shared.part.workspace
+        march = partial(shared.march, points, shared.neighbours(points))
+        scope = _Scope(shared.part.topology, points, position, reach, march, shared.facets_of)
+        found = [gaps for each in near for gaps in self._gaps_of(scope, work, each)]
+        return [touch for gaps in shared.together(found) for touch in self._touches(scope, gaps)]
+
+    def _refuse_first_order(self, ranks: int) -> None:
+        if self._accuracy != "exact":
+            raise SceneError(
+                "contact.accuracy",
+                f"{self._accuracy!r} with {ranks} processes",
+                "'exact' where several processes share the mesh: the other's values depend on the order of the whole",
+                "Leave contact.accuracy out, or start one process.",
+            )
+
+    def _near(self, position: FloatArray, reach: float) -> list[_Near]:
         """Bodies, each with the surfaces whose bounding volumes are in reach; a pair stands with its first body."""
         surfaces: dict[int, list[int]] = defaultdict(list)
         for a, b in zip(*near_pairs(position, self._bounds, reach), strict=True):
@@ -108,9 +148,12 @@ class ContactFinder:
             surfaces[body].append(wall.surface)
         return sorted(surfaces.items())
 
-    def _touches_of(self, scope: _Scope, work: Workspace, near: tuple[int, list[int]]) -> list[_Touch]:
+    def _touches_of(self, scope: _Scope, work: Workspace, near: _Near) -> list[_Touch]:
+        return [touch for gaps in self._gaps_of(scope, work, near) for touch in self._touches(scope, gaps)]
+
+    def _gaps_of(self, scope: _Scope, work: Workspace, near: _Near) -> list[Gaps]:
         body, others = near
-        topology, points, position, reach = scope
+        topology, points, position, reach = scope[:4]
         ball = position[body], self._bounds[body] * ROUNDED_UP
         facets = topology.surfaces.facets
         others = [
@@ -118,29 +161,32 @@ class ContactFinder:
         ]
         if not others:
             return []
-        width = inf if self._whole_domain else reach
-        wave = march_from(topology, points, [body], width, TO_CORNER[points.shape[1]], self._accuracy, work)
+        band = inf if self._whole_domain else reach, TO_CORNER[points.shape[1]]
+        wave = scope.march([body], *band, work=work)
         if self._accuracy != "exact":
             measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
-        touches = [touch for other in others for touch in self._between(scope, work, wave.tree, ball, body, other)]
+        gaps = [self._between(scope, work, wave.tree, ball, body, other) for other in others]
         reset(work, wave.touched, wave.beyond)
-        return touches
+        return gaps
 
     def _between(
         self, scope: _Scope, work: Workspace, tree: Tree, ball: tuple[FloatArray, float], body: int, other: int
-    ) -> list[_Touch]:
-        topology, points, _, reach = scope
-        chosen = topology.facets_of(other)
+    ) -> Gaps:
+        topology, points, reach = scope.topology, scope.points, scope.reach
+        chosen = scope.facets_of(other)
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
         wanted = topology.seeds([body]).wanted
         several = self._several
         facet_gaps(points, topology.surfaces, wanted, tree, *ball, chosen, reach, several, work, gap, partner)
-        facets = topology.surfaces.facets
+        return Gaps(body, other, chosen, gap, partner)
+
+    def _touches(self, scope: _Scope, gaps: Gaps) -> list[_Touch]:
+        points, facets = scope.points, scope.topology.surfaces.facets
         touches = []
-        for row in self._best_rows(facets, chosen, gap):
+        for row in self._best_rows(facets, gaps.facet, gaps.gap):
             on_body, on_other = np.empty((2, points.shape[1]))
-            nearest_points(points, facets, partner[row], chosen[row], on_body, on_other)
-            touches.append(_Touch(body, other, float(gap[row]), on_body, on_other))
+            nearest_points(points, facets, gaps.partner[row], gaps.facet[row], on_body, on_other)
+            touches.append(_Touch(gaps.body, gaps.other, float(gaps.gap[row]), on_body, on_other))
         return touches
 
     def _best_rows(self, facets: Numbers, chosen: Numbers, gap: FloatArray) -> list[int]:

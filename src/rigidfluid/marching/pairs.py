@@ -33,6 +33,8 @@ def facet_gaps(points, surfaces, wanted, tree, centre, radius, chosen, reach, al
     ``partner`` (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that
     its distance to the ball, or its corners' distances less its edges, show to be too far.
     """
+    if len(chosen) == 0:
+        return
     bound = gap
     first, nearest_corner = 0, np.inf
     for row in range(len(chosen)):

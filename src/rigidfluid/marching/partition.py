@@ -1,4 +1,4 @@
-"""One distance field over a mesh in parts, each with its own workspace: for threads here, for processes elsewhere.
+"""One distance field over a mesh in parts, each with its own workspace: for threads here, for ranks in `shared`.
 
 Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
 both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from
@@ -15,10 +15,10 @@ from threading import Barrier, BrokenBarrierError, Lock
 
 import numpy as np
 
-from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.exact import accept, march, reset, seed
-from rigidfluid.marching.field import DistanceField
-from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.field import DistanceField, Wave
+from rigidfluid.marching.topology import Neighbours, Numbers, Topology
 from rigidfluid.marching.workspace import KNOWN, Workspace, new_workspace
 
 NOT_REACHED = np.int32(-1)
@@ -60,8 +60,42 @@ def split(mesh: Mesh, owner: IntArray) -> list[Part]:
     holders = np.zeros(len(mesh.points), dtype=np.int64)
     for cells in groups:
         holders[np.unique(cells)] += 1
-    across = Topology.of(mesh).surfaces.across.astype(np.int64)
-    return [_part(mesh, cells, holders > 1, across) for cells in groups]
+    boundary = mesh.facets, mesh.markers, Topology.of(mesh).surfaces.across.astype(np.int64)
+    return [part_of(cells, *boundary, np.flatnonzero(holders > 1)) for cells in groups]
+
+
+def part_of(cells: IntArray, facets: IntArray, markers: IntArray, across: IntArray, shared: IntArray) -> Part:
+    """A part with some cells and the whole boundary; all is given in numbers of the whole mesh.
+
+    Parameters
+    ----------
+    cells : (M, d+1) array
+        The part's own.
+    facets : (F, d) array
+        All of the boundary.
+    markers : (F,) array
+        Their surfaces.
+    across : (F,) array
+        The vertex of each facet's cell that is not on the facet.
+    shared : (s,) array
+        Vertices that several parts have; those of other parts may be among them.
+
+    Returns
+    -------
+    Part
+        The vertices of its cells first, in ascending order. A vertex of the boundary that is in no cell of the part is
+        just a point.
+    """
+    inside = np.unique(cells)
+    vertices = np.concatenate([inside, np.setdiff1d(np.append(facets, across), inside)])
+    order = np.argsort(vertices)
+
+    def own(numbers: IntArray) -> IntArray:
+        return order[np.searchsorted(vertices, numbers, sorter=order)]
+
+    topology = Topology(own(cells), own(facets), markers, len(vertices), own(across).astype(np.int32))
+    border = np.flatnonzero(np.isin(inside, shared)).astype(np.int32)
+    return Part(topology, vertices, border, new_workspace(len(vertices)))
 
 
 def march_part(
@@ -92,23 +126,41 @@ def march_part(
     Only exact: `march_first_order` fixes each vertex once, in the order of the whole mesh, and on obtuse cells its
     values depend on that order.
     """
-    topology, work = part.topology, part.workspace
+    work = part.workspace
+    wave = march_part_from(part, points, part.topology.neighbours, surfaces, band_width, 0.0, work, exchange)
+    local = work.touched[: wave.touched].copy()
+    field = DistanceField(part.vertices[local].astype(np.int32), np.sqrt(work.key[local]), work.facet[local])
+    reset(work, wave.touched, wave.beyond)
+    return field
+
+
+def march_part_from(
+    part: Part,
+    points: FloatArray,
+    neighbours: Neighbours,
+    surfaces: Iterable[int],
+    band_width: float,
+    slack: float,
+    work: Workspace,
+    exchange: Exchange,
+) -> Wave:
+    """March and leave the field in ``work``, as `march_from` does with the whole mesh.
+
+    With ``slack`` the ``neighbours`` must know the longest edges elsewhere, at the vertices of the border.
+    """
+    topology = part.topology
     seeds = topology.seeds(surfaces)
     touched, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
+    surface, band = (topology.surfaces, seeds.wanted, tree), (band_width, slack)
     first = beyond = 0
     while True:
-        surface = topology.surfaces, seeds.wanted, tree
         counts = first, touched, beyond
-        touched, beyond = march(points, topology.neighbours, *surface, band_width, 0.0, work, *counts)
+        touched, beyond = march(points, neighbours, *surface, *band, work, *counts)
         reached = work.state[part.border] == KNOWN
         found = exchange(work.key[part.border], np.where(reached, work.facet[part.border], NOT_REACHED))
         if found is None:
-            break
+            return Wave(touched, beyond, tree)
         first, touched = touched, accept(part.border, *found, work, touched)
-    local = work.touched[:touched].copy()
-    field = DistanceField(part.vertices[local].astype(np.int32), np.sqrt(work.key[local]), work.facet[local])
-    reset(work, touched, beyond)
-    return field
 
 
 def field_in_threads(
@@ -171,15 +223,3 @@ class _Board:
         # of equally near facets the last, whoever comes first
         better = facet > known
         self._key[border[better]], self._facet[border[better]] = key[better], facet[better]
-
-
-def _part(mesh: Mesh, cells: IntArray, shared: BoolArray, across: IntArray) -> Part:
-    """Cells with the vertices of all facets; a vertex of a facet that is in no cell of the part is just a point."""
-    inside = np.unique(cells)
-    vertices = np.concatenate([inside, np.setdiff1d(np.append(mesh.facets, across), inside)])
-    number = np.full(len(mesh.points), -1)
-    number[vertices] = np.arange(len(vertices))
-    seen_from = number[across].astype(np.int32)
-    topology = Topology(number[cells], number[mesh.facets], mesh.markers, len(vertices), seen_from)
-    border = np.flatnonzero(shared[inside]).astype(np.int32)
-    return Part(topology, vertices, border, new_workspace(len(vertices)))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.types import BoolArray, IntArray, Mesh
+from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.marching.adjacency import facets_beside, inner_vertices, is_whole, neighbours_of, rows_of
 
 Numbers = NDArray[np.int32]
@@ -20,6 +20,18 @@ class Rows(NamedTuple):
 
     start: Numbers
     members: Numbers
+
+
+class Neighbours(NamedTuple):
+    """Vertices that share a cell with each vertex, as `Rows`.
+
+    ``elsewhere`` (n,): the square of the longest edge that a vertex has in other parts of the mesh, zero inside this
+    one [length²]; empty where only edges in this part, or the whole, count.
+    """
+
+    start: Numbers
+    members: Numbers
+    elsewhere: FloatArray = np.empty(0)
 
 
 class Surfaces(NamedTuple):
@@ -69,7 +81,7 @@ class Topology:
         self._seeds: dict[tuple[int, ...], Seeds] = {}
         self.cells: Numbers = np.ascontiguousarray(cells, np.int32)
         self.cell_rows = Rows(*rows_of(self.cells, vertices))
-        self.neighbours = Rows(*neighbours_of(self.cells, *self.cell_rows))
+        self.neighbours = Neighbours(*neighbours_of(self.cells, *self.cell_rows))
         corners, marker = np.ascontiguousarray(facets, np.int32), markers.astype(np.int32)
         if across is None:
             across = inner_vertices(corners, self.cells, *self.cell_rows)

@@ -35,7 +35,7 @@ class Workers:
 
     def topology(self, mesh: Mesh) -> Topology:
         """The topology of ``mesh``; kept while its cells, facets and markers are the same arrays."""
-        if self._mesh is None or not _same_topology(mesh, self._mesh):
+        if self._mesh is None or not same_topology(mesh, self._mesh):
             self._mesh, self._topology = mesh, Topology.of(mesh)
             self._workspaces.clear()
         return self._topology
@@ -56,7 +56,8 @@ class Workers:
             return list(chain.from_iterable(pool.map(share, range(count))))
 
 
-def _same_topology(one: Mesh, other: Mesh) -> bool:
+def same_topology(one: Mesh, other: Mesh) -> bool:
+    """Whether two meshes differ by where their vertices are alone, as told by the arrays that they share."""
     return one.cells is other.cells and one.facets is other.facets and one.markers is other.markers
 
 
