@@ -98,7 +98,7 @@ class StaleLU(Krylov):
     price = 30
     when_fresh = 3
     defaults: ClassVar[Settings] = {
-        "ksp_type": "gmres",
+        "ksp_type": "fgmres",  # keeps what the factors gave: one back-substitution less than gmres
         "ksp_gmres_restart": MOST_ITERATIONS,
         "pc_type": "lu",
         "pc_factor_mat_solver_type": "mumps",
