@@ -143,12 +143,12 @@ class StaleSchur(Krylov):
         pressure = PETSc.IS().createStride(constraint.pressures, first=first + moving, step=1, comm=comm)
         ksp.getPC().setType("fieldsplit")
         ksp.getPC().setFieldSplitIS(("velocity", velocity), ("pressure", pressure))
-        if matrix.schur.enclosed:
+        if matrix.schur().enclosed:
             shell.setNullSpace(_constant_pressure(shell, moving))
 
     def finish(self, ksp: Any, matrix: Reduced) -> None:
         _, pressure = ksp.getPC().getFieldSplitSchurGetSubKSP()
-        pressure.getPC().setPythonContext(CahouetChabard(matrix.schur))
+        pressure.getPC().setPythonContext(CahouetChabard(matrix.schur()))
 
 
 class _Operator:
