@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from gathered_backend import OnTheRoot
 from mesh_tools import ball, edges_of, ellipsoid, nobody, upright
-from scipy.sparse import csc_array
 from threaded_ranks import on_ranks
 
 from rigidfluid.core.distribution import distributed
-from rigidfluid.core.extension import FactorisedExtension
 from rigidfluid.core.frames import to_body_frame
 from rigidfluid.core.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
@@ -112,32 +111,6 @@ def test_small_cells_keep_their_shape_better_than_large_ones(disk):
 def test_a_box_without_bodies_stands_still():
     mesh = generate_mesh([], nobody(2), LOWER, UPPER, 0.4, 0.1, 0.5)
     assert np.array_equal(MeshMotion(mesh, [], nobody(2)).move(nobody(2)), mesh.points)
-
-
-class OnTheRoot:
-    """An extension that the root solves for all."""
-
-    def __init__(self, mesh, matrix, held):
-        self._part, self._free = mesh.part, ~held
-        entries, ids = matrix.tocoo(), mesh.part.vertices
-        sent = (entries.data, ids[entries.coords[0]], ids[entries.coords[1]], ids, held)
-        pieces = mesh.ranks.collected(sent)
-        if pieces is not None:
-            data, rows, columns, vertices, fixed = map(np.concatenate, zip(*pieces, strict=True))
-            count = mesh.part.counts[0]
-            everywhere = np.zeros(count, dtype=bool)
-            everywhere[vertices[fixed]] = True
-            self._solver = FactorisedExtension(csc_array((data, (rows, columns)), shape=(count, count)), everywhere)
-
-    def fill(self, values):
-        pieces = self._part.ranks.collected((self._part.vertices, values))
-        everywhere = None
-        if pieces is not None:
-            everywhere = np.empty(self._part.counts[0])
-            for vertices, given in pieces:
-                everywhere[vertices] = given
-            self._solver.fill(everywhere)
-        values[self._free] = self._part.ranks.shared(everywhere)[self._part.vertices[self._free]]
 
 
 @pytest.mark.parametrize("case", ["ellipse", "solid"])

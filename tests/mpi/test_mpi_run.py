@@ -1,0 +1,139 @@
+"""`mpirun rigidfluid run`, in processes of their own, with a backend in which the root does all the work.
+
+Where DOLFINx is installed its backend, which shares the work, makes the same run.
+"""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from falling import SCENES
+from gathered_backend import install_gathered
+
+from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.registry import FLUID_BACKEND, Registry
+
+pytestmark = [
+    pytest.mark.skipif(find_spec("mpi4py") is None, reason="mpi4py is not installed"),
+    pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun"),
+]
+
+SUPPORT = Path(__file__).parents[1] / "support"
+SETTINGS = {
+    "fluid.backend": '"gathered"',
+    "mesh.size": 0.3,
+    "mesh.size_body": 0.05,
+    "time.step": 0.004,
+    "time.end": 0.056,
+    "output.every": 0.02,
+    "body.0.position": [1.0, 0.24],
+    "body.0.velocity": [0.0, -2.0],
+    "contact.detector": '"narrow_band"',
+}
+"""A disk that nears the floor; its mesh is made anew on the way."""
+
+
+@pytest.fixture
+def mpirun(tmp_path):
+    """Runs `rigidfluid` in so many processes, which must end by themselves."""
+    plugin = tmp_path / "plugin"
+    install_gathered(plugin)
+    paths = [plugin, SUPPORT, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+    more = {
+        "PYTHONPATH": os.pathsep.join(map(str, paths)),
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+        "OMP_NUM_THREADS": "1",
+        "COLUMNS": "200",
+    }
+
+    def run(count, *arguments, **variables):
+        command = ["mpirun", "-n", str(count), sys.executable, "-W", "error", "-m", "rigidfluid", *map(str, arguments)]
+        return subprocess.run(
+            command, env=os.environ | more | variables, capture_output=True, text=True, timeout=120, check=False
+        )
+
+    return run
+
+
+def fall(out, *options, **settings):
+    chosen = SETTINGS | {key.replace("__", "."): value for key, value in settings.items()}
+    words = [word for key, value in chosen.items() for word in ("--set", f"{key}={value}")]
+    return ["run", SCENES / "falling_disk.toml", "--out", out, *options, *words]
+
+
+def table(path):
+    """The numbers of a table, by column."""
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0] if name != "body"}
+
+
+def installed(backend):
+    entries = [entry for entry in Registry.load().entries if entry.kind is FLUID_BACKEND and entry.name == backend]
+    return any(entry.available for entry in entries)
+
+
+def succeeded(result):
+    assert result.returncode == 0, result.stderr
+    return result
+
+
+@pytest.mark.parametrize("backend", ["gathered", "dolfinx"])
+def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, backend):
+    if backend == "dolfinx" and not installed(backend):
+        pytest.skip("DOLFINx is not installed")
+    chosen = {"fluid__backend": f'"{backend}"'}
+    succeeded(mpirun(1, *fall(tmp_path / "one", **chosen)))
+    succeeded(mpirun(2, *fall(tmp_path / "two", time__end=0.02, **chosen)))
+    said = succeeded(mpirun(2, *fall(tmp_path / "two", "--resume", **chosen))).stdout
+    assert said.count("wrote to") == 1
+    one, two = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("one", "two"))
+    assert (one["ranks"], two["ranks"]) == (1, 2)
+    assert two["remeshes"] > 0
+    for figure in ("status", "cells", "unknowns", "steps", "remeshes", "rejected_steps"):
+        assert one[figure] == two[figure]
+    for name in ("bodies.csv", "energy.csv"):
+        expected, found = table(tmp_path / "one" / name), table(tmp_path / "two" / name)
+        for column, values in expected.items():
+            np.testing.assert_allclose(found[column], values, rtol=1e-7, atol=1e-9)
+    last = [read_vtu(read_pvd(tmp_path / name / "fields.pvd")[-1][1]) for name in ("one", "two")]
+    assert len(last[0].points) == len(last[1].points)
+    assert (tmp_path / "two" / "state.1.h5").exists()
+
+
+def test_a_folder_of_two_processes_is_not_resumed_by_one(mpirun, tmp_path):
+    succeeded(mpirun(2, *fall(tmp_path, time__end=0.004)))
+    result = mpirun(1, *fall(tmp_path, "--resume"))
+    assert result.returncode != 0
+    assert "found a run of 2 processes; allowed is a run of 1" in result.stderr
+
+
+def test_a_backend_of_one_process_is_refused_once(mpirun, tmp_path):
+    result = mpirun(2, *fall(tmp_path / "out", fluid__backend='"scikit-fem"'))
+    assert result.returncode != 0
+    assert result.stderr.count("Error: fluid.backend: found 'scikit-fem', which runs in 1, and 2 processes") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_one_process_that_fails_ends_all(mpirun, tmp_path):
+    result = mpirun(2, *fall(tmp_path / "out"), RIGIDFLUID_TEST_FAILING_RANK="1")
+    assert result.returncode != 0
+    assert result.stderr.count("Traceback") == 1
+    assert "ZeroDivisionError" in result.stderr
+    assert not (tmp_path / "out" / "summary.json").exists()
+
+
+def test_a_full_disk_of_one_process_is_reported_once(mpirun, tmp_path):
+    (tmp_path / "state.1.h5.part").symlink_to("/dev/full")
+    result = mpirun(2, *fall(tmp_path, time__end=0.004))
+    assert result.returncode != 0
+    assert result.stderr.count("state.1.h5: found No space left") == 1

@@ -1,0 +1,289 @@
+"""A run that ranks share is that of one process, on all of them; and what goes wrong on one goes wrong on all."""
+
+from dataclasses import replace
+from threading import BrokenBarrierError
+
+import gathered_backend
+import numpy as np
+import pytest
+from falling import falling_disk
+from gathered_backend import Gathered, install_gathered
+from threaded_ranks import on_ranks
+
+import rigidfluid
+from rigidfluid.core import mesh_adaptation, vtu
+from rigidfluid.core.checkpoint import read_checkpoint
+from rigidfluid.core.ranks import ALONE
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.errors import MeshError, OutputError, SceneError, StepRejected
+from rigidfluid.reports import report
+
+FALL = {
+    "time": {"step": 0.004, "end": 0.056},
+    "mesh": {"size": 0.3, "size_body": 0.05},
+    "output": {"every": 0.02, "probes": [[1.0, 0.4]]},
+    "body": {"position": [1.0, 0.24], "velocity": [0.0, -2.0]},
+}
+"""A disk that nears the floor; its mesh is made anew on the way."""
+
+
+@pytest.fixture(autouse=True)
+def plugin(tmp_path_factory, monkeypatch):
+    folder = tmp_path_factory.mktemp("plugin")
+    install_gathered(folder)
+    monkeypatch.syspath_prepend(str(folder))
+
+
+def fall(end=FALL["time"]["end"], **tables):
+    return falling_disk(**FALL | {"time": FALL["time"] | {"end": end}} | tables)
+
+
+def shared(count, out=None, resume=False, **tables):
+    """The histories of all ranks."""
+    scene = fall(fluid={"backend": "gathered"}, **tables)
+
+    def work(ranks):
+        gathered_backend.CURRENT.ranks = ranks
+        return rigidfluid.run(scene, out, resume=resume)
+
+    return on_ranks(count, work)
+
+
+def refused_by_all(count, match, out=None, resume=False, error=OutputError, **tables):
+    """Every rank raises the same error, and none waits."""
+    scene = fall(fluid={"backend": "gathered"}, **tables)
+
+    def work(ranks):
+        gathered_backend.CURRENT.ranks = ranks
+        with pytest.raises(error, match=match):
+            rigidfluid.run(scene, out, resume=resume)
+
+    on_ranks(count, work)
+
+
+def assert_same_tables(one, other):
+    assert one.records.keys() == other.records.keys()
+    assert all(one.records[name] == other.records[name] for name in one.records)
+
+
+@pytest.mark.parametrize("detector", ["sphere", "narrow_band"])
+def test_the_run_is_that_of_one_process(detector):
+    serial = rigidfluid.run(fall(contact={"detector": detector}))
+    assert serial.summary["remeshes"] > 0
+    for count in (1, 3):
+        histories = shared(count, contact={"detector": detector})
+        for history in histories:
+            assert_same_tables(history, histories[0])
+            assert history.summary["ranks"] == count
+            for figure in ("cells", "unknowns", "steps", "remeshes", "rejected_steps"):
+                assert history.summary[figure] == serial.summary[figure]
+            for table in ("bodies", "probes", "energy"):
+                for name, column in serial.table(table).items():
+                    if column.dtype.kind == "f":
+                        np.testing.assert_allclose(history.table(table)[name], column, rtol=1e-9, atol=1e-11)
+
+
+def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
+    expected = shared(2)
+    shared(2, tmp_path, end=0.02)
+    for history, wanted in zip(shared(2, tmp_path, resume=True), expected, strict=True):
+        assert_same_tables(history, wanted)
+
+
+def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
+    histories = shared(2, tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        *("bodies.csv", "contacts.csv", "energy.csv", "probes.csv"),
+        *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json"),
+    }
+    assert histories[0].summary["files"] == histories[1].summary["files"]
+    assert str(tmp_path / "state.1.h5") in histories[1].summary["files"]
+    first, second = (read_checkpoint(tmp_path / name).state for name in ("state.h5", "state.1.h5"))
+    assert len(first.mesh.cells) + len(second.mesh.cells) == histories[0].summary["cells"]
+    assert np.array_equal(np.union1d(first.mesh.part.cells, second.mesh.part.cells), range(first.mesh.part.counts[1]))
+
+
+def test_pieces_make_the_fields_of_the_whole(tmp_path):
+    rigidfluid.run(fall(), tmp_path / "one")
+    shared(3, tmp_path / "three")
+    series = zip(read_pvd(tmp_path / "one" / "fields.pvd"), read_pvd(tmp_path / "three" / "fields.pvd"), strict=True)
+    for (time, path), (shared_time, shared_path) in series:
+        one, three = read_vtu(path), read_vtu(shared_path)
+        assert (time, shared_path.suffix) == (shared_time, ".pvtu")
+        assert len(one.points) == len(three.points)
+        order, shared_order = np.lexsort(one.points.round(9).T), np.lexsort(three.points.round(9).T)
+        np.testing.assert_allclose(three.points[shared_order], one.points[order], atol=1e-12)
+        np.testing.assert_allclose(three.velocity[shared_order], one.velocity[order], atol=1e-5)
+        np.testing.assert_allclose(three.pressure[shared_order], one.pressure[order], rtol=1e-4, atol=1e-3)
+        corners = [np.sort(f.points[f.cells].sum(axis=1)[:, 0]) for f in (one, three)]
+        np.testing.assert_allclose(*corners, atol=1e-10)
+
+
+def test_other_programs_find_the_pieces(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    histories = shared(2, tmp_path, end=0.02)
+    read = pyvista.read(tmp_path / "fields" / "000001.pvtu")
+    assert read.n_cells == histories[0].summary["cells"]
+    assert {"velocity", "pressure"} <= set(read.point_data.keys())
+
+
+def test_a_report_is_made_of_a_shared_run(tmp_path, monkeypatch):
+    shared(2, tmp_path)
+    monkeypatch.setattr(gathered_backend.CURRENT, "ranks", ALONE, raising=False)
+    assert all(path.exists() for path in report(tmp_path))
+
+
+def test_a_checkpoint_is_for_as_many_ranks_as_wrote_it(tmp_path):
+    shared(2, tmp_path, end=0.008)
+    for count in (1, 3):
+        refused_by_all(count, rf"found a run of 2 processes; allowed is a run of {count}", tmp_path, resume=True)
+
+
+def test_a_run_of_one_process_is_not_resumed_by_two(tmp_path):
+    shared(1, tmp_path, end=0.008)
+    refused_by_all(2, r"found a run of 1 process; allowed is a run of 2, .* Resume it with 1", tmp_path, resume=True)
+
+
+def test_checkpoints_of_different_times_are_refused(tmp_path):
+    shared(2, tmp_path, end=0.008)
+    kept = (tmp_path / "state.1.h5").read_bytes()
+    shared(2, tmp_path, resume=True, end=0.016)
+    (tmp_path / "state.1.h5").write_bytes(kept)
+    refused_by_all(2, "found checkpoints of different times", tmp_path, resume=True)
+
+
+def test_a_missing_part_is_named(tmp_path):
+    shared(2, tmp_path, end=0.008)
+    (tmp_path / "state.1.h5").unlink()
+    refused_by_all(2, r"state.1.h5: found no such file", tmp_path, resume=True)
+
+
+def test_a_new_run_clears_the_parts_of_more_ranks(tmp_path):
+    shared(3, tmp_path, end=0.008)
+    rigidfluid.run(fall(0.008), tmp_path)
+    assert not list(tmp_path.glob("state.*.h5"))
+    assert {path.suffix for path in (tmp_path / "fields").iterdir()} == {".vtu"}
+    assert len(list((tmp_path / "fields").iterdir())) == 2
+
+
+def test_a_rank_s_full_disk_is_everyone_s_and_leaves_the_checkpoint_before(tmp_path):
+    shared(2, tmp_path, end=0.008)
+    before = [(tmp_path / name).read_bytes() for name in ("state.h5", "state.1.h5")]
+    (tmp_path / "state.1.h5.part").symlink_to("/dev/full")
+    refused_by_all(2, r"state.1.h5: found No space left", tmp_path, resume=True)
+    assert before == [(tmp_path / name).read_bytes() for name in ("state.h5", "state.1.h5")]
+
+
+def test_no_mesh_for_the_root_is_none_for_all(monkeypatch):
+    def fail(*_):
+        raise MeshError("mesh", "nothing", "a mesh", "Try again.")
+
+    monkeypatch.setattr(mesh_adaptation, "initial_mesh", fail)
+    refused_by_all(2, "mesh: found nothing", error=MeshError)
+
+
+def test_the_present_mesh_serves_all_where_none_can_be_made(monkeypatch):
+    tries = []
+
+    def fail(*_):
+        tries.append(1)
+        raise MeshError("mesh", "nothing", "a mesh", "Try again.")
+
+    monkeypatch.setattr(mesh_adaptation, "remesh", fail)
+    assert [history.summary["remeshes"] for history in shared(2)] == [0, 0]
+    assert tries
+
+
+def test_a_step_that_one_rank_rejects_is_tried_shorter_by_all(monkeypatch):
+    advance, rejected = Gathered.advance, []
+
+    def picky(backend, fluid, mesh, step):
+        made = advance(backend, fluid, mesh, step)
+        if backend.ranks.rank == 1 and not rejected:
+            rejected.append(step.time)
+            raise StepRejected("fluid", "a whim", "none", "Try again.")
+        return made
+
+    monkeypatch.setattr(Gathered, "advance", picky)
+    histories = shared(2, end=0.02)
+    assert [history.summary["rejected_steps"] for history in histories] == [1, 1]
+    assert_same_tables(*histories)
+
+
+def test_a_tangled_cell_of_one_rank_is_everyone_s(monkeypatch):
+    quality, bad = mesh_adaptation.cell_quality, []
+
+    def tangled(points, cells):
+        worst = 0.0 if not bad else 1.0  # of the rank that comes first
+        bad.append(True)
+        return worst * quality(points, cells)
+
+    scene = fall(0.02, fluid={"backend": "gathered"})
+
+    def work(ranks):
+        gathered_backend.CURRENT.ranks = ranks
+        simulation = Simulation(scene, None, False)
+        if ranks.rank == 1:
+            monkeypatch.setattr(mesh_adaptation, "cell_quality", tangled)
+        ranks.gathered(None)
+        with pytest.raises(StepRejected, match=r"a cell of quality 0\.000"):
+            simulation.mover.moved(simulation.state, simulation.state.pose)
+
+    on_ranks(2, work)
+
+
+def test_an_interrupt_of_one_rank_waits_for_nobody(tmp_path):
+    scene = fall(0.02, fluid={"backend": "gathered"})
+
+    def work(ranks):
+        def interrupt(progress):
+            if ranks.rank == 1:
+                raise KeyboardInterrupt
+
+        gathered_backend.CURRENT.ranks = ranks
+        rigidfluid.run(scene, tmp_path, progress=interrupt)
+
+    with pytest.raises(KeyboardInterrupt):
+        on_ranks(2, work)
+    assert not (tmp_path / "summary.json").exists()
+    assert len(shared(2, tmp_path, resume=True, end=0.02)) == 2
+
+
+def test_a_backend_of_one_process_is_not_started_by_two(tmp_path):
+    with pytest.raises(SceneError, match=r"fluid.backend: found 'scikit-fem', which runs in 1, and 2 processes"):
+        rigidfluid.run(fall(), tmp_path / "out", processes=2)
+    assert not (tmp_path / "out").exists()
+    assert rigidfluid.run(fall(0.004), processes=1).summary["status"] == "complete"
+
+
+def test_nodes_that_pieces_share_are_one(tmp_path):
+    corners = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
+
+    def piece(cell):
+        corner = corners[cell]
+        points = np.concatenate([corner, 0.5 * (corner + np.roll(corner, -1, axis=0))])
+        return vtu.Fields(points, np.arange(6)[None], points, points[:, 0])
+
+    first, second = piece([0, 1, 2]), piece([1, 3, 2])
+    second = replace(second, points=second.points * (1 + 1e-15))
+    vtu.write_vtu(tmp_path / "a.0.vtu", first)
+    vtu.write_vtu(tmp_path / "a.1.vtu", second)
+    vtu.write_pvtu(tmp_path / "a.pvtu", ["a.0.vtu", "a.1.vtu"])
+    read = read_vtu(tmp_path / "a.pvtu")
+    assert len(read.points) == 9
+    np.testing.assert_allclose(read.points[read.cells[1]], second.points, atol=1e-14)
+    np.testing.assert_allclose(read.velocity, read.points, atol=1e-6)
+    (tmp_path / "a.1.vtu").unlink()
+    with pytest.raises(OutputError, match=r"a.1.vtu"):
+        read_vtu(tmp_path / "a.pvtu")
+
+
+def test_a_rank_that_leaves_ends_the_others():
+    def work(ranks):
+        if ranks.rank == 0:
+            ranks.abort()
+        ranks.gathered(None)
+
+    with pytest.raises(BrokenBarrierError):
+        on_ranks(2, work)
