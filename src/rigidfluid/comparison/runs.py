@@ -9,6 +9,7 @@ from os import SEEK_END
 from pathlib import Path
 
 from rigidfluid.comparison.child import run_apart
+from rigidfluid.core.ranks import ALONE
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.scene_text import scene_text
 from rigidfluid.core.writer import earlier_run, writing
@@ -89,7 +90,7 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
 def _can_resume(scene: Scene, folder: Path) -> bool:
     """Whether there is a checkpoint of the same scene, and all of the tables up to it."""
     try:
-        checkpoint = earlier_run(folder)
+        checkpoint = earlier_run(folder, ALONE)
     except OutputError:
         return False
     tables = {folder / f"{name}.csv": length for name, length in checkpoint.lengths.items()}
