@@ -68,9 +68,11 @@ def test_what_a_process_writes_is_read(tmp_path):
     assert measured_apart([*program(tmp_path, text), "a"], threads=3) == ["3", "a"]
 
 
-def test_a_process_that_fails_is_an_error_with_its_reason(tmp_path):
-    with pytest.raises(LaunchError, match=r"ValueError: no such thing; allowed is a run to the end"):
-        measured_apart(program(tmp_path, "raise ValueError('no such thing')"))
+@pytest.mark.parametrize("text", ["raise ValueError('no such thing')", "sys.exit('ValueError: no such thing\\n---')"])
+def test_a_process_that_fails_is_an_error_with_its_reason(tmp_path, text):
+    """Also where a launcher has drawn a line below it."""
+    with pytest.raises(LaunchError, match=r"found ValueError: no such thing; allowed is a run to the end"):
+        measured_apart(program(tmp_path, f"import sys; {text}"))
 
 
 def test_without_mpirun_several_ranks_are_refused(monkeypatch):
@@ -102,6 +104,7 @@ def test_mpirun_starts_as_many_processes_as_asked(monkeypatch, tmp_path):
 def test_without_dolfinx_it_says_what_to_install():
     result = CliRunner().invoke(app, ["bench", "parallel"])
     assert result.exit_code == 2
+    assert result.stderr.startswith("Error: fluid.backend")
     assert "fenics-dolfinx" in result.stderr
 
 
