@@ -60,6 +60,10 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
 Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
 Steps = Annotated[int, typer.Option(help="Steps to run with: time.step over contact.substeps, half of it, …", min=1)]
+Coarseness = Annotated[float, typer.Option(help="Edge lengths over those of meshes as fine as the paper's.", min=1.0)]
+RankCounts = Annotated[
+    list[int] | None, typer.Option("--ranks", metavar="N", help="On how many processes; default 1 and 2.", min=1)
+]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
 LAUNCH = Launch.of()
@@ -192,6 +196,17 @@ def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> Non
         from rigidfluid.bench.collisions import collision_rows
 
         _print_rows(collision_rows(most_bodies), json_file)
+
+
+@bench.command()
+def parallel(
+    json_file: JsonFile = None, ranks: RankCounts = None, most_bodies: MostBodies = 125, coarseness: Coarseness = 1.0
+) -> None:
+    """Time steps of many balls in a fluid on one process and on several (Van Landeghem et al., Tables 2 and 3)."""
+    with _reported():
+        from rigidfluid.bench.parallel import parallel_rows
+
+        _print_rows(parallel_rows(ranks or (1, 2), most_bodies, coarseness), json_file)
 
 
 @app.command()

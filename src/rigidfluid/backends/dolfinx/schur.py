@@ -54,7 +54,7 @@ def schur_data(
 
 def velocity_options(matrix: Reduced) -> dict[str, str]:
     """By mass dominance."""
-    schur = matrix.schur
+    schur = matrix.schur()
     if schur.inertia * schur.cell**2 > MASS_DOMINATES * schur.viscosity:
         return {"fieldsplit_velocity_pc_type": "jacobi"}
     return {"fieldsplit_velocity_pc_type": "gamg"}
