@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -385,7 +386,9 @@ def _print_backends(comparison: BackendComparison) -> None:
     from rigidfluid.comparison.tables import HEADER, cost_rows, difference_rows, meaning
 
     for pair in comparison.pairs:
-        table = Table(*HEADER, title=f"{pair.other} beside {pair.reference}")
+        # without vertical lines it fits into 80 columns
+        title = f"{pair.other} beside {pair.reference}"
+        table = Table(*HEADER, title=title, box=SIMPLE_HEAD, padding=0)
         for row in difference_rows(comparison, pair):
             table.add_row(*map(Text, row))
         Console().print(table)

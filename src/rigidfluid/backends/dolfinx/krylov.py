@@ -103,7 +103,7 @@ class Krylov(StaleSolver[Reduced]):
         """Settings in PETSc's database while the solver is set up; the scene's stay, so that PETSc tells the unread."""
         database = PETSc.Options(_PREFIX)
         for key, value in (dict(defaults) | self._settings).items():
-            database[key] = value
+            database[key] = None if value is True else value  # of a flag PETSc wants the name alone
         try:
             yield
         finally:
