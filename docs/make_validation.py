@@ -278,23 +278,30 @@ def backend_rows(results: Results) -> str:
     return table(head, [(*place, *row.values()) for place, row in rows.items()])
 
 
-BACKENDS_STUDY = """`studies/backends.toml`: the falling disk until .2 s; the error is that of its height. On {cores} cores,
-of which `OMP_NUM_THREADS=1` leaves one to each run; all backends in one Python.
+BACKENDS_STUDY = """`studies/backends.toml`: the falling disk until .2 s; the error is that of its height. On {cores}
+cores, of which `OMP_NUM_THREADS=1` leaves one to each run; all backends in one Python, DOLFINx and OpenBLAS from
+Debian 13.
 
 {figures}
 
 The last column is the largest difference of the heights that the backends find: round-off. So the error says nothing
-about a backend, and only the time can choose; the points of a mesh and a step lie side by side in the plot.
+about a backend, and the time alone can choose: the points of a mesh and a step lie side by side in the plot.
 
-**What to choose when.** PROVISIONAL: these figures were taken while other work ran on the machine, and seconds are off by a
-factor of two and more.
+The machine did other work at times, so single seconds may be off by a factor of two. CPU time of 80 steps of .00125
+with `size_body` .0125, which is less disturbed: `scikit-fem` 2.6 s, `dolfinx` 1.8 s, `ngsolve` 3.3 s.
 
-* `scikit-fem` unless there is a reason: it comes with rigidfluid and is as fast as the others.
-* `dolfinx` where a run should be shared by many processes, or for 3D with its `schur` solver, which needs far less
-  memory than factors. On one core in 2D it is no faster or slower to matter.
-* `ngsolve` to check a result with another library's elements. It integrates more slowly, and solves by the same factors.
+**What to choose when.**
 
-See [backends](../backends.md) for what each can do."""
+* `scikit-fem` unless there is a reason: it comes with rigidfluid, needs neither compiler nor MPI, and none of the
+  others is faster by much on one core.
+* `dolfinx` where it is installed, with OpenBLAS: the fastest of the three, by a quarter to a third. It alone shares a
+  run among processes, and in 3D its `schur` solver needs far less memory.
+* `ngsolve` to check a result with another library's elements. It integrates three to four times as slowly as
+  `scikit-fem`, and solves by the same factors; the steps take a quarter longer.
+* Whichever it is, refine mesh and step together. Here the mesh decides: from step .0025 on a shorter step gains
+  nothing until `size_body` is below .0125.
+
+See [backends](../backends.md) for what each can do, and [the seconds of a step by stage](backends.md)."""
 
 
 CONTACT_STEPPING = """Three ways through contacts: one explicit substep a step (`contact.substeps = 1`), as many
