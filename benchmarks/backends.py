@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from falling import MESHES, OUTPUT_EVERY, falling
+from disk_under_way import MESHES, OUTPUT_EVERY, falling
 from stages import STAGES, measured
 
 from rigidfluid.bench.processes import measured_apart

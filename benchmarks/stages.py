@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from falling import OUTPUT_EVERY
+from disk_under_way import OUTPUT_EVERY
 
 from rigidfluid.core.simulation import Simulation
 

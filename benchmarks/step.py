@@ -16,7 +16,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from falling import MESHES, falling
+from disk_under_way import MESHES, falling
 from ngsolve_step import time_ngsolve
 from stages import measured
 

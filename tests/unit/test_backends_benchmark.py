@@ -21,7 +21,7 @@ def backends():
         yield module
     finally:
         sys.path.remove(str(FOLDER))
-        for name in ("backends", "falling", "stages"):
+        for name in ("backends", "disk_under_way", "stages"):
             sys.modules.pop(name, None)
 
 
