@@ -35,6 +35,24 @@ def test_what_does_not_converge_with_fresh_factors_is_refused():
         StaleFactors().solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
 
 
+def test_after_a_refusal_the_next_matrix_has_factors_of_its_own():
+    solver = StaleFactors()
+    with pytest.raises(StepRejected):
+        solver.solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
+    assert solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
+
+
+def test_after_factors_that_cannot_be_made_others_are():
+    def refused():
+        raise StepRejected("a", "b", "c", "d")
+
+    solver = StaleFactors()
+    solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
+    with pytest.raises(StepRejected, match="found b"):
+        solver.solve(SHIFT.__matmul__, refused, RIGHT, 1e-9)
+    assert solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
+
+
 def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made):
     solver = StaleFactors()
     other = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 20))

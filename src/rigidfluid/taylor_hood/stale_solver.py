@@ -62,6 +62,7 @@ class StaleSolver(ABC, Generic[Matrix]):
             self._renew(matrix)
             correction, iterations, converged = self.iterate(apply, residual, tolerance)
         if not converged:
+            self.forget()  # the next step tried is another one
             raise StepRejected(
                 "fluid.tolerance",
                 f"a linear system that does not converge to {tolerance:.1e} in {self.most} iterations",
@@ -92,7 +93,7 @@ class StaleSolver(ABC, Generic[Matrix]):
         """The correction, the iterations spent, and whether ‖residual - A x‖ ≤ tolerance was reached."""
 
     def _renew(self, matrix: Callable[[], Matrix]) -> None:
-        self.drop()  # frees the old one before the new one needs memory
+        self.forget()  # frees the old one before the new one needs memory
         self.make(matrix())
         self._is_made = True
         self._solves = self._wasted = 0

@@ -60,5 +60,7 @@ class Dolfinx(TaylorHoodBackend):
         from rigidfluid.backends.dolfinx.discretisation import Topology
 
         if self._topology is None or self._topology.numbering is not numbering:
+            if self._topology is not None:
+                self._topology.destroy()
             self._topology = Topology(numbering, mesh)
         return self._topology

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+from petsc4py import PETSc
 from scipy.linalg import block_diag
 
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
@@ -27,6 +28,19 @@ class Topology:
         self.space = Space(numbering, mesh)
         self.forms = Forms(self.space)
         self.matrix = self.forms.new_matrix()
+
+    def clean(self) -> None:
+        """Free what Python has let go of: with several processes petsc4py leaves that to a call that all make together.
+
+        DOLFINx gives each mesh, and so K and what is made from it, a communicator of its own.
+        """
+        for communicator in (self.space.communicator, self.space.mesh.comm):
+            PETSc.garbage_cleanup(communicator)
+
+    def destroy(self) -> None:
+        """Free all; nobody may have a use for this topology any more."""
+        self.matrix.destroy()
+        self.clean()
 
 
 class PetscDiscretisation:
@@ -71,6 +85,7 @@ class PetscDiscretisation:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
+        self._topology.clean()
         s, space, constraint = system, self._topology.space, self._constraint
         reduced, free = self._reduced(s), ~s.controlled
         none = np.zeros(len(space.owned_vertices))

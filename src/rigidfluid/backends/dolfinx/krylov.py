@@ -83,6 +83,7 @@ class Krylov(StaleSolver[Reduced]):
         correction, right_side = pmat.createVecs()
         right_side.array[:] = residual
         self._ksp.solve(right_side, correction)
+        self._operator.apply = None  # it holds the step's matrices
         found: FloatArray = correction.array.copy()
         return found, self._ksp.getIterationNumber(), self._ksp.getConvergedReason() > 0
 
