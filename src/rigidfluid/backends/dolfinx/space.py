@@ -95,7 +95,8 @@ def _as_dolfinx(mesh: Mesh, communicator: Any) -> Any:
     first, end = (count * rank // communicator.size for rank in (communicator.rank, communicator.rank + 1))
     nowhere = np.zeros((end - first, d))
     element = basix.ufl.element("Lagrange", ("triangle", "tetrahedron")[d - 2], 1, shape=(d,))
-    return create_mesh(communicator, cells, nowhere, element, partitioner=partial(_stay, width=d + 1))
+    # By name: the order of `x` and `e` depends on DOLFINx' version.
+    return create_mesh(communicator, cells, x=nowhere, e=element, partitioner=partial(_stay, width=d + 1))
 
 
 def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -> Any:
