@@ -23,7 +23,7 @@ from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"
 # (size, size_body, growth) of the mesh: 55,000, 160,000 and more than 300,000 unknowns.
-MESHES = ((1.2, 0.3, 0.2), (0.8, 0.16, 0.2), (0.62, 0.12, 0.2))
+MESHES = ((1.2, 0.3, 0.2), (0.8, 0.16, 0.2), (0.58, 0.11, 0.2))
 STEPS = (0.1, 0.01, 0.001)
 """Lengths of the step [s]."""
 FINEST = (MESHES[-1], 0.01)

@@ -10,78 +10,24 @@ the same mesh, factorise, solve, as one does on a mesh that moves at every step.
 from __future__ import annotations
 
 import argparse
-import cProfile
 import datetime
 import json
 import os
-import pstats
-import time
-import tomllib
 from pathlib import Path
 from typing import Any
 
+from disk_under_way import MESHES, falling
 from ngsolve_step import time_ngsolve
+from stages import measured
 
-import rigidfluid
-from rigidfluid.core.simulation import Simulation
 from rigidfluid.core.threads import one_openblas_thread
-
-SCENE = Path(__file__).parents[1] / "scenes" / "falling_disk.toml"
-# Thousands of unknowns: (size, size_body, growth) of the mesh.
-MESHES = {15: (0.12, 0.0100, 0.150), 45: (0.07, 0.0060, 0.093), 150: (0.038, 0.0033, 0.0513)}
-OUTPUT_EVERY = 20  # steps: an output drops the factors
-WARM_UP = 6  # steps: the first ones start the time scheme and compile
-# Function → what it does, for the profile.
-STAGES = {
-    "matrix_data": "assemble matrix",
-    "mass_times": "assemble load, kinetic energy",
-    "dissipation": "dissipation",
-    "place": "fill P",
-    "factorise": "factorise",
-    "matrix": "build the coupled matrix for it",
-    "_iterate": "iterate",
-    "moved": "move mesh",
-    "surroundings": "detect",
-    "adapted": "adapt mesh",
-}
-
-
-def simulation(thousands: int) -> Simulation:
-    """The falling disk at about that many thousand unknowns, under way."""
-    data = tomllib.loads(SCENE.read_text(encoding="utf-8"))
-    size, size_body, growth = MESHES[thousands]
-    data["mesh"].update(size=size, size_body=size_body, growth=growth)
-    data["time"]["step"] = 0.1 * size_body
-    data["output"]["every"] = 10.0
-    run = Simulation(rigidfluid.Scene.from_dict(data), None, False)
-    for _ in range(WARM_UP):
-        run._advance()
-    return run
-
-
-def time_ours(run: Simulation, steps: int) -> tuple[float, dict[str, float]]:
-    """Seconds per step, and of them per stage."""
-    profile = cProfile.Profile()
-    start = time.perf_counter()
-    profile.enable()
-    for step in range(steps):
-        if step % OUTPUT_EVERY == 0:
-            run.system.backend.forget()
-        run._advance()
-    profile.disable()
-    seconds = (time.perf_counter() - start) / steps
-    stages: dict[str, float] = {}
-    for (file, _, name), (_, _, _, cumulative, _) in pstats.Stats(profile).stats.items():  # type: ignore[attr-defined]
-        if name in STAGES and "rigidfluid" in file:
-            stages[STAGES[name]] = stages.get(STAGES[name], 0.0) + cumulative / steps
-    return seconds, stages
 
 
 def compare(thousands: int, steps: int) -> dict[str, Any]:
     """One row: both on the same mesh, one after the other."""
     with one_openblas_thread():
-        run = simulation(thousands)
-        seconds, stages = time_ours(run, steps)
+        run = falling(thousands)
+        ours = measured(run, steps)
         mesh = run.state.mesh
         assert mesh is not None
         unknowns = run.system.backend.unknowns(mesh, run.system.controlled)
@@ -91,12 +37,12 @@ def compare(thousands: int, steps: int) -> dict[str, Any]:
     return {
         "unknowns": unknowns,
         "cells": len(mesh.cells),
-        "seconds": seconds,
-        "stages": stages,
+        "seconds": ours["seconds"],
+        "stages": ours["stages"],
         "ngsolve_unknowns": their_unknowns,
         "ngsolve_seconds": sum(theirs.values()),
         "ngsolve_stages": theirs,
-        "ratio": seconds / sum(theirs.values()),
+        "ratio": ours["seconds"] / sum(theirs.values()),
     }
 
 
@@ -146,7 +92,7 @@ def main() -> None:
     """Read the arguments, measure, print, and write the figures where asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=40)
-    parser.add_argument("--sizes", type=int, nargs="+", default=list(MESHES), choices=list(MESHES))
+    parser.add_argument("--sizes", type=int, nargs="+", default=[15, 45, 150], choices=list(MESHES))
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="write a Markdown page here")
     arguments = parser.parse_args()

@@ -79,7 +79,7 @@ def _type(field: Schema) -> str:
     if field.get("type") == "array":
         entry = _type(field.get("items") or field["prefixItems"][0])
         return f"list of {entry.replace('list', 'lists')}" + ("" if entry.endswith("s") else "s")
-    return "table" if "$ref" in field else str(field["type"])
+    return "table" if "$ref" in field or field["type"] == "object" else str(field["type"])
 
 
 def _target(field: Schema) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -60,6 +61,10 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
 Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
 Steps = Annotated[int, typer.Option(help="Steps to run with: time.step over contact.substeps, half of it, …", min=1)]
+Coarseness = Annotated[float, typer.Option(help="Edge lengths over those of meshes as fine as the paper's.", min=1.0)]
+RankCounts = Annotated[
+    list[int] | None, typer.Option("--ranks", metavar="N", help="On how many processes; default 1 and 2.", min=1)
+]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
 LAUNCH = Launch.of()
@@ -192,6 +197,17 @@ def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> Non
         from rigidfluid.bench.collisions import collision_rows
 
         _print_rows(collision_rows(most_bodies), json_file)
+
+
+@bench.command()
+def parallel(
+    json_file: JsonFile = None, ranks: RankCounts = None, most_bodies: MostBodies = 125, coarseness: Coarseness = 1.0
+) -> None:
+    """Time steps of many balls in a fluid on one process and on several (Van Landeghem et al., Tables 2 and 3)."""
+    with _reported():
+        from rigidfluid.bench.parallel import parallel_rows
+
+        _print_rows(parallel_rows(ranks or (1, 2), most_bodies, coarseness), json_file)
 
 
 @app.command()
@@ -370,7 +386,9 @@ def _print_backends(comparison: BackendComparison) -> None:
     from rigidfluid.comparison.tables import HEADER, cost_rows, difference_rows, meaning
 
     for pair in comparison.pairs:
-        table = Table(*HEADER, title=f"{pair.other} beside {pair.reference}")
+        # without vertical lines it fits into 80 columns
+        title = f"{pair.other} beside {pair.reference}"
+        table = Table(*HEADER, title=title, box=SIMPLE_HEAD, padding=0)
         for row in difference_rows(comparison, pair):
             table.add_row(*map(Text, row))
         Console().print(table)

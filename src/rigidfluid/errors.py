@@ -6,6 +6,7 @@ RigidfluidError
 ├── MeshError           no valid mesh can be made for this geometry
 ├── OutputError         a result cannot be written or read back
 ├── CrosscheckError     the program to compare with is missing, cannot run the scene, or fails
+├── LaunchError         processes that share a measurement cannot be started, or one of them fails
 └── StepError           the simulation cannot go on, even with the shortest step
     └── StepRejected    one attempted step is not usable; the loop retries it shorter
 """
@@ -58,6 +59,10 @@ class OutputError(RigidfluidError):
 
 class CrosscheckError(RigidfluidError):
     """The program to compare with is missing, cannot run the scene, or fails."""
+
+
+class LaunchError(RigidfluidError):
+    """Processes that share a measurement cannot be started, or one of them fails."""
 
 
 class StepError(RigidfluidError):

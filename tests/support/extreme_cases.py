@@ -283,7 +283,8 @@ def _wet() -> Iterator[Case]:
     released = partial(wet, law("normal", 1e-7), near, end=0.02, step=0.002, mesh={"quality": 0.25, "refinements": 5})
     yield Case("fluid, gap of 1e-3 radius", released, (APART, loses()[-1]))
     between = ball((0.5, 0.15), (0, 0), density=3.0, radius=0.125)
-    narrow = partial(wet, law("normal", 1e-8, range=0.06), between, end=0.04, step=0.004, height=0.32)
+    # With steps of .004 half of all meshes of this channel hold it, and with the others it gains energy and stops.
+    narrow = partial(wet, law("normal", 1e-8, range=0.06), between, end=0.04, step=0.001, height=0.32)
     yield Case("fluid, range wider than the free gaps", narrow, loses())
     blade = ellipsoid((0.5, 0.145), (0, -5), (0.3, 0.015), density=3.0, angle=0.3)
     lands = partial(wet, law("normal", 1e-9, range=0.05), blade, end=0.04, step=0.002)

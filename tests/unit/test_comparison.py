@@ -120,8 +120,8 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bool]]:
     return made
 
 
-def compare_command(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["compare", *map(str, arguments)], env={"COLUMNS": "200"})
+def compare_command(*arguments: object, columns: int = 200) -> Result:
+    return CliRunner().invoke(app, ["compare", *map(str, arguments)], env={"COLUMNS": str(columns)})
 
 
 def options(*backends: str, settings: tuple[str, ...] = SHORT) -> list[str]:
@@ -350,6 +350,14 @@ def test_what_a_comparison_writes(started: list[tuple[str, bool]], tmp_path: Pat
     ):
         assert text in result.stdout
     assert report(out / "pushed")[-1].name == "report.html"
+
+
+def test_a_table_for_narrow_terminals(started: list[tuple[str, bool]], tmp_path: Path) -> None:
+    result = compare_command(BOUNCE, *options("dry", "pushed"), "--out", tmp_path, columns=80)
+    assert result.exit_code == 0, result.stderr
+    for word in ("orientation", "length/time", "hydrodynamic", "left_disk"):
+        assert word in result.stdout
+    assert "…" not in result.stdout
 
 
 def test_the_page_needs_no_other_file(started: list[tuple[str, bool]], tmp_path: Path) -> None:

@@ -76,6 +76,11 @@ def test_petscs_options_are_those_of_the_scene():
     assert run.system.backend._solver._ksp.getPC().getFactorSolverType() == "umfpack"
 
 
+def test_petscs_flags_are_true_in_the_scene(capfd):
+    after(two_dimensional(backend="dolfinx", petsc={"ksp_monitor": True}), 1)
+    assert "Residual norms for rigidfluid_ solve." in capfd.readouterr().out
+
+
 def iterations(size, step):
     scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
     scene["mesh"], scene["time"]["step"] = {"size": 3 * size, "size_body": size}, step

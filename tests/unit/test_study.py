@@ -17,12 +17,16 @@ import rigidfluid
 from rigidfluid.cli import app
 from rigidfluid.core.history import History
 from rigidfluid.core.records import columns
+from rigidfluid.core.scene import Scene
 from rigidfluid.core.summary import FIGURES
 from rigidfluid.errors import OutputError, SceneError
-from rigidfluid.studies import load_study, run_study
+from rigidfluid.registry import FLUID_BACKEND, Registry
+from rigidfluid.reports.style import PALETTE
+from rigidfluid.studies import load_study, run_study, scene_subject
 from rigidfluid.studies.figure import check_figure, read_figure
 from rigidfluid.studies.kernel_subject import KernelSubject
 from rigidfluid.studies.model import ErrorTable, FigureTable, Settings, StudyTable
+from rigidfluid.studies.plot import error_plot
 from rigidfluid.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.studies.rows import read_rows, short_text
 from rigidfluid.studies.run import StudyProgress
@@ -50,7 +54,23 @@ body.0.density = [1.0, 2.0]
 figure = {{ table = "bodies", column = "y", body = "left_disk", at = 0.004 }}
 reference = 0.5
 """
+OTHER_BACKENDS = """
+    from rigidfluid.backends.dry import Dry
+    from rigidfluid.hookspecs import hookimpl
+
+    class Drier(Dry):
+        name = "drier"
+
+    class Missing(Dry):
+        name = "missing"
+        requires = {"no_such_package": "no-such-package"}
+
+    @hookimpl
+    def rigidfluid_fluid_backends():
+        return [Drier, Missing]
+"""
 Write = Callable[..., Path]
+Install = Callable[..., Path]
 
 
 @pytest.fixture
@@ -138,6 +158,45 @@ def test_the_page_needs_no_other_file(write: Write, tmp_path: Path) -> None:
     plot = written[2].read_text(encoding="utf-8")
     for text in ("density 1.0", "density 2.0", "Pareto front", "wall time [s]", "error of height of the left disk"):
         assert f"<!-- {text} -->" in plot
+
+
+def test_colours_by_one_key_and_markers_by_another(write: Write, tmp_path: Path) -> None:
+    path = write('group = "body.0.density"', 'group = ["body.0.density", "time.step"]')
+    figure = error_plot(results_of(path, tmp_path / "out"))
+    lines = [line for line in figure.axes[0].lines if line.get_linewidth() == 1.0]
+    looks = [(line.get_color(), line.get_marker()) for line in lines]
+    assert looks == [(colour, marker) for marker in "osD" for colour in PALETTE[:2]]
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == ["density 1.0", "density 2.0", "step 0.002", "step 0.001", "step 0.0005", "Pareto front"]
+
+
+def test_each_backend_is_warmed_up_once(
+    write: Write, tmp_path: Path, install: Install, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(OTHER_BACKENDS, name="others", module="others_for_studies")
+    path = write("body.0.density = [1.0, 2.0]", 'fluid.backend = ["dry", "drier"]', "body.0.density", "fluid.backend")
+    started: list[tuple[str, float]] = []
+
+    def noted(scene: Scene, **keywords: Any) -> History:
+        started.append((scene.fluid.backend, scene.time.end))
+        return rigidfluid.run(scene, **keywords)
+
+    monkeypatch.setattr(scene_subject, "run", noted)
+    results_of(path, tmp_path / "out")
+    assert started[:4] == [("dry", 0.002), ("dry", 0.004), ("drier", 0.002), ("drier", 0.004)]
+    assert started[4:] == [(name, 0.004) for name in ("dry", "drier")] * 2
+
+
+def test_backends_that_are_not_there_are_failed_rows(write: Write, tmp_path: Path, install: Install) -> None:
+    install(OTHER_BACKENDS, name="others", module="others_for_studies")
+    backends = 'fluid.backend = ["dry", "missing", "no_such"]'
+    path = write("body.0.density = [1.0, 2.0]", backends, "body.0.density", "fluid.backend", "0.001, 0.0005]", "0.001]")
+    assert study_command(path, "--out", tmp_path / "out").exit_code == 0
+    rows = table(tmp_path / "out")
+    assert [row["status"] for row in rows] == ["complete", "failed", "failed"] * 2
+    assert "'missing', which is not usable here" in rows[1]["message"]
+    assert "install no-such-package" in rows[1]["message"]
+    assert "found 'no_such'" in rows[2]["message"]
 
 
 def test_errors_against_the_finest_run(write: Write, tmp_path: Path) -> None:
@@ -249,6 +308,8 @@ def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
         ("body.0.density", "body.7.density", ("body.7.density", "'7' in a list", "a number from 0 to 1")),
         ("-100.0]", "-100.0, 0.0]", ("fluid.gravity", "-100.0")),
         ('group = "body.0.density"', 'group = "time.stop"', ("study.group", "Did you mean 'time.step'?")),
+        ('group = "body.0.density"', 'group = ["time.stop"]', ("study.group", "Did you mean 'time.step'?")),
+        ('group = "body.0.density"', 'group = ["a", "b", "c"]', ("study.group", "at most 2 items")),
         ('group = "body.0.density"', "zip = true", ("vary", "3 values of time.step, 2 values of body.0.density")),
         ("dry_bounce.toml", "dry_bonce.toml", ("dry_bonce.toml", "No such file", "a readable scene file")),
         ('column = "y"', 'column = "yy"', ("error.figure.column", "'yy'", "Did you mean 'y'?")),
@@ -295,6 +356,8 @@ def test_pareto_front() -> None:
     assert pareto_front(points) == ["fast", "good"]
     assert pareto_front({"a": (1.0, 1.0), "b": (1.0, 1.0), "c": (1.0, 2.0)}) == ["a", "b"]
     assert pareto_front({}) == []
+    nearly = {"fast": (1.0, 1.0), "round-off": (2.0, 1.0 - 1e-12), "better": (3.0, 0.999)}
+    assert pareto_front(nearly) == ["fast", "better"]
 
 
 def test_most_expensive_run() -> None:
@@ -395,8 +458,11 @@ def test_shipped_studies_can_be_run(path: Path) -> None:
     subject = SceneSubject(study)
     identities = {subject.identity(settings) for settings in study.settings()}
     assert len(identities) == len(study.settings())
+    usable = {entry.name for entry in Registry.load().entries if entry.kind is FLUID_BACKEND and entry.available}
     for identity in identities:
-        rigidfluid.Scene.from_dict(json.loads(identity)[0])
+        tables = json.loads(identity)[0]
+        if tables["fluid"].get("backend", "scikit-fem") in usable:
+            Scene.from_dict(tables)
 
 
 def test_tables_are_named_by_what_differs() -> None:

@@ -4,15 +4,23 @@ import pytest
 from falling import SCENES
 
 import rigidfluid
+from rigidfluid.errors import PluginError
 
 # Force 2 F / (ρ Ū² D) with mean inflow Ū = 0.2 and diameter D = 0.1; converged values of John & Matthies 2001.
 FORCE_TO_COEFFICIENT = 2.0 / (0.2**2 * 0.1)
 DRAG, LIFT, PRESSURE_DIFFERENCE = 5.57953523384, 0.010618948146, 0.11752016697
 
 
-@pytest.fixture(scope="module")
-def history():
-    return rigidfluid.run(rigidfluid.load_scene(SCENES / "dfg_cylinder.toml"))
+OTHERS = [pytest.param(name, marks=pytest.mark.validation) for name in ("dolfinx", "ngsolve")]
+
+
+@pytest.fixture(scope="module", params=["scikit-fem", *OTHERS])
+def history(request):
+    try:
+        scene = rigidfluid.load_scene(SCENES / "dfg_cylinder.toml", [f"fluid.backend={request.param}"])
+    except PluginError as error:
+        pytest.skip(str(error))
+    return rigidfluid.run(scene)
 
 
 def test_drag(history):

@@ -80,9 +80,14 @@ def _row(dimension: int, bodies: int, counts: tuple[int, int], repeats: int) -> 
     )
     seconds = [fastest(partial(_collide, detector, pose, mesh), repeats) for detector in detectors]
     contacts = _collide(detectors[1], pose, mesh)
-    at_wall = contacts.body_b >= bodies
-    found = int(np.count_nonzero(~at_wall)), len(np.unique(contacts.body_a[at_wall]))
+    found = count_contacts(contacts, bodies)
     return CollisionRow(dimension, bodies, len(mesh.points), *found, *counts, *seconds)
+
+
+def count_contacts(contacts: Contacts, bodies: int) -> tuple[int, int]:
+    """Pairs of bodies in contact, and bodies in contact with the boundary, of so many ``bodies``."""
+    at_wall = contacts.body_b >= bodies
+    return int(np.count_nonzero(~at_wall)), len(np.unique(contacts.body_a[at_wall]))
 
 
 def _collide(detector: Detector, pose: Pose, mesh: Mesh) -> Contacts:

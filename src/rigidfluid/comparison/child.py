@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from rigidfluid.core.child import environment, failure, python
 from rigidfluid.core.writer import writing
 
 _POLL = 1.0
@@ -44,12 +42,11 @@ def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Call
     OutputError
         Where the log cannot be written.
     """
-    # -P: modules come from where they came from here, and not from the working directory
-    command = [sys.executable, "-P", "-m", "rigidfluid", "run", str(scene), "--out", str(folder)]
+    command = python("-m", "rigidfluid", "run", str(scene), "--out", str(folder))
     with writing(log), log.open("wb") as output:
         process = subprocess.Popen(
             [*command, "--resume"] if resume else command,
-            env=_environment(),
+            env=environment(),
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
@@ -66,12 +63,6 @@ def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Call
     return "" if process.returncode == 0 else _failure(process.returncode, log)
 
 
-def _environment() -> dict[str, str]:
-    """This process' modules, and plain text."""
-    paths = [path or str(Path.cwd()) for path in sys.path]
-    return os.environ | {"PYTHONPATH": os.pathsep.join(paths), "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
-
-
 def _await(process: subprocess.Popen[bytes], watch: Callable[[], None]) -> None:
     while True:
         try:
@@ -84,8 +75,7 @@ def _await(process: subprocess.Popen[bytes], watch: Callable[[], None]) -> None:
 
 def _failure(code: int, log: Path) -> str:
     """The signal that ended it, or the error that it printed last."""
-    if code < 0:
-        return f"ended by a signal: {signal.strsignal(-code)}"
-    lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
-    last = next((line for line in reversed(lines) if line.strip()), f"exit code {code}")
-    return last.removeprefix("Error: ") if last.startswith("Error: ") else f"{last} (more in {log.name})"
+    last = failure(code, log.read_text(encoding="utf-8", errors="replace"))
+    if code < 0 or last.startswith("Error: "):
+        return last.removeprefix("Error: ")
+    return f"{last} (more in {log.name})"

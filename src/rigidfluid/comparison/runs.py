@@ -11,7 +11,6 @@ from pathlib import Path
 from rigidfluid.comparison.child import run_apart
 from rigidfluid.core.ranks import ALONE
 from rigidfluid.core.scene import Scene
-from rigidfluid.core.ranks import ALONE
 from rigidfluid.core.scene_text import scene_text
 from rigidfluid.core.writer import earlier_run, writing
 from rigidfluid.errors import OutputError, RigidfluidError

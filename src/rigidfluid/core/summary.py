@@ -21,7 +21,10 @@ from rigidfluid.core.types import FloatArray, Mesh
 if TYPE_CHECKING:
     from rigidfluid.core.simulation import Simulation
 
-_PACKAGES = ("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py")
+_PACKAGES = (
+    *("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py"),
+    *("fenics-dolfinx", "petsc4py", "mpi4py", "ngsolve"),
+)
 FIGURES = (
     *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),

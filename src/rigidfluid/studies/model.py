@@ -30,6 +30,10 @@ def _flat(value: Any) -> Any:
     return flat
 
 
+def _listed(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
 class _Table(BaseModel):
     """A table whose keys are all given here."""
 
@@ -43,7 +47,9 @@ class StudyTable(_Table):
     scene: str | None = Field(default=None, description="Path of the scene file, relative to the study file")
     kernel: str | None = Field(default=None, description="Name of a kernel, in place of a scene")
     label: str = Field(default="", description="What the error is of, for the plot; the figure if not given")
-    group: str | None = Field(default=None, description="Key of [vary]; the plot has a line for each of its values")
+    group: Annotated[list[str], BeforeValidator(_listed)] = Field(
+        default=[], max_length=2, description="Key of [vary], or two; the plot has a line for each of their values"
+    )
     zip: bool = Field(default=False, description="Take the lists of [vary] side by side, not every combination")
 
 
@@ -185,10 +191,11 @@ def _check_subject(tables: StudyFile) -> None:
 
 
 def _check_group(tables: StudyFile) -> None:
-    group, knobs = tables.study.group, list(tables.vary)
-    if group is not None and group not in knobs:
-        remedy = suggestion(group, knobs) or "Name one of them, or leave it out."
-        raise SceneError("study.group", repr(group), f"a key of [vary]: {', '.join(knobs)}", remedy)
+    knobs = list(tables.vary)
+    for key in tables.study.group:
+        if key not in knobs:
+            remedy = suggestion(key, knobs) or "Name one of them, or leave it out."
+            raise SceneError("study.group", repr(key), f"a key of [vary]: {', '.join(knobs)}", remedy)
 
 
 def _check_lengths(tables: StudyFile) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import cycle
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from rigidfluid.reports.style import BLACK, PALETTE, new_figure
@@ -22,6 +24,8 @@ CROWDED = 300.0
 def error_plot(results: Results) -> Figure:
     """A line for each value of the group, through its runs in the order of the study file, and the Pareto front.
 
+    Of a group of two keys the first gives the colour, the second the marker.
+
     Parameters
     ----------
     results : Results
@@ -34,9 +38,7 @@ def error_plot(results: Results) -> Figure:
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
-    for (name, keys), colour, marker in zip(_series(results).items(), cycle(PALETTE), cycle(_MARKERS)):
-        axes.plot(*_coordinates(results, keys), marker=marker, color=colour, linewidth=1.0, label=name)
-    _draw_front(axes, results)
+    shown = [*_draw_lines(axes, results), _draw_front(axes, results)]
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
@@ -49,7 +51,7 @@ def error_plot(results: Results) -> Figure:
     axes.set_xlabel("wall time [s]")
     axes.set_ylabel(error_label(results))
     axes.grid(which="minor", alpha=0.12)
-    figure.legend(loc="outside right upper")
+    figure.legend(handles=shown, loc="outside right upper")
     return figure
 
 
@@ -59,12 +61,29 @@ def error_label(results: Results) -> str:
     return f"{kind} of {results.target.of}\nagainst {results.target.against}"
 
 
-def _series(results: Results) -> dict[str, list[str]]:
-    """Fingerprints of the points by value of the group, all in the order of the study file."""
-    group = results.study.tables.study.group
-    series: dict[str, list[str]] = {}
+def _draw_lines(axes: Axes, results: Results) -> list[Artist]:
+    """The lines, and what stands for them in the legend."""
+    series = _series(results)
+    colours = dict(zip(dict.fromkeys(words[0] for words in series), cycle(PALETTE)))
+    markers = dict(zip(dict.fromkeys(words[-1] for words in series), cycle(_MARKERS)))
+    drawn: list[Artist] = []
+    for words, keys in series.items():
+        colour, marker = colours[words[0]], markers[words[-1]]
+        drawn += axes.plot(*_coordinates(results, keys), color=colour, marker=marker, linewidth=1.0, label=words[0])
+    if len(results.study.tables.study.group) < 2:
+        return drawn
+    named: list[Artist] = [Line2D([], [], color=colour, label=word) for word, colour in colours.items()]
+    for word, marker in markers.items():
+        named.append(Line2D([], [], color=BLACK, marker=marker, linestyle="none", label=word))
+    return named
+
+
+def _series(results: Results) -> dict[tuple[str, ...], list[str]]:
+    """Fingerprints of the points by values of the group, all in the order of the study file."""
+    series: dict[tuple[str, ...], list[str]] = {}
     for key, settings in _settings(results).items():
-        series.setdefault("runs" if group is None else _words(results, group, settings.get(group)), []).append(key)
+        words = tuple(_words(results, knob, settings.get(knob)) for knob in results.study.tables.study.group)
+        series.setdefault(words or ("runs",), []).append(key)
     return series
 
 
@@ -92,13 +111,16 @@ def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[f
     return [results.points[key][0] for key in keys], [results.points[key][1] for key in keys]
 
 
-def _draw_front(axes: Axes, results: Results) -> None:
-    """Mark the front's runs and write their knobs beside them, but for the group, which the colour tells."""
+def _draw_front(axes: Axes, results: Results) -> Artist:
+    """Mark the front's runs and write their knobs beside them, but for the group, which the lines tell."""
     seconds, errors = _coordinates(results, results.front)
     axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
-    axes.plot(seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0)
-    shown = [key for key in results.study.knobs if key != results.study.tables.study.group]
+    (rings,) = axes.plot(
+        seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0
+    )
+    shown = [key for key in results.study.knobs if key not in results.study.tables.study.group]
     settings = _settings(results)
     for key in results.front:
         words = "\n".join(_words(results, knob, settings[key][knob]) for knob in shown if knob in settings[key])
         axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)
+    return rings

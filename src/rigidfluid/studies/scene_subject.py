@@ -37,7 +37,7 @@ class SceneSubject:
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
         self._data = read_toml(study.scene)
-        self._is_warm = False
+        self._warm: set[str] = set()
         scenes, _ = tried(study.settings(), self._scene)
         check_figure(self._figure, scenes[0])
         self.target = _target(study.tables.study.label, study.tables.error)
@@ -70,10 +70,10 @@ class SceneSubject:
         return Scene.from_dict(self._tables(settings))
 
     def _warm_up(self, scene: Scene) -> None:
-        """One step that is not measured, so that the first run does not pay for imports and compiled kernels."""
-        if not self._is_warm:
+        """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""
+        if scene.fluid.backend not in self._warm:
             run(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
-            self._is_warm = True
+            self._warm.add(scene.fluid.backend)
 
 
 def _target(label: str, error: ErrorTable) -> Target:

@@ -81,10 +81,8 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.transfer import transfer
 
         source, before = self.numbering_of(old), kinetic_energy(self._any(old), old.points, fluid["velocity"])
-        self.drop_factors()
         target = self._for_projection(new)
-        moved = transfer(source, target, self.options.tolerance, fluid, old, new)
-        self.drop_factors()
+        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new)
         return moved, before - kinetic_energy(target, new.points, moved["velocity"])
 
     @final

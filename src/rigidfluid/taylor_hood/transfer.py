@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from rigidfluid.core.types import FloatArray, FluidState, Mesh, Pose, Twist
@@ -17,14 +19,20 @@ _TIGHTER, _TIGHTEST = 1e-3, 1e-11
 
 
 def transfer(
-    source: Numbering, target: Discretisation, tolerance: float, fluid: FluidState, old: Mesh, new: Mesh
+    source: Numbering,
+    target: Discretisation,
+    tolerance: float,
+    forget: Callable[[], None],
+    fluid: FluidState,
+    old: Mesh,
+    new: Mesh,
 ) -> FluidState:
     """The state on ``new``.
 
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a blow of pressure at the next step: each level is
-    projected, on the mesh where it belongs.
+    projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
     """
     on_nodes = Samples(old, source, target.numbering.node_points(new.points))
     on_vertices = Samples(old, source, new.points)
@@ -35,7 +43,9 @@ def transfer(
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position = fluid["position" + suffix]
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
+        forget()
         moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
+    forget()
     return moved
 
 

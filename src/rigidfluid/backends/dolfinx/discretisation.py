@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from petsc4py import PETSc
 from scipy.linalg import block_diag
@@ -103,7 +105,7 @@ class PetscDiscretisation:
         topology.forms.assemble(topology.matrix, s.inertia, s.viscosity, s.advection)
         operator = constraint.operator(s.node_points, s.position)
         inertia = block_diag(*s.mass_matrix[~s.controlled]) if constraint.twists else np.zeros((0, 0))
-        schur = schur_data(topology.space, topology.forms, self.surfaces, s.points, s.inertia, s.viscosity)
+        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, s.points, s.inertia, s.viscosity)
         return Reduced(constraint, topology.matrix, operator, inertia, schur)
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:

@@ -11,7 +11,7 @@ from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.types import FloatArray
 
-_COMPILER = {"cffi_extra_compile_args": ["-O2", "-march=native"]}
+_COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
 
 
 class Forms:

@@ -104,7 +104,7 @@ class Krylov(StaleSolver[Reduced]):
         """Settings in PETSc's database while the solver is set up; the scene's stay, so that PETSc tells the unread."""
         database = PETSc.Options(_PREFIX)
         for key, value in (dict(defaults) | self._settings).items():
-            database[key] = value
+            database[key] = None if value is True else value  # of a flag PETSc wants the name alone
         try:
             yield
         finally:
@@ -120,7 +120,7 @@ class StaleLU(Krylov):
     when_fresh: ClassVar[int] = 3
     most: ClassVar[int] = 60
     defaults: ClassVar[Settings] = {
-        "ksp_type": "gmres",
+        "ksp_type": "fgmres",  # keeps what the factors gave: one back-substitution less than gmres
         "ksp_gmres_restart": 60,
         "pc_type": "lu",
         "pc_factor_mat_solver_type": "mumps",
@@ -166,12 +166,12 @@ class StaleSchur(Krylov):
         pressure = PETSc.IS().createStride(constraint.pressures, first=first + moving, step=1, comm=comm)
         ksp.getPC().setType("fieldsplit")
         ksp.getPC().setFieldSplitIS(("velocity", velocity), ("pressure", pressure))
-        if matrix.schur.enclosed:
+        if matrix.schur().enclosed:
             shell.setNullSpace(_constant_pressure(shell, moving))
 
     def finish(self, ksp: Any, matrix: Reduced) -> None:
         _, pressure = ksp.getPC().getFieldSplitSchurGetSubKSP()
-        pressure.getPC().setPythonContext(CahouetChabard(matrix.schur))
+        pressure.getPC().setPythonContext(CahouetChabard(matrix.schur()))
 
 
 class _Operator:

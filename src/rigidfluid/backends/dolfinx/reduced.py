@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,14 +19,14 @@ from rigidfluid.core.types import FloatArray
 class Reduced:
     """``matrix`` K and ``operator`` P of one step, ``inertia`` (t, t) of the free bodies' twists.
 
-    ``schur``: what the Schur complement of the pressures is made of.
+    ``schur()``: what the Schur complement of the pressures is made of; asked by all processes together.
     """
 
     constraint: DistributedConstraint
     matrix: Any
     operator: Any
     inertia: FloatArray
-    schur: SchurData
+    schur: Callable[[], SchurData]
 
     def apply(self, x: FloatArray) -> FloatArray:
         """(Pᵀ K P + inertia) x, of this process' unknowns."""

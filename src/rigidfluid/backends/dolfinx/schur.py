@@ -18,7 +18,7 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 if TYPE_CHECKING:
     from rigidfluid.backends.dolfinx.reduced import Reduced
 
-MASS_DOMINATES = 0.01
+MASS_DOMINATES = 1e-3
 """From this inertia · h² / viscosity on, h of the smallest cell, Jacobi serves the velocities better than multigrid."""
 
 
@@ -30,6 +30,7 @@ class SchurData:
     ``open`` (owned vertices,): where a pressure is prescribed; ``enclosed``: nowhere.
     """
 
+    dimension: int
     inertia: float
     viscosity: float
     forms: Forms
@@ -49,15 +50,22 @@ def schur_data(
         if face.condition.type == "pressure":
             is_open[face.nodes[face.nodes < numbering.vertices]] = True
     cell = float(volume ** (1.0 / numbering.dimension))
-    return SchurData(inertia, viscosity, forms, cell, is_open[space.owned_vertices], surfaces.enclosed)
+    is_open = is_open[space.owned_vertices]
+    return SchurData(numbering.dimension, inertia, viscosity, forms, cell, is_open, surfaces.enclosed)
 
 
-def velocity_options(matrix: Reduced) -> dict[str, str]:
+def velocity_options(matrix: Reduced) -> dict[str, str | float | int]:
     """By mass dominance."""
-    schur = matrix.schur
+    schur = matrix.schur()
     if schur.inertia * schur.cell**2 > MASS_DOMINATES * schur.viscosity:
         return {"fieldsplit_velocity_pc_type": "jacobi"}
-    return {"fieldsplit_velocity_pc_type": "gamg"}
+    prefix = "fieldsplit_velocity_pc_hypre_boomeramg_"
+    return {
+        "fieldsplit_velocity_pc_type": "hypre",
+        f"{prefix}strong_threshold": 0.5,
+        f"{prefix}numfunctions": schur.dimension,
+        f"{prefix}nodal_coarsen": 1,
+    }
 
 
 class CahouetChabard:
