@@ -7,10 +7,11 @@ from typing import Any
 
 import basix.ufl
 import numpy as np
-from dolfinx import fem, graph, la
+from dolfinx import fem, la
 from dolfinx.mesh import create_mesh
 from mpi4py import MPI
 
+from rigidfluid.backends.dolfinx import compat
 from rigidfluid.core.ranks import MpiRanks
 from rigidfluid.core.types import FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -101,7 +102,7 @@ def _as_dolfinx(mesh: Mesh, communicator: Any) -> Any:
 
 def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -> Any:
     """A partitioner that leaves each cell with the process that has it."""
-    return graph.adjacencylist(np.full((len(cells[0]) // width, 1), communicator.rank, dtype=np.int32))
+    return compat.staying(len(cells[0]) // width, communicator)
 
 
 def _corners(mesh: Mesh, made: Any) -> IntArray:
