@@ -5,17 +5,12 @@ Where DOLFINx is installed its backend, which shares the work, makes the same ru
 
 import csv
 import json
-import os
 import shutil
-import subprocess
-import sys
 from importlib.util import find_spec
-from pathlib import Path
 
 import numpy as np
 import pytest
 from falling import SCENES
-from gathered_backend import install_gathered
 
 from rigidfluid.core.vtu import read_pvd, read_vtu
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -25,7 +20,6 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun"),
 ]
 
-SUPPORT = Path(__file__).parents[1] / "support"
 SETTINGS = {
     "fluid.backend": '"gathered"',
     "mesh.size": 0.3,
@@ -40,35 +34,10 @@ SETTINGS = {
 """A disk that nears the floor; its mesh is made anew on the way."""
 
 
-@pytest.fixture
-def mpirun(tmp_path):
-    """Runs `rigidfluid` in so many processes, which must end by themselves."""
-    plugin = tmp_path / "plugin"
-    install_gathered(plugin)
-    paths = [plugin, SUPPORT, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
-    more = {
-        "PYTHONPATH": os.pathsep.join(map(str, paths)),
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-        "OMP_NUM_THREADS": "1",
-        "COLUMNS": "200",
-    }
-
-    def run(count, *arguments, **variables):
-        command = ["mpirun", "-n", str(count), sys.executable, "-W", "error", "-m", "rigidfluid", *map(str, arguments)]
-        return subprocess.run(
-            command, env=os.environ | more | variables, capture_output=True, text=True, timeout=120, check=False
-        )
-
-    return run
-
-
 def fall(out, *options, **settings):
     chosen = SETTINGS | {key.replace("__", "."): value for key, value in settings.items()}
     words = [word for key, value in chosen.items() for word in ("--set", f"{key}={value}")]
-    return ["run", SCENES / "falling_disk.toml", "--out", out, *options, *words]
+    return ["-m", "rigidfluid", "run", SCENES / "falling_disk.toml", "--out", out, *options, *words]
 
 
 def table(path):

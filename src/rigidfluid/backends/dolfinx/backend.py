@@ -61,6 +61,7 @@ class Dolfinx(TaylorHoodBackend):
 
         if self._topology is None or self._topology.numbering is not numbering:
             if self._topology is not None:
+                self._solver.forget()
                 self._topology.destroy()
             self._topology = Topology(numbering, mesh)
         return self._topology

@@ -33,23 +33,19 @@ class DistributedExtension:
         self._space, self._owned = space, len(space.owned_vertices)
         order = space.vertex_of_dof
         ours = csr_array(matrix)[order][:, order]
-        self._held, self._order = held[order], order
-        free = diags_array((~self._held).astype(float))
-        one = np.where(self._held, 1.0, 0.0)
-        one[self._owned :] = 0.0
-        self._coupling = self._summed(free @ ours @ diags_array(self._held.astype(float)))
-        self._solver = _solver(self._summed(free @ ours @ free + diags_array(one)), space.numbering.dimension)
+        self._order, self._free = order, np.flatnonzero(~held)
+        on_held, on_free = (diags_array(chosen[order].astype(float)) for chosen in (held, ~held))
+        self._coupling = self._summed(on_free @ ours @ on_held)
+        self._solver = _solver(self._summed(on_free @ ours @ on_free + on_held), space.numbering.dimension)
 
     def fill(self, values: FloatArray) -> None:
         given, right_side = self._coupling.createVecs()
-        given.array[:] = np.where(self._held, values[self._order], 0.0)[: self._owned]
+        given.array[:] = values[self._order[: self._owned]]
         self._coupling.mult(given, right_side)
         right_side.scale(-1.0)
         solution = given.duplicate()
         self._solver.solve(right_side, solution)
-        found = self._space.pressures(solution.array)
-        free = self._order[~self._held]
-        values[free] = found[free]
+        values[self._free] = self._space.pressures(solution.array)[self._free]
 
     def _summed(self, ours: Any) -> Any:
         """The sum over the processes, in PETSc's numbers of the vertices."""

@@ -7,10 +7,11 @@ from typing import Any
 
 import basix.ufl
 import numpy as np
-from dolfinx import fem, graph, la
+from dolfinx import fem, la
 from dolfinx.mesh import create_mesh
 from mpi4py import MPI
 
+from rigidfluid.backends.dolfinx import compat
 from rigidfluid.core.ranks import MpiRanks
 from rigidfluid.core.types import FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -20,7 +21,7 @@ _EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((2, 3), (1, 3), (1, 2), (0, 3), (0, 2
 
 
 class Space:
-    """The mesh with its spaces ``velocity`` (P2, vectors) and ``pressure`` (P1).
+    """The mesh with its spaces ``velocity`` (P2, vectors) and ``pressure`` (P1); `move` says where its vertices are.
 
     Its degrees of freedom that this process owns come first, then those of its borders that others own. Fields on
     nodes (nodes, d) and vertices (vertices,) are in the order of ``numbering``.
@@ -88,30 +89,20 @@ class Space:
 
 def _as_dolfinx(mesh: Mesh, communicator: Any) -> Any:
     d = mesh.points.shape[1]
-    cells, points = mesh.cells, mesh.points
+    cells, count = mesh.cells, len(mesh.points)
     if mesh.part is not None:
-        cells, points = mesh.part.vertices[cells], _in_blocks(mesh)
+        cells, count = mesh.part.vertices[cells], int(mesh.part.counts[0])
+    # Each process hands in a block of the whole's points; where they are is told by `move`.
+    first, end = (count * rank // communicator.size for rank in (communicator.rank, communicator.rank + 1))
+    nowhere = np.zeros((end - first, d))
     element = basix.ufl.element("Lagrange", ("triangle", "tetrahedron")[d - 2], 1, shape=(d,))
-    return create_mesh(
-        communicator, cells, np.ascontiguousarray(points), element, partitioner=partial(_stay, width=d + 1)
-    )
+    # By name: the order of `x` and `e` depends on DOLFINx' version.
+    return create_mesh(communicator, cells, x=nowhere, e=element, partitioner=partial(_stay, width=d + 1))
 
 
 def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -> Any:
     """A partitioner that leaves each cell with the process that has it."""
-    return graph.adjacencylist(np.full((len(cells[0]) // width, 1), communicator.rank, dtype=np.int32))
-
-
-def _in_blocks(mesh: Mesh) -> FloatArray:
-    """The whole's points, dealt out in blocks of equal size in the order of their numbers, as DOLFINx reads them."""
-    assert mesh.part is not None
-    part, ranks = mesh.part, mesh.ranks
-    starts = np.linspace(0, part.counts[0], ranks.size + 1).astype(np.int64)
-    holder = np.searchsorted(starts, part.vertices, side="right") - 1
-    sent = [np.flatnonzero(part.owned & (holder == rank)) for rank in range(ranks.size)]
-    received = ranks.exchanged([(part.vertices[to], mesh.points[to]) for to in sent])
-    numbers = np.concatenate([number for number, _ in received])
-    return np.asarray(np.concatenate([points for _, points in received])[np.argsort(numbers)])
+    return compat.staying(len(cells[0]) // width, communicator)
 
 
 def _corners(mesh: Mesh, made: Any) -> IntArray:

@@ -1,0 +1,79 @@
+"""Three processes with DOLFINx' backend take the steps that one takes with scikit-fem's."""
+
+import json
+import shutil
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytestmark = [
+    pytest.mark.skipif(find_spec("dolfinx") is None, reason="DOLFINx is not installed"),
+    pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun"),
+]
+
+STEPS = Path(__file__).parents[1] / "support" / "shared_steps.py"
+CHANNEL = {
+    "scene": {"name": "channel", "dimension": 2},
+    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0], "tolerance": 1e-11},
+    "domain": {"lower": [0.0, 0.0], "upper": [3.0, 1.0]},
+    "boundary": [{"on": "left", "type": "velocity", "velocity": [1.0, 0.0], "profile": "parabolic"}]
+    + [{"on": "right", "type": "pressure", "pressure": 0.3}, {"on": "top", "type": "slip"}],
+    "body": [
+        {"type": "sphere", "radius": 0.15, "density": 2.0, "position": [1.1, 0.5]},
+        {"type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.4, 0.7]},
+        {"type": "sphere", "radius": 0.15, "position": [2.0, 0.5], "density": 1.0}
+        | {"prescribed": {"velocity": [0.0, -0.2], "angular_velocity": 1.0}},
+    ],
+    "mesh": {"size": 0.2, "size_body": 0.04},
+    "time": {"step": 0.002, "end": 1.0},
+    "output": {"every": 1.0, "probes": [[0.1, 0.1], [1.5, 0.5], [2.9, 0.9], [1.1, 0.5]]},
+}
+ENCLOSED = CHANNEL | {
+    "scene": {"name": "enclosed", "dimension": 2},
+    "boundary": [
+        {"on": "left", "type": "velocity", "velocity": [1.0, 0.0], "profile": "parabolic"},
+        {"on": "right", "type": "velocity", "velocity": [0.6666666666666666, 0.0]},
+    ],
+    "body": CHANNEL["body"][:2],
+}
+ROOM = CHANNEL | {
+    "scene": {"name": "room", "dimension": 3},
+    "fluid": CHANNEL["fluid"] | {"gravity": [0.0, -10.0, 0.0]},
+    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 1.0, 1.0]},
+    "boundary": [{"on": "left", "type": "velocity", "velocity": [0.5, 0.0, 0.0]}]
+    + [{"on": "right", "type": "pressure", "pressure": 0.3}, {"on": "front", "type": "slip"}],
+    "body": [{"type": "sphere", "radius": 0.25, "density": 2.0, "position": [1.1, 0.5, 0.5]}],
+    "mesh": {"size": 0.5, "size_body": 0.2},
+    "output": {"every": 1.0, "probes": [[0.1, 0.1, 0.1], [1.9, 0.9, 0.9]]},
+}
+
+
+@pytest.fixture
+def stepped(mpirun, tmp_path):
+    """What `shared_steps` prints."""
+
+    def run(scene, more):
+        (tmp_path / "scene.json").write_text(json.dumps(scene))
+        result = mpirun(3, STEPS, tmp_path / "scene.json", json.dumps(more))
+        assert result.returncode == 0, result.stderr
+        return json.loads(result.stdout)
+
+    return run
+
+
+@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM], ids=["channel", "enclosed", "room"])
+def test_three_processes_step_as_one_does(stepped, scene):
+    found = stepped(scene, [])
+    assert found["alone"]["remeshes"] == 1
+    for shared, _ in found["shared"]:
+        assert shared == found["shared"][0][0]
+        for name, expected in found["alone"].items():
+            scale = np.abs(expected).max()
+            np.testing.assert_allclose(shared[name], expected, rtol=0, atol=1e-8 * scale, err_msg=name)
+
+
+def test_a_step_keeps_no_memory(stepped):
+    for _, (before, after) in stepped(CHANNEL, [10, 30])["shared"]:
+        assert after - before < 30 * 50_000  # far less than the matrices of a step, or a mesh of every second
