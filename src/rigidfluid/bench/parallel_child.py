@@ -15,6 +15,7 @@ from typing import Any
 from rigidfluid.bench.collisions import count_contacts
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.bench.parallel import PAPER_NODES
+from rigidfluid.core.contacts import select
 from rigidfluid.core.launch import Launch
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.simulation import Simulation
@@ -69,7 +70,8 @@ def measured(dimension: int, bodies: int, coarseness: float) -> dict[str, Any]:
     assert mesh is not None
     collision = sum(run.watch.seconds[stage] - before[stage] for stage in _COLLISION)
     ranks = mesh.ranks
-    pairs, at_wall = count_contacts(run.state.contacts, bodies)
+    seen = run.state.contacts
+    pairs, at_wall = count_contacts(select(seen, seen.gap <= RANGE), bodies)
     return {
         "mesh_nodes": len(mesh.points) if mesh.part is None else int(mesh.part.counts[0]),
         "unknowns": run.system.backend.unknowns(mesh, run.system.controlled),
