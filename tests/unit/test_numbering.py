@@ -23,6 +23,6 @@ def test_a_part_knows_all_nodes_on_a_surface_and_no_others(dimension):
     made = box(dimension, 3, seed=0)
     mesh = Mesh(made.points, made.cells, made.facets, np.zeros_like(made.markers))
     _, surface = places(mesh)
-    parts = on_ranks(4, lambda ranks: places(distributed(mesh if ranks.is_root else None, ranks)))
+    parts = on_ranks(9, lambda ranks: places(distributed(mesh if ranks.is_root else None, ranks)))
     for nodes, found in parts:
         assert found == surface & nodes
