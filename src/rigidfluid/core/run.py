@@ -32,7 +32,8 @@ def run(
     out : Path or None
         Folder for the results; None keeps them in memory alone.
     resume : bool
-        Go on from the checkpoint in ``out``; the result equals that of an uninterrupted run to the last bit.
+        Go on from the checkpoint in ``out``; the result equals that of an uninterrupted run to the last bit, unless
+        several processes share the run and its backend's factors depend on the order of their messages.
     progress : callable or None
         Called after each accepted step.
     processes : int or None
