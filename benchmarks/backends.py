@@ -183,8 +183,9 @@ def plot(found: Mapping[str, Any], file: Path) -> None:
         unknowns, seconds = [row["unknowns"] for row in rows], [row["seconds"] for row in rows]
         growth = exponent(unknowns, seconds)
         axes.loglog(unknowns, seconds, "o-", label=name if growth is None else f"{name}: exponent {growth:.2f}")
-    axes.set(xlabel="unknowns", ylabel="seconds a step")
-    axes.grid(which="both", alpha=0.3)
+    axes.set(xlabel="unknowns", ylabel="seconds a step", xticks=unknowns, xticklabels=unknowns)
+    axes.minorticks_off()
+    axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
     figure.savefig(file, dpi=150)
 

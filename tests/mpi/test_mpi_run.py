@@ -102,7 +102,8 @@ def test_one_process_that_fails_ends_all(mpirun, tmp_path):
 
 
 def test_a_full_disk_of_one_process_is_reported_once(mpirun, tmp_path):
+    assert mpirun(2, *fall(tmp_path, time__end=0.004)).returncode == 0
     (tmp_path / "state.1.h5.part").symlink_to("/dev/full")
-    result = mpirun(2, *fall(tmp_path, time__end=0.004))
+    result = mpirun(2, *fall(tmp_path, "--resume", time__end=0.008))
     assert result.returncode != 0
     assert result.stderr.count("state.1.h5: found No space left") == 1

@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 from rigidfluid.bench import processes
 from rigidfluid.bench.collisions import PAPER
 from rigidfluid.bench.grids import balls_in_a_box
-from rigidfluid.bench.parallel import BACKEND, PAPER_NODES, PAPER_SPEEDUP, row
+from rigidfluid.bench.mesh_sizes import EDGES, PAPER_NODES
+from rigidfluid.bench.parallel import BACKEND, PAPER_SPEEDUP, row
 from rigidfluid.bench.parallel_child import scene
 from rigidfluid.bench.processes import measured_apart
 from rigidfluid.cli import app
@@ -45,7 +46,7 @@ def test_without_one_rank_there_is_no_speedup():
 
 def test_the_papers_tables_have_the_same_arrangements():
     arrangements = {dimension: list(table) for dimension, table in PAPER.items()}
-    for table in (PAPER_NODES, PAPER_SPEEDUP):
+    for table in (PAPER_NODES, EDGES, PAPER_SPEEDUP):
         assert {dimension: list(rows) for dimension, rows in table.items()} == arrangements
 
 

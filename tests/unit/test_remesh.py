@@ -16,11 +16,12 @@ from mesh_tools import (
     upright,
 )
 
+from rigidfluid.core import refine_surface as surface
 from rigidfluid.core import remesh as module
 from rigidfluid.core.mesh_motion import MeshMotion
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.refine_surface import refine_surface
+from rigidfluid.core.refine_surface import long_edges, refine_surface
 from rigidfluid.core.remesh import initial_mesh, remesh
 from rigidfluid.core.size_field import Sizes, wanted_size
 from rigidfluid.core.types import Mesh, Pose
@@ -241,22 +242,41 @@ def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
         remesh(mesh, [DISK], pose, walls, COARSE)
 
 
-def test_where_bisection_inverts_a_cell_the_cells_are_improved_first(monkeypatch):
+def with_a_vertex_below_the_surface():
+    """A disk near the floor, with a vertex added between a facet and the disk's arc above it; and that facet."""
     pose, walls = upright([1, RADIUS + 0.02]), box_walls(LOWER, UPPER, 1)
     mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
-    bisected = []
+    edges, middles, _ = long_edges(mesh, [DISK], pose, walls, COARSE, 1.5)
+    added = 0.5 * (middles[0] + mesh.points[edges[0]].mean(axis=0))
+    split = np.flatnonzero(np.isin(mesh.cells, edges[0]).sum(axis=1) == 2)
+    assert len(split) == 1
+    cells = np.repeat(mesh.cells[split], 3, axis=0)
+    np.fill_diagonal(cells, len(mesh.points))
+    points = np.vstack([mesh.points, added])
+    mesh = replace(mesh, points=points, cells=np.vstack([np.delete(mesh.cells, split, axis=0), cells]))
+    return mesh, pose, walls, edges[0]
 
-    def inverts_at_first(mesh, *arguments):
-        bisected.append(mesh)
-        refined = refine_surface(mesh, *arguments)
-        return spoil_invert_a_cell(refined) if len(bisected) == 1 else refined
 
-    monkeypatch.setattr(module, "refine_surface", inverts_at_first)
+def test_a_bisection_that_would_invert_a_cell_waits_for_better_cells():
+    mesh, pose, walls, edge = with_a_vertex_below_the_surface()
+    assert cell_volumes(mesh.points, mesh.cells).min() > 0
+    refined = refine_surface(mesh, [DISK], pose, walls, COARSE)
+    assert cell_volumes(refined.points, refined.cells).min() > 0
+    assert len(refined.points) > len(mesh.points)
+    left, _, _ = long_edges(refined, [DISK], pose, walls, COARSE, 1.5)
+    assert left.tolist() == [edge.tolist()]
     new = remesh(mesh, [DISK], pose, walls, COARSE)
     assert_valid(new, [DISK], pose, LOWER, UPPER)
-    assert len(bisected) == 2
-    assert not np.array_equal(bisected[0].points, bisected[1].points)
-    assert body_facets(bisected[0], 1) == body_facets(bisected[1], 1)
+    assert not len(long_edges(new, [DISK], pose, walls, COARSE, 1.5)[0])
+
+
+def test_edges_that_never_fit_stay(monkeypatch):
+    mesh, pose, walls, _ = with_a_vertex_below_the_surface()
+    tried = []
+    monkeypatch.setattr(surface, "spares_cells", lambda _, edges, __: tried.append(1) or np.zeros(len(edges), bool))
+    new = remesh(mesh, [DISK], pose, walls, COARSE)
+    assert len(tried) >= module.ROUNDS
+    assert body_facets(new, 1) == body_facets(mesh, 1)
 
 
 def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):

@@ -16,6 +16,7 @@ from rigidfluid.core.checkpoint import read_checkpoint
 from rigidfluid.core.ranks import ALONE
 from rigidfluid.core.simulation import Simulation
 from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.core.writer import earlier_run
 from rigidfluid.errors import MeshError, OutputError, SceneError, StepRejected
 from rigidfluid.reports import report
 
@@ -153,6 +154,31 @@ def test_checkpoints_of_different_times_are_refused(tmp_path):
     refused_by_all(2, "found checkpoints of different times", tmp_path, resume=True)
 
 
+def test_a_kill_between_the_replacements_of_two_checkpoints_loses_nothing(tmp_path):
+    expected = shared(2)
+    shared(2, tmp_path, end=0.02)
+    own, staged = tmp_path / "state.1.h5", tmp_path / "state.1.h5.part"
+    before = own.read_bytes()
+    shared(2, tmp_path, resume=True, end=0.04)
+    after = own.read_bytes()
+    own.rename(staged)
+    own.write_bytes(before)
+    on_ranks(2, lambda ranks: earlier_run(tmp_path, ranks))
+    assert (own.read_bytes(), staged.exists()) == (after, False)
+    for history, wanted in zip(shared(2, tmp_path, resume=True), expected, strict=True):
+        assert_same_tables(history, wanted)
+
+
+def test_what_another_time_left_staged_is_not_taken(tmp_path):
+    shared(2, tmp_path, end=0.008)
+    before = (tmp_path / "state.1.h5").read_bytes()
+    shared(2, tmp_path, resume=True, end=0.016)
+    for name in ("state.1.h5", "state.1.h5.part"):
+        (tmp_path / name).write_bytes(before)
+    refused_by_all(2, "found checkpoints of different times, 2048 and 4096", tmp_path, resume=True)
+    assert (tmp_path / "state.1.h5").read_bytes() == before
+
+
 def test_a_missing_part_is_named(tmp_path):
     shared(2, tmp_path, end=0.008)
     (tmp_path / "state.1.h5").unlink()
@@ -161,8 +187,9 @@ def test_a_missing_part_is_named(tmp_path):
 
 def test_a_new_run_clears_the_parts_of_more_ranks(tmp_path):
     shared(3, tmp_path, end=0.008)
+    (tmp_path / "state.1.h5.part").touch()
     rigidfluid.run(fall(0.008), tmp_path)
-    assert not list(tmp_path.glob("state.*.h5"))
+    assert [path.name for path in tmp_path.glob("state*")] == ["state.h5"]
     assert {path.suffix for path in (tmp_path / "fields").iterdir()} == {".vtu"}
     assert len(list((tmp_path / "fields").iterdir())) == 2
 

@@ -9,9 +9,10 @@ from functools import partial
 import numpy as np
 
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
+from rigidfluid.bench.mesh_sizes import mesh_sizes
 from rigidfluid.bench.timing import fastest
 from rigidfluid.core.interfaces import Detector, PartOptions
-from rigidfluid.core.meshing import generate_mesh
+from rigidfluid.core.remesh import initial_mesh
 from rigidfluid.core.types import Contacts, Mesh, Pose
 from rigidfluid.core.wrenches import contact_wrench
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
@@ -23,9 +24,6 @@ PAPER = {
     3: {1: (0, 1), 27: (0, 26), 64: (0, 56), 125: (70, 98)},
 }
 """Dimension → bodies → pairs of bodies in contact, bodies in contact with the boundary; arXiv:2402.19093."""
-
-SIZES = {2: (0.0075, 0.0075), 3: (0.045, 0.05)}
-"""Edge lengths on the balls and elsewhere that give about as many vertices as the paper's meshes [length]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +69,7 @@ def collision_rows(most_bodies: int = 125, repeats: int = 5) -> Iterator[Collisi
 
 def _row(dimension: int, bodies: int, counts: tuple[int, int], repeats: int) -> CollisionRow:
     balls, pose, walls = balls_in_a_box(dimension, bodies)
-    size_body, size = SIZES[dimension]
-    mesh = generate_mesh(balls, pose, np.zeros(dimension), np.ones(dimension), size, size_body, 0.5)
+    mesh = initial_mesh(balls, pose, np.zeros(dimension), np.ones(dimension), walls, mesh_sizes(dimension, bodies))
     detectors = (
         SphereDetector(PartOptions(), balls, walls),
         NarrowBandDetector(NarrowBandOptions(), balls, walls),

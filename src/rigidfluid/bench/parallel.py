@@ -7,17 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from rigidfluid.bench.collisions import PAPER
+from rigidfluid.bench.mesh_sizes import PAPER_NODES
 from rigidfluid.bench.processes import measured_apart
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 BACKEND = "dolfinx"
 """The fluid backend that several processes can share."""
-
-PAPER_NODES = {
-    2: {1: 16462, 25: 17780, 49: 18284, 81: 18813, 100: 19139},
-    3: {1: 17073, 27: 18213, 64: 18789, 125: 20301},
-}
-"""Dimension → bodies → nodes of the mesh; arXiv:2402.19093, Tables 2 and 3."""
 
 PAPER_SPEEDUP = {
     2: {

@@ -8,13 +8,12 @@ from __future__ import annotations
 import json
 import sys
 import time
-from math import ceil, log2
 from pathlib import Path
 from typing import Any
 
 from rigidfluid.bench.collisions import count_contacts
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
-from rigidfluid.bench.parallel import PAPER_NODES
+from rigidfluid.bench.mesh_sizes import mesh_sizes
 from rigidfluid.core.contacts import select
 from rigidfluid.core.launch import Launch
 from rigidfluid.core.scene import Scene
@@ -24,9 +23,6 @@ from rigidfluid.core.threads import one_openblas_thread
 STEPS = 10
 """As many as in the paper."""
 
-VERTICES = {2: 1.1, 3: 2.0}
-"""How many there are in a volume of (edge length)^d, about."""
-
 _COLLISION = ("contact", "detect")
 """What the run's stopwatch calls the bodies' way through their contacts, with forces and wrenches, and detection."""
 
@@ -34,8 +30,7 @@ _COLLISION = ("contact", "detect")
 def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfinx") -> Scene:
     """Balls at rest in a box of fluid at rest, without gravity, and contact forces that hardly move them."""
     balls, pose, _ = balls_in_a_box(dimension, bodies)
-    size = coarseness * _edge_length(dimension, bodies, sum(each.volume for each in balls))
-    refinements = ceil(log2(coarseness)) + (dimension == 3)  # in 3D such facets are too long for the narrow gaps
+    sizes = mesh_sizes(dimension, bodies, coarseness)
     ball = {"type": "sphere", "radius": balls[0].radius, "density": 1.0}
     return Scene.from_dict(
         {
@@ -44,16 +39,11 @@ def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfin
             "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
             "body": [ball | {"position": centre.tolist()} for centre in pose.position],
             "contact": {"detector": "narrow_band", "threads": 1, "law": "centre", "epsilon": 1.0, "range": RANGE},
-            "mesh": {"size": size, "size_body": 0.98 * size, "refinements": refinements},
+            "mesh": {"size": sizes.size, "size_body": sizes.size_body, "refinements": sizes.refinements},
             "time": {"step": 1e-3, "end": 1.0},
             "output": {"every": 1.0},
         }
     )
-
-
-def _edge_length(dimension: int, bodies: int, volume: float) -> float:
-    """That gives about as many vertices as the paper's mesh, around bodies of that volume in the unit box [length]."""
-    return float((VERTICES[dimension] * (1.0 - volume) / PAPER_NODES[dimension][bodies]) ** (1 / dimension))
 
 
 def measured(dimension: int, bodies: int, coarseness: float) -> dict[str, Any]:

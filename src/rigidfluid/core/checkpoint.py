@@ -53,6 +53,11 @@ def adopt_checkpoint(path: Path) -> None:
     _staged(path).replace(path)
 
 
+def read_staged(path: Path, ranks: Ranks) -> Checkpoint:
+    """What was staged for ``path`` and not put in its place; raises OutputError as read_checkpoint does."""
+    return read_checkpoint(_staged(path), ranks)
+
+
 def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
     """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
     if not path.is_file():

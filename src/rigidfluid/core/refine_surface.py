@@ -9,19 +9,24 @@ import numpy as np
 
 from rigidfluid.core.frames import to_body_frame, to_world
 from rigidfluid.core.interfaces import Body
+from rigidfluid.core.mesh_quality import cell_quality
 from rigidfluid.core.size_field import Sizes, wanted_size
 from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh, Pose, Wall
 
 LONGEST = 1.5
 """An edge on a body is bisected when it is longer than this many times the wanted size."""
 
+FLAT = 1e-3
+"""Quality that a bisected cell must exceed."""
+
 
 def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
     """Bisect body edges, longest first, until none is longer than LONGEST times the wanted size at its middle.
 
-    Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay.
-    Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the polygon's
-    error stays far below the gap.
+    Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay, and so do
+    those whose bisection would flatten or invert a cell: in a gap a vertex may be nearer to a facet than the surface
+    above it. Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the
+    polygon's error stays far below the gap.
 
     Parameters
     ----------
@@ -41,13 +46,20 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
     Mesh
         The same mesh if no edge is too long.
     """
+    refused: set[tuple[int, int]] = set()
     while True:
         edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes, LONGEST)
-        if not len(edges):
+        left = np.array([(a, b) not in refused for a, b in edges.tolist()], dtype=bool)
+        if not left.any():
             return mesh
+        edges, middles = edges[left], middles[left]
         length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
         chosen = one_per_cell(mesh.cells, edges, length, len(mesh.points))
-        mesh = bisect(mesh, edges[chosen], middles[chosen])
+        edges, middles = edges[chosen], middles[chosen]
+        fits = spares_cells(mesh, edges, middles)
+        refused |= {(a, b) for a, b in edges[~fits].tolist()}
+        if fits.any():
+            mesh = bisect(mesh, edges[fits], middles[fits])
 
 
 def long_edges(
@@ -87,6 +99,16 @@ def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices:
     for number in found:
         chosen[number[(number >= 0) & (rank[number] < highest)]] = False
     return chosen
+
+
+def spares_cells(mesh: Mesh, edges: IntArray, middles: FloatArray) -> BoolArray:
+    """Which of ``edges`` (E, 2), of which no cell has two, can be bisected with all cells above FLAT (E,)."""
+    cells, _ = halved(mesh.cells, edges, len(mesh.points))
+    cut = cells[cells.max(axis=1) >= len(mesh.points)]
+    flat = cell_quality(np.concatenate([mesh.points, middles]), cut) <= FLAT
+    spares = np.ones(len(edges), dtype=bool)
+    spares[cut[flat].max(axis=1) - len(mesh.points)] = False
+    return spares
 
 
 def bisect(mesh: Mesh, edges: IntArray, middles: FloatArray) -> Mesh:

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from rigidfluid.core.interfaces import Body
 from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.refine_surface import long_edges, refine_surface
+from rigidfluid.core.refine_surface import LONGEST, long_edges, refine_surface
 from rigidfluid.core.signals import kept_signals
 from rigidfluid.core.size_field import Sizes, wanted_size
 from rigidfluid.core.topology import REMEDY, check_mesh, orient
@@ -32,6 +32,9 @@ BISECTABLE = 4.0
 
 GENERATIONS = 8
 """How often the first mesh is generated, each time finer where a body's edges are too long for the gap they face."""
+
+ROUNDS = 4
+"""How often cells are improved around body edges that could not be bisected."""
 
 WORST_QUALITY = 0.02
 """A re-made mesh with a cell at or below this quality is refused."""
@@ -82,7 +85,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall]
     """Re-mesh the fluid to the wanted size h(x); body vertices keep their coordinates to the last bit.
 
     Body facets are kept too, except that those too long for the gap they face are bisected first. Where that would
-    invert a cell, the cells are improved around the unbisected facets before.
+    invert a cell, the cells are improved around the unbisected facets before. Of those that still do not fit after
+    ROUNDS of it, the ones within LONGEST_EDGE stay.
 
     Parameters
     ----------
@@ -109,12 +113,11 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall]
     """
     size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
     check_mesh(mesh, quality=0.0)
-    refined = refine_surface(mesh, bodies, pose, walls, sizes)
-    if lowest_quality(refined) == 0.0:
-        improved = best_remeshed(mesh, len(bodies), size_at)
-        refined = refine_surface(improved, bodies, pose, walls, sizes)
-        check_mesh(refined, quality=0.0)
-    new = best_remeshed(refined, len(bodies), size_at)
+    new = best_remeshed(refine_surface(mesh, bodies, pose, walls, sizes), len(bodies), size_at)
+    for _ in range(ROUNDS):
+        if not len(long_edges(new, bodies, pose, walls, sizes, LONGEST)[0]):
+            break
+        new = best_remeshed(refine_surface(new, bodies, pose, walls, sizes), len(bodies), size_at)
     excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
         found = f"an edge {excess:.3g} times longer than wanted after re-meshing"

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, stage_checkpoint
+from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, read_staged, stage_checkpoint
 from rigidfluid.core.ranks import ROOT, Ranks
 from rigidfluid.core.records import Records, columns
 from rigidfluid.core.tables import Table, read_rows
@@ -132,16 +132,29 @@ def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
     OutputError
         Where there is none, it was written by another number of ranks, or the ranks' files are not of one time.
     """
+    path = out / checkpoint_name(ranks.rank)
     for my_turn in (ranks.is_root, not ranks.is_root):
         with ranks.together():
             if my_turn:
-                checkpoint = read_checkpoint(out / checkpoint_name(ranks.rank), ranks)
+                checkpoint = read_checkpoint(path, ranks)
                 _refuse_other_ranks(out, checkpoint.ranks, ranks.size)
-    ticks = ranks.gathered(checkpoint.state.tick)
-    if min(ticks) < max(ticks):
-        found = f"checkpoints of different times, {min(ticks)} and {max(ticks)} shortest steps after the start"
-        raise OutputError(str(out), found, "one time in the files of all processes", "Run without --resume.")
-    return checkpoint
+    latest = int(ranks.greatest(checkpoint.state.tick))
+    with ranks.together():
+        return checkpoint if checkpoint.state.tick == latest else _caught_up(path, checkpoint.state.tick, latest, ranks)
+
+
+def _caught_up(path: Path, tick: int, latest: int, ranks: Ranks) -> Checkpoint:
+    """The ``latest`` of a run killed while its ranks replaced their checkpoints; all had staged it before one did."""
+    try:
+        staged = read_staged(path, ranks)
+    except OutputError:
+        staged = None
+    if staged is None or staged.state.tick != latest:
+        found = f"checkpoints of different times, {tick} and {latest} shortest steps after the start"
+        raise OutputError(str(path.parent), found, "one time in the files of all processes", "Run without --resume.")
+    with writing(path):
+        adopt_checkpoint(path)
+    return staged
 
 
 def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
@@ -172,7 +185,7 @@ def _clear(out: Path) -> None:
     """Remove an earlier run's files, so that two runs never mix."""
     for name in (SUMMARY, SERIES):
         (out / name).unlink(missing_ok=True)
-    for file in (*out.glob("state*.h5"), *(out / FIELDS).glob("*vtu")):
+    for file in (*out.glob("state*.h5*"), *(out / FIELDS).glob("*vtu")):
         file.unlink()
     (out / "report.html").unlink(missing_ok=True)
     shutil.rmtree(out / "report", ignore_errors=True)

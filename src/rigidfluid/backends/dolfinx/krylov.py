@@ -116,7 +116,7 @@ class Krylov(StaleSolver[Reduced]):
 class StaleLU(Krylov):
     """LU factors of the whole matrix, by MUMPS."""
 
-    price: ClassVar[int] = 30
+    price: ClassVar[int] = 20
     when_fresh: ClassVar[int] = 3
     most: ClassVar[int] = 60
     defaults: ClassVar[Settings] = {
