@@ -14,7 +14,7 @@ PAPER_NODES = {
 
 EDGES = {
     2: {1: 0.00815, 25: 0.0067, 49: 0.0066, 81: 0.0065, 100: 0.0065},
-    3: {1: 0.0485, 27: 0.06, 64: 0.08, 125: 0.09},
+    3: {1: 0.0485, 27: 0.06, 64: 0.08, 125: 0.077},
 }
 """Dimension → bodies → edge length that gives about as many vertices, found by trial [length]."""
 

@@ -53,7 +53,10 @@ class StaleSolver(ABC, Generic[Matrix]):
 
         ``apply(x)`` is A x; ``matrix()`` builds A where a new preconditioner is needed. Vectors are this process' part.
         """
-        if self.norm(residual) <= tolerance:
+        start = self.norm(residual)
+        if not np.isfinite(start):
+            raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
+        if start <= tolerance:
             return np.zeros_like(residual), 0
         if not self._is_made or self._wasted > self.price:
             self._renew(matrix)

@@ -116,7 +116,7 @@ class Krylov(StaleSolver[Reduced]):
 class StaleLU(Krylov):
     """LU factors of the whole matrix, by MUMPS."""
 
-    price: ClassVar[int] = 20
+    price: ClassVar[int] = 30
     when_fresh: ClassVar[int] = 3
     most: ClassVar[int] = 60
     defaults: ClassVar[Settings] = {
