@@ -26,6 +26,12 @@ def assemble_block_matrix(matrix: Any, blocks: Any) -> None:
     matrix.assemble()
 
 
+def cell_vertices(mesh: Any) -> Any:
+    """DOLFINx' numbers of the geometry's points of each cell (M, d+1)."""
+    geometry = mesh.geometry
+    return geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap  # the second until 0.10
+
+
 def staying(cells: int, communicator: Any) -> Any:
     """What a partitioner answers that leaves so many cells with the process that has them."""
     made = graph.adjacencylist(np.full((cells, 1), communicator.rank, dtype=np.int32))

@@ -65,11 +65,12 @@ class Reduced:
     def as_matrix(self) -> Any:
         """A PETSc matrix."""
         made = self.matrix.PtAP(self.operator)
-        twists = self.constraint.twist_slice
         made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
-        if twists.stop > twists.start:
-            numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column
-            made.setValues(numbers, numbers, self.inertia, addv=PETSc.InsertMode.ADD)
+        twists = self.constraint.twist_slice
+        numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column
+        for number, row in zip(numbers, self.inertia, strict=True):
+            coupled = np.flatnonzero(row)  # a zero between two bodies would be a new entry, which takes PETSc long
+            made.setValues(number, numbers[coupled], row[coupled], addv=PETSc.InsertMode.ADD)
         made.assemble()
         return made
 

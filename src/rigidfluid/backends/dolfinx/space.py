@@ -35,7 +35,7 @@ class Space:
         self.velocity = fem.functionspace(self.mesh, ("Lagrange", 2, (d,)))
         self.pressure = fem.functionspace(self.mesh, ("Lagrange", 1))
         corners = _corners(mesh, self.mesh)
-        self._vertex_of_geometry = _inverse(self.mesh.geometry.dofmap, corners, numbering.vertices)
+        self._vertex_of_geometry = _inverse(compat.cell_vertices(self.mesh), corners, numbering.vertices)
         middles = [numbering.edge_nodes(corners[:, pair]) for pair in map(list, _EDGES[d])]
         self.node_of_dof = _inverse(self.velocity.dofmap.list, np.column_stack([corners, *middles]), numbering.nodes)
         self.vertex_of_dof = _inverse(self.pressure.dofmap.list, corners, numbering.vertices)
@@ -107,7 +107,7 @@ def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -
 
 def _corners(mesh: Mesh, made: Any) -> IntArray:
     """Our numbers of the vertices of DOLFINx' cells, in its order of both (M, d+1)."""
-    number = made.geometry.input_global_indices[made.geometry.dofmap]
+    number = made.geometry.input_global_indices[compat.cell_vertices(made)]
     if mesh.part is None:
         return np.asarray(number, dtype=np.int64)
     order = np.argsort(mesh.part.vertices)
