@@ -287,17 +287,14 @@ Debian 13.
 The last column is the largest difference of the heights that the backends find: round-off. So the error says nothing
 about a backend, and the time alone can choose: the points of a mesh and a step lie side by side in the plot.
 
-The machine did other work at times, so single seconds may be off by a factor of two. CPU time of 80 steps of .00125
-with `size_body` .0125, which is less disturbed: `scikit-fem` 2.6 s, `dolfinx` 1.8 s, `ngsolve` 3.3 s.
-
 **What to choose when.**
 
 * `scikit-fem` unless there is a reason: it comes with rigidfluid, needs neither compiler nor MPI, and none of the
   others is faster by much on one core.
-* `dolfinx` where it is installed, with OpenBLAS: the fastest of the three, by a quarter to a third. It alone shares a
-  run among processes, and in 3D its `schur` solver needs far less memory.
+* `dolfinx` where it is installed, with OpenBLAS: the fastest of the three, by a tenth to a third. It alone shares a run
+  among processes, and in 3D its `schur` solver needs far less memory.
 * `ngsolve` to check a result with another library's elements. It integrates three to four times as slowly as
-  `scikit-fem`, and solves by the same factors; the steps take a quarter longer.
+  `scikit-fem`, and solves by the same factors; the steps take a third to a half longer.
 * Whichever it is, refine mesh and step together. Here the mesh decides: from step .0025 on a shorter step gains
   nothing until `size_body` is below .0125.
 
