@@ -17,10 +17,7 @@ from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 @final
 class StaleFactors(StaleSolver["sparse.csr_array"]):
-    """LU by `factorise`; one costs about as much as 30 to 50 iterations (PARDISO, 15,000 to 600,000 unknowns).
-
-    The price is that of MUMPS' factors in `dolfinx`, so that both are renewed at the same steps and agree to round-off.
-    """
+    """LU by `factorise`; one costs about as much as 30 to 50 iterations (PARDISO, 15,000 to 600,000 unknowns)."""
 
     price: ClassVar[int] = 30
     when_fresh: ClassVar[int] = 3

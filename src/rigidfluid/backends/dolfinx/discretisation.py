@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from petsc4py import PETSc
@@ -106,7 +106,7 @@ class PetscDiscretisation:
         operator = constraint.operator(s.node_points, s.position)
         inertia = block_diag(*s.mass_matrix[~s.controlled]) if constraint.twists else np.zeros((0, 0))
         schur = partial(schur_data, topology.space, topology.forms, self.surfaces, s.points, s.inertia, s.viscosity)
-        return Reduced(constraint, topology.matrix, operator, inertia, schur)
+        return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:
         """Of the guess, at the vertex where it is pinned to zero; other solvers need no such vertex."""

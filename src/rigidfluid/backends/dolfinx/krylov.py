@@ -14,6 +14,7 @@ from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
 from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 Settings = Mapping[str, str | float | int | bool]
@@ -114,11 +115,11 @@ class Krylov(StaleSolver[Reduced]):
 
 @final
 class StaleLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS."""
+    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `StaleFactors`, to agree to round-off."""
 
-    price: ClassVar[int] = 30
-    when_fresh: ClassVar[int] = 3
-    most: ClassVar[int] = 60
+    price: ClassVar[int] = StaleFactors.price
+    when_fresh: ClassVar[int] = StaleFactors.when_fresh
+    most: ClassVar[int] = StaleFactors.most
     defaults: ClassVar[Settings] = {
         "ksp_type": "fgmres",  # keeps what the factors gave: one back-substitution less than gmres
         "ksp_gmres_restart": 60,
