@@ -7,7 +7,19 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.types import Advance, BoolArray, Fields, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.types import (
+    Advance,
+    BoolArray,
+    Fields,
+    FloatArray,
+    FluidState,
+    Mesh,
+    Pose,
+    Response,
+    Step,
+    Twist,
+    Wrench,
+)
 
 
 class Dry(FluidBackend):
@@ -40,6 +52,13 @@ class Dry(FluidBackend):
             dissipation=0.0,
             boundary_power=0.0,
         )
+
+    def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
+        """That of the bodies' own masses."""
+        free, twists = ~step.controlled, np.zeros_like(impulses)
+        masses = step.mass_matrix[free] / step.derivative[0]
+        twists[:, free] = np.linalg.solve(masses, impulses[:, free, :, None])[..., 0]
+        return Response(twists, twists)
 
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """An empty state, and no energy lost."""

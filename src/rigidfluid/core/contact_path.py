@@ -3,32 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from rigidfluid.core.contacts import select
+from rigidfluid.core.coupled_movement import CoupledMovement
 from rigidfluid.core.followed import FollowedContacts
 from rigidfluid.core.implicit_contacts import cross_contacts
 from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.movement import CarriedMovement, FreeMovement, Movement
+from rigidfluid.core.movement import FreeMovement, Movement
 from rigidfluid.core.proximity import arms, may_repel, refuse_overlap
 from rigidfluid.core.redetected import RedetectedContacts
-from rigidfluid.core.rigid import lab_inertia, rotation_matrices
+from rigidfluid.core.reduced_model import ReducedModel
+from rigidfluid.core.rigid import inverse_lab_inertia, rotation_matrices
 from rigidfluid.core.state import State
-from rigidfluid.core.substep import Plan, plan, relative_motion
+from rigidfluid.core.substep import Plan, plan, relative_motion, relative_velocity
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import predict_pose
-from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.core.wrenches import contact_wrench, nothing, power
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
 """More of them in one step are refused."""
 
-MOST_INERT = 20.0
-"""A body in a film of fluid answers to a blow as if it had at most so many times its mass."""
+IMPLICIT_PARTS = int(__import__("os").environ.get("PARTS","8"))
+"""Of a step in a fluid, each an implicit step of the bodies."""
 
 MOST_ALIKE = 1_000
 """After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
@@ -37,12 +39,25 @@ ROUNDING = 1e-9
 """What is left of a step below this part of it is the rounding of sums."""
 
 
+M = TypeVar("M", bound=Movement)
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
+    ``load`` (c,), its Φ [force | force·length]."""
+
+    model: ReducedModel
+    load: FloatArray
+
+
 @dataclass(frozen=True, slots=True)
 class BodiesPath:
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them and ``held`` against them by what drives bodies [energy], and the number of ``substeps``.
+    them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies
+    [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without contacts.
     """
 
     pose: Pose
@@ -51,15 +66,17 @@ class BodiesPath:
     dissipated: float
     held: float
     substeps: int
+    friction: float = 0.0
+    coupling: Coupling | None = None
 
 
-def follow(system: System, state: State, start: float, size: float) -> BodiesPath:
+def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodiesPath:
     """Follow the bodies through one step, kicked by their contacts in velocity Verlet substeps.
 
-    Without a fluid the substeps are the whole motion. In a fluid the bodies go on with their latest acceleration,
-    contacts taken out of it, and the contacts act on their masses and what is known of the added mass; the fluid then
-    answers to the impulse. Where nothing can touch in the step, poses come from Adams–Bashforth 2 as one formula.
-    With ``implicit`` contacts one implicit step takes the place of the substeps.
+    Without a fluid the substeps are the whole motion. In a fluid they take the place of the fluid's own small steps:
+    the bodies near contacts answer with the mass and the friction that the fluid has shown, and the fluid then answers
+    to the impulse. Where nothing can touch in the step, poses come from Adams–Bashforth 2 as one formula.
+    With ``implicit`` contacts implicit steps take the place of the substeps.
 
     Parameters
     ----------
@@ -69,6 +86,8 @@ def follow(system: System, state: State, start: float, size: float) -> BodiesPat
         At the start of the step.
     start, size : float
         When it starts and how long it is [time].
+    coupling : Coupling or None
+        With the fluid in this step; None where nothing can touch, see `near_contacts`.
 
     Returns
     -------
@@ -80,9 +99,24 @@ def follow(system: System, state: State, start: float, size: float) -> BodiesPat
     StepRejected
         If bodies overlap on the way, or a contact is too stiff to be followed.
     """
-    if system.backend.problem is None:
+    if not system.backend.needs_mesh:
         return _follow_free(system, state, start, size)
-    return _follow_carried(system, state, size)
+    if coupling is None or system.law is None:
+        pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
+        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
+    return _follow_coupled(system, system.law, state, size, coupling)
+
+
+def near_contacts(system: System, state: State, size: float) -> Contacts:
+    """Contacts in range, or that may come into it in a step of this ``size``: at twice the speed of their surfaces
+    now, and all that acceleration can add."""
+    contacts = state.contacts
+    if system.law is None or len(contacts) == 0:
+        return select(contacts, np.zeros(len(contacts), dtype=bool))
+    speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
+    pull = np.append(np.linalg.norm(_accelerations(system, state), axis=1), 0.0)
+    both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
+    return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
 def _follow_free(system: System, state: State, start: float, size: float) -> BodiesPath:
@@ -103,20 +137,18 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
 
-def _follow_carried(system: System, state: State, size: float) -> BodiesPath:
-    pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
-    if system.law is None:
-        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
-    movement = _carried(system, state)
-    near = select(state.contacts, _may_touch(system.law.range, state.contacts, movement, size))
-    if len(near) == 0:
-        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
+def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodiesPath:
+    movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
     if system.implicit:
-        return _cross_carried(system, system.law, movement, near, size)
-    if system.detector.needs_mesh:
-        return _resolve(system, system.law, movement, FollowedContacts(near, state.pose).at, size, size)
-    reach, span = _horizon(system, movement, size)
-    return _resolve(system, system.law, movement, _detected(system, reach), size, span)
+        path = _cross_coupled(system, law, movement, near, size)
+    elif system.detector.needs_mesh:
+        path = _resolve(system, law, movement, FollowedContacts(near, state.pose).at, size, size)
+        path = replace(path, friction=movement.friction_loss)
+    else:
+        reach, span = _horizon(system, movement, size)
+        path = _resolve(system, law, movement, _detected(system, reach), size, span)
+        path = replace(path, friction=movement.friction_loss)
+    return replace(path, coupling=coupling)
 
 
 def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: float) -> BodiesPath:
@@ -125,25 +157,44 @@ def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: flo
     contacts = RedetectedContacts(system, movement.pose, reach)
     if len(contacts.start) == 0:
         return _coast(movement, size)
-    return _crossed(system, law, movement, contacts.start, contacts.at, size)
+    return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
 
 
-def _cross_carried(system: System, law: ForceLaw, movement: CarriedMovement, near: Contacts, size: float) -> BodiesPath:
-    """One implicit step from the contacts of its start, as far as they may come into range."""
-    if system.detector.needs_mesh:
-        return _crossed(system, law, movement, near, FollowedContacts(near, movement.pose).at, size)
-    contacts = RedetectedContacts(system, movement.pose, float(near.gap.max()))
-    return _crossed(system, law, movement, contacts.start, contacts.at, size)
+def _cross_coupled(
+    system: System, law: ForceLaw, movement: CoupledMovement, near: Contacts, size: float
+) -> BodiesPath:
+    """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
+
+    In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
+    be too great for the fluid's mass.
+    """
+    part, impulse, lost, held = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
+    followed = FollowedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
+    for _ in range(IMPLICIT_PARTS):
+        if followed is not None:
+            start, contacts_at = followed.at(movement.pose), followed.at
+        else:
+            contacts = RedetectedContacts(system, movement.pose, reach)
+            start, contacts_at = contacts.start, contacts.at
+        if len(start) == 0:
+            _coast(movement, part)
+            continue
+        path, movement = _crossed(system, law, movement, start, contacts_at, part)
+        impulse = _added(impulse, path.impulse, 1.0)
+        lost, held = lost + path.dissipated, held + path.held
+    return BodiesPath(movement.pose, movement.twist, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
 
 
 def _crossed(
     system: System,
     law: ForceLaw,
-    movement: Movement,
+    movement: M,
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     size: float,
-) -> BodiesPath:
+) -> tuple[BodiesPath, M]:
+    """One implicit step, and the movement at its end."""
     end, wrench, lost = cross_contacts(law, movement, start, contacts_at, size)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     mean = Twist(
@@ -151,7 +202,7 @@ def _crossed(
         0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
     )
     held = -float(power(impulse, mean)[system.controlled].sum())
-    return BodiesPath(end.pose, end.twist, impulse, lost, held, 1)
+    return BodiesPath(end.pose, end.twist, impulse, lost, held, 1), end
 
 
 def _horizon(system: System, movement: Movement, size: float) -> tuple[float, float]:
@@ -176,29 +227,35 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
     return contacts_at
 
 
-def _carried(system: System, state: State) -> CarriedMovement:
-    """The acceleration of the latest step without that of its contacts, which now act on their own."""
+def _coupled(system: System, state: State, coupling: Coupling) -> CoupledMovement:
+    """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
+    linear, angular = _mobility(system, state)
+    rate = _accelerations(system, state)
+    return CoupledMovement(state.pose, state.twist, rate, linear, angular, coupling.model, coupling.load)
+
+
+def _accelerations(system: System, state: State) -> FloatArray:
+    """(n, d+k): those of the latest step without what its contacts gave; at the start what weight gives."""
     linear, angular = _mobility(system, state)
     if state.past is None:
-        return CarriedMovement(state.pose, state.twist, np.zeros_like(_flat(state.twist)), linear, angular)
+        fall = np.einsum("nij,nj->ni", linear, system.weight)
+        return np.concatenate([fall, np.zeros(angular.shape[:2])], axis=1)
     wrench = state.contact_wrench
     by_contact = Twist(np.einsum("nij,nj->ni", linear, wrench.force), np.einsum("nij,nj->ni", angular, wrench.torque))
-    rate = (_flat(state.twist) - _flat(state.past.twist)) / state.past.step - _flat(by_contact)
-    return CarriedMovement(state.pose, state.twist, rate, linear, angular)
+    return (_flat(state.twist) - _flat(state.past.twist)) / state.past.step - _flat(by_contact)
 
 
 def _mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
-    """Inverse mass (n, d, d) and inverse inertia (n, k, k) of bodies and added mass in the lab frame."""
+    """Inverse mass (n, d, d) of bodies with their added mass and inverse inertia (n, k, k), in the lab frame."""
     orientation, eye = state.pose.orientation, np.eye(system.dimension)
     rotation = rotation_matrices(orientation)
     own = system.mass[:, None, None] * eye
     mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
-    inertia = lab_inertia(system.inertia + system.added_inertia, orientation)
-    free = ~system.controlled[:, None, None] / state.inertness[:, None, None]
-    return free * np.linalg.inv(mass), free * np.linalg.inv(inertia)
+    free = ~system.controlled[:, None, None]
+    return free * np.linalg.inv(mass), free * inverse_lab_inertia(system.inertia, orientation)
 
 
-def _coast(movement: FreeMovement, size: float) -> BodiesPath:
+def _coast(movement: Movement, size: float) -> BodiesPath:
     none = nothing(movement.pose)
     movement.kick(none, 0.5 * size)
     movement.drift(size)
@@ -285,12 +342,6 @@ def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
     )
 
 
-def _may_touch(law_range: float, contacts: Contacts, movement: CarriedMovement, size: float) -> BoolArray:
-    """Which contacts are in range or may come into it, at twice the speed at which their surfaces move now."""
-    speed = np.linalg.norm(relative_motion(contacts, movement).velocity, axis=1)
-    return np.asarray(contacts.gap <= law_range + 2.0 * size * speed)
-
-
 def _fastest(system: System, movement: Movement, size: float) -> float:
     """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
     twist = movement.twist
@@ -307,39 +358,3 @@ def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:
 
 def _flat(twist: Twist) -> FloatArray:
     return np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
-
-
-def answered(system: System, state: State, path: BodiesPath, twist: Twist) -> FloatArray:
-    """How many times its mass and known added mass each body showed in the step, (n,) [1].
-
-    With that ``inertness`` the path would have ended at the twist that the fluid allowed: walls add to the added mass,
-    and so does a film of fluid. Learnt from blows that turn a body back; after a weaker push the fluid's own forces
-    would be taken for inertia.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and backend.
-    state : State
-        At the start of the step.
-    path : BodiesPath
-        That was followed, with the state's ``inertness``.
-    twist : Twist
-        At the end, with fluid and bodies solved together.
-
-    Returns
-    -------
-    (n,) array
-        The state's own where nothing was learnt.
-    """
-    if system.backend.problem is None or not path.impulse.force.any():
-        return state.inertness
-    linear, _ = _mobility(system, state)
-    strength = np.linalg.norm(path.impulse.force, axis=1)
-    direction = path.impulse.force / np.where(strength > 0.0, strength, 1.0)[:, None]
-    gained = np.einsum("ni,nij,nj->n", direction, linear, path.impulse.force)
-    closing = -np.sum(direction * state.twist.velocity, axis=1)
-    blow = (closing > 0.0) & (gained > closing)
-    excess = np.sum(direction * (path.twist.velocity - twist.velocity), axis=1)
-    allowed = 1.0 - np.divide(excess, gained, out=np.zeros_like(gained), where=blow)
-    return np.asarray(np.clip(state.inertness / np.maximum(allowed, 1.0 / MOST_INERT), 1.0, MOST_INERT))

@@ -10,7 +10,7 @@ from rigidfluid.core.rigid import moment
 from rigidfluid.core.types import Contacts
 
 
-def delassus(contacts: Contacts, movement: Movement) -> sparse.csr_matrix:
+def delassus(contacts: Contacts, movement: Movement, time: float) -> sparse.csr_matrix:
     """D = G M⁻¹ Gᵀ, where G takes the bodies' twists to the speeds at which the gaps open.
 
     Parameters
@@ -19,29 +19,30 @@ def delassus(contacts: Contacts, movement: Movement) -> sparse.csr_matrix:
         m contacts.
     movement : Movement
         The n bodies where the contacts are; walls, and bodies that are driven, do not give way.
+    time : float
+        For how long the contacts' forces last [time].
 
     Returns
     -------
     (m, m) sparse matrix
         Symmetric, without negative eigenvalues [1/mass].
     """
+    gap_rates = _gap_rates(contacts, movement)
+    return sparse.csr_matrix(gap_rates @ movement.inverse_masses(time) @ gap_rates.T)
+
+
+def _gap_rates(contacts: Contacts, movement: Movement) -> sparse.csr_matrix:
+    """G, (m, n·(d+k))."""
     position = movement.pose.position
     count, dimension = position.shape
+    width = dimension + movement.twist.angular_velocity.shape[1]
     point = 0.5 * (contacts.point_a + contacts.point_b)
-    rows, columns, opening, answer = [], [], [], []
+    rows, columns, opening = [], [], []
     for sign, body in ((1.0, contacts.body_a), (-1.0, contacts.body_b)):
         which = np.flatnonzero(body < count)
         index, normal = body[which], sign * contacts.normal[which]
-        turn = moment(point[which] - position[index], normal)
-        width = dimension + turn.shape[1]
         rows.append(np.repeat(which, width))
         columns.append((width * index[:, None] + np.arange(width)).ravel())
-        opening.append(np.hstack([normal, turn]).ravel())
-        linear = np.einsum("mij,mj->mi", movement.mobility[index], normal)
-        angular = np.einsum("mij,mj->mi", movement.inverse_inertia[index], turn)
-        answer.append(np.hstack([linear, angular]).ravel())
+        opening.append(np.hstack([normal, moment(point[which] - position[index], normal)]).ravel())
     places = np.concatenate(rows), np.concatenate(columns)
-    shape = len(contacts), count * (dimension + movement.inverse_inertia.shape[1])
-    gap_rates = sparse.csr_matrix((np.concatenate(opening), places), shape)
-    answers = sparse.csr_matrix((np.concatenate(answer), places), shape)
-    return sparse.csr_matrix(gap_rates @ answers.T)
+    return sparse.csr_matrix((np.concatenate(opening), places), (len(contacts), count * width))

@@ -161,7 +161,7 @@ def _looked(
 
 
 def _compliance(contacts: Contacts, movement: Movement, size: float) -> Any:
-    matrix = 0.5 * size**2 * delassus(contacts, movement)
+    matrix = 0.5 * size**2 * delassus(contacts, movement, 0.5 * size)
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
 

@@ -29,6 +29,7 @@ from rigidfluid.core.types import (
     Mesh,
     Motion,
     Pose,
+    Response,
     Step,
     Twist,
     Wall,
@@ -220,6 +221,11 @@ class FluidBackend(Part):
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
         """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+
+    @abstractmethod
+    def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
+        """How the twists answer in this ``step`` to each of c ``impulses`` (c, n, d+k) on the free bodies
+        [force·time | force·length·time]; asked of backends with a mesh alone."""
 
     @abstractmethod
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:

@@ -1,4 +1,4 @@
-"""How bodies move between contacts: freely through nothing, or carried along by a fluid that is solved once a step."""
+"""How bodies move between contacts, and how they do freely, without a fluid."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Protocol, Self
 
 import numpy as np
 from numba import njit
+from scipy import sparse
 
 from rigidfluid.core.free_rotation import rotate_freely
-from rigidfluid.core.rigid import inverse_lab_inertia, lab_inertia, rotate
+from rigidfluid.core.rigid import inverse_lab_inertia, lab_inertia
 from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
@@ -28,13 +29,9 @@ class Movement(Protocol):
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for bodies that are driven [1/mass]."""
 
-    @property
-    def mobility(self) -> FloatArray:
-        """M⁻¹ of straight motion (n, d, d), zero for bodies that are driven [1/mass]."""
-
-    @property
-    def inverse_inertia(self) -> FloatArray:
-        """(R I Rᵀ)⁻¹ (n, k, k), zero for bodies that are driven [1/(mass·length²)]."""
+    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+        """M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for bodies that are driven: times a wrench that lasts for
+        ``time``, and the time, it is what that adds to the velocities [1/mass | 1/(mass·length²)]."""
 
     def copied(self) -> Self:
         """The same motion, to be tried out."""
@@ -97,13 +94,10 @@ class FreeMovement:
         """1/m, whatever the direction."""
         return np.asarray(self._free[body, 0] / self._mass[body])
 
-    @property
-    def mobility(self) -> FloatArray:
-        return np.asarray((self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1]))
-
-    @property
-    def inverse_inertia(self) -> FloatArray:
-        return self._inverse_inertia() * self._free[:, :, None]
+    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+        """1/m and (R I Rᵀ)⁻¹, whatever the time."""
+        mobility = (self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1])
+        return block_diagonal(mobility, self._inverse_inertia() * self._free[:, :, None])
 
     def copied(self) -> Self:
         """With momenta of its own, which kicks change in place."""
@@ -148,6 +142,20 @@ class FreeMovement:
         return inverse_lab_inertia(self._inertia, self.pose.orientation)
 
 
+def block_diagonal(linear: FloatArray, angular: FloatArray) -> sparse.csr_matrix:
+    """The matrix of all velocities, body by body, of blocks (n, d, d) and (n, k, k)."""
+    count, d, k = len(linear), linear.shape[1], angular.shape[1]
+    rows, columns, values = [], [], []
+    for first, block in ((0, linear), (d, angular)):
+        size = block.shape[1]
+        start = (d + k) * np.arange(count)[:, None, None] + first
+        rows.append((start + np.arange(size)[:, None] + np.zeros(size, dtype=int)).ravel())
+        columns.append((start + np.zeros(size, dtype=int)[:, None] + np.arange(size)).ravel())
+        values.append(block.ravel())
+    places = np.concatenate(rows), np.concatenate(columns)
+    return sparse.csr_matrix((np.concatenate(values), places), shape=(count * (d + k),) * 2)
+
+
 @njit(cache=True)
 def _kick(velocity, momentum, force, torque, weight, mass, free, time):  # type: ignore[no-untyped-def]
     """In place, as fresh arrays of many bodies would cost more than the sums."""
@@ -158,55 +166,3 @@ def _kick(velocity, momentum, force, torque, weight, mass, free, time):  # type:
                 velocity[body, k] += share * (force[body, k] + weight[body, k])
             for k in range(momentum.shape[1]):
                 momentum[body, k] += time * torque[body, k]
-
-
-class CarriedMovement:
-    """In a fluid: dU/dt = A + M⁻¹F, with A the acceleration of the latest step but for its contacts.
-
-    Without contact this is Adams–Bashforth 2. The fluid resists a quick change of velocity with its own mass too: ``M``
-    should hold what of it is known, and never more than there is, or a contact would give back more than it took.
-
-    Parameters
-    ----------
-    pose, twist : Pose, Twist
-        At the start.
-    rate : (n, d+k) array
-        A [length/time² | rad/time²].
-    linear, angular : (n, d, d) array, (n, k, k) array
-        M⁻¹ in the lab frame, zero for driven bodies [1/mass | 1/(mass·length²)].
-    """
-
-    def __init__(self, pose: Pose, twist: Twist, rate: FloatArray, linear: FloatArray, angular: FloatArray) -> None:
-        self.pose = pose
-        self.inverse_inertia = angular
-        self.mobility = linear
-        self._twist = twist
-        self._rate = rate
-
-    @property
-    def twist(self) -> Twist:
-        return self._twist
-
-    def copied(self) -> Self:
-        """Poses and twists are never changed in place."""
-        return copy(self)
-
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """That of the body and its added mass."""
-        return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
-
-    def pull(self, time: float) -> FloatArray:
-        """|A|, whatever the time."""
-        return np.asarray(np.linalg.norm(self._rate[:, : self._twist.velocity.shape[1]], axis=1))
-
-    def kick(self, wrench: Wrench, time: float) -> None:
-        """Change the twist by A and M⁻¹F for so long."""
-        d = wrench.force.shape[1]
-        gain = self._rate[:, :d] + np.einsum("nij,nj->ni", self.mobility, wrench.force)
-        turn = self._rate[:, d:] + np.einsum("nij,nj->ni", self.inverse_inertia, wrench.torque)
-        self._twist = Twist(self._twist.velocity + time * gain, self._twist.angular_velocity + time * turn)
-
-    def drift(self, time: float) -> None:
-        """Move and turn with the present twist."""
-        position = self.pose.position + time * self._twist.velocity
-        self.pose = Pose(position, rotate(self.pose.orientation, time * self._twist.angular_velocity))

@@ -16,7 +16,7 @@ Records = dict[str, list[Row]]
 
 LEDGER_COLUMNS = (
     *("kinetic", "contact", "gravity", "boundary", "control"),
-    *("dissipation", "contact_loss", "transfer_loss", "residual"),
+    *("dissipation", "contact_loss", "transfer_loss", "path_friction", "residual"),
 )
 
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.contact_path import BodiesPath, answered, follow
+from rigidfluid.core.contact_path import BodiesPath, Coupling, follow
+from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
 from rigidfluid.core.interfaces import FluidBackend
@@ -33,11 +34,8 @@ from rigidfluid.core.wrenches import nothing
 from rigidfluid.core.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.errors import OutputError, SceneError, StepError, StepRejected
 
-MOST_CORRECTIONS = 3
-"""A step with a blow is tried so many times to learn how much fluid moves with the body."""
-
-INERTNESS_TOLERANCE = 0.1
-"""Relative error of that mass which is good enough."""
+MOST_ATTEMPTS = 4
+"""Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,18 +156,27 @@ class Simulation:
             state = self.mover.adapted(self.state, path.pose)
             self.remeshes += state is not self.state
             self.state = state
-        for _ in range(MOST_CORRECTIONS):
-            candidate = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
-            inertness = answered(self.system, self.state, path, candidate.twist)
-            if np.allclose(inertness, self.state.inertness, rtol=INERTNESS_TOLERANCE):
+        for number in range(MOST_ATTEMPTS):
+            candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
+            if path.coupling is None:
+                return candidate
+            with self.watch("response"):
+                found = shown_coupling(self.system, self.state, candidate, path, step)
+            if number == MOST_ATTEMPTS - 1 or settled(found, path, self.state, candidate):
                 break
-            self.state = replace(self.state, inertness=inertness)
-            path = self._path(level)
-        return candidate
+            path = self._path(level, found)
+        return replace(candidate, model=found.model)
 
-    def _path(self, level: int) -> BodiesPath:
+    def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
+        """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
+        time, size = self.clock.time(self.state.tick), self.clock.size(level)
+        if coupling is None:
+            with self.watch("response"):
+                coupling = expected_coupling(self.system, self.state, time, size)
+            if coupling is not None:
+                self.state = replace(self.state, model=coupling.model)
         with self.watch("contact"):
-            return follow(self.system, self.state, self.clock.time(self.state.tick), self.clock.size(level))
+            return follow(self.system, self.state, time, size, coupling)
 
     def _first_level(self) -> tuple[int, BodiesPath | None]:
         """The longest step on the clock's grid that closes no gap too fast for the mesh in it, and the way it takes."""
@@ -267,7 +274,7 @@ def _initial_state(system: System, mover: Mover) -> State:
         reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
         fluid=fluid,
         contacts=contacts,
-        inertness=np.ones(len(gaps)),
+        model=None,
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,

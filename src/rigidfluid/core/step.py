@@ -14,7 +14,7 @@ from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
-from rigidfluid.core.wrenches import power
+from rigidfluid.core.wrenches import flat, power
 
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
@@ -22,8 +22,8 @@ CLOSEST_APPROACH = 0.5
 
 def attempt(
     system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int, path: BodiesPath
-) -> State:
-    """The candidate state one step of this level later, the bodies at the end of ``path``.
+) -> tuple[State, Step]:
+    """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
 
     Raises
     ------
@@ -40,9 +40,9 @@ def attempt(
         nearest = int(np.argmin(gaps))
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.together():
-        step = _step(system, state, time, size, path, mesh)
+        step = step_to(system, state, time, size, pose, path.impulse, mesh)
         advance = system.backend.advance(state.fluid, state.mesh, step)
-    return State(
+    candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
         level=level,
@@ -52,7 +52,7 @@ def attempt(
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
-        inertness=state.inertness,
+        model=None,
         contacts=contacts,
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
@@ -65,6 +65,7 @@ def attempt(
             contact_energy(system, contacts),
         ),
     )
+    return candidate, step
 
 
 def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
@@ -78,13 +79,16 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(system.law.energy(contacts))) if system.law and len(contacts) else 0.0
 
 
-def _step(system: System, state: State, time: float, size: float, path: BodiesPath, mesh: Mesh | None) -> Step:
-    derivative, pose = derivative_weights(size, state.past_step), path.pose
+def step_to(
+    system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
+) -> Step:
+    """The step of this ``size`` that ends at ``time`` with the bodies at ``pose``, after ``impulse`` by contacts."""
+    derivative = derivative_weights(size, state.past_step)
     poses, twists = [state.pose], [state.twist]
     if state.past is not None:
         poses.append(state.past.pose)
         twists.append(state.past.twist)
-    pushed = _mean_push(state, path, derivative)
+    pushed = _mean_push(state, impulse, derivative)
     wrench = Wrench(pushed.force + system.weight, pushed.torque)
     mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     return Step(
@@ -97,10 +101,22 @@ def _step(system: System, state: State, time: float, size: float, path: BodiesPa
         load=load,
         controlled=system.controlled,
         controlled_twist=system.controlled_twist(time),
+        impulse=flat(impulse),
+        load_scale=_load_scale(system, impulse, derivative),
     )
 
 
-def _mean_push(state: State, path: BodiesPath, derivative: FloatArray) -> Wrench:
+def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
+    """Of weight and contacts, which cancel each other at rest, the larger [force].
+
+    Forces alone: moments are of another dimension, and at rest they vanish with the forces' arms.
+    """
+    free = ~system.controlled
+    pushed = derivative[0] * np.linalg.norm(impulse.force[free])
+    return float(max(np.linalg.norm(system.weight[free]), pushed))
+
+
+def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
     """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
 
     It is what differencing momentum less the impulses received so far comes to: a blow shorter than the step changes
@@ -108,8 +124,8 @@ def _mean_push(state: State, path: BodiesPath, derivative: FloatArray) -> Wrench
     """
     latest, before = state.contact_wrench, state.past_step or 0.0
     return Wrench(
-        derivative[0] * path.impulse.force - derivative[2] * before * latest.force,
-        derivative[0] * path.impulse.torque - derivative[2] * before * latest.torque,
+        derivative[0] * impulse.force - derivative[2] * before * latest.force,
+        derivative[0] * impulse.torque - derivative[2] * before * latest.torque,
     )
 
 
@@ -122,4 +138,4 @@ def _power(system: System, advance: Advance) -> Power:
 def _work(system: System, state: State, path: BodiesPath) -> Work:
     """Of the submerged weight of the free bodies, of the hands against the contacts, and of dampers in contacts."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
-    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated)
+    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)

@@ -139,16 +139,22 @@ def relative_motion(contacts: Contacts, movement: Movement) -> Motion:
     Motion
         Of the m contacts.
     """
-    pose, twist = movement.pose, movement.twist
-    count, point = len(pose.position), 0.5 * (contacts.point_a + contacts.point_b)
-    velocity = _point_velocity(pose, twist, contacts.body_a, point)
-    on_body = contacts.body_b < count
-    velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
+    velocity = relative_velocity(contacts, movement.pose, movement.twist)
+    on_body = contacts.body_b < len(movement.pose.position)
     inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
     inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
     mass = np.zeros_like(inverse)
     np.divide(1.0, inverse, out=mass, where=inverse > 0.0)
     return Motion(velocity, mass)
+
+
+def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
+    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time]."""
+    point = 0.5 * (contacts.point_a + contacts.point_b)
+    velocity = _point_velocity(pose, twist, contacts.body_a, point)
+    on_body = contacts.body_b < len(pose.position)
+    velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
+    return velocity
 
 
 def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray) -> FloatArray:

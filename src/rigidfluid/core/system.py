@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.added_mass import added_inertia, added_mass
+from rigidfluid.core.added_mass import added_mass
 from rigidfluid.core.boundary import conditions, face_planes, faces
 from rigidfluid.core.geometry_checks import check_geometry
 from rigidfluid.core.impact import impact_speeds
@@ -38,8 +38,8 @@ class System:
     """Everything that stays the same while a scene runs.
 
     ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
-    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d) and
-    ``added_inertia`` (n, k, k): what a fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
+    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
+    fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
     ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
@@ -56,7 +56,6 @@ class System:
     upper: FloatArray
     mass: FloatArray
     added_mass: FloatArray
-    added_inertia: FloatArray
     inertia: FloatArray
     weight: FloatArray
     pose: Pose
@@ -113,7 +112,6 @@ def build_system(scene: Scene) -> System:
         upper=np.array(scene.domain.upper),
         mass=mass,
         added_mass=added,
-        added_inertia=inert * np.array([added_inertia(body) for body in parts.bodies]),
         inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
         weight=weight,
         pose=pose,

@@ -187,6 +187,8 @@ class Step:
     ``points`` (N, d): the mesh at the new time, None without a mesh.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
+    In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
+    [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
     """
 
     time: float
@@ -198,6 +200,20 @@ class Step:
     load: FloatArray
     controlled: BoolArray
     controlled_twist: FloatArray
+    impulse: FloatArray
+    load_scale: float
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """How the twists of all bodies answer to impulses on them, (c, n, d+k) each for c impulses.
+
+    ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end
+    of a step, by its own matrix, viscosity in it.
+    """
+
+    by_mass: FloatArray
+    by_step: FloatArray
 
 
 @dataclass(frozen=True, slots=True)

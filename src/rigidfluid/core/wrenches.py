@@ -43,6 +43,11 @@ def nothing(pose: Pose) -> Wrench:
     return Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
 
 
+def flat(wrench: Wrench) -> FloatArray:
+    """Force and torque side by side, (n, d+k)."""
+    return np.concatenate([wrench.force, wrench.torque], axis=1)
+
+
 def power(wrench: Wrench, twist: Twist) -> FloatArray:
     """F·U + T·ω of each body, (n,) [energy/time]."""
     return np.asarray(

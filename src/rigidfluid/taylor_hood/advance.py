@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
-from rigidfluid.taylor_hood.coupled import CoupledSystem
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
 
-
-@dataclass(frozen=True)
-class _Equations:
-    """The step's system, and the part of its load that comes from the faces (nodes, d)."""
-
-    system: CoupledSystem
-    pressure_load: FloatArray
+_JUMP_TOLERANCE = 1e-3
+"""Of the jump of the velocity by impulses, which goes into what convects alone."""
 
 
-def advance(discretisation: Discretisation, tolerance: float, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
-    """Assemble, constrain, solve and measure one step from ``fluid`` on ``mesh`` to ``step.points``."""
-    equations = _equations(discretisation, fluid, mesh, step)
-    system, problem, surfaces = equations.system, discretisation.problem, discretisation.surfaces
-    solution = discretisation.solve(system, tolerance)
+def advance(
+    discretisation: Discretisation, matrix: CoupledMatrix, tolerance: float, fluid: FluidState, mesh: Mesh, step: Step
+) -> Advance:
+    """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``."""
+    problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
+    on_faces = pressure_load(surfaces, matrix.node_points, step.time)
+    solution = discretisation.solve(_system(discretisation, matrix, on_faces, fluid, step), tolerance)
     velocity, twist = solution.velocity, solution.twist
     state = {
         "velocity": velocity,
         "velocity_previous": fluid["velocity"],
-        "pressure": _centred(discretisation, system.points, solution.pressure),
+        "pressure": _centred(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": mesh.points,
         "twist": twist,
@@ -37,51 +32,71 @@ def advance(discretisation: Discretisation, tolerance: float, fluid: FluidState,
         "position": step.pose.position,
         "position_previous": fluid["position"],
     }
-    d, at = problem.dimension, system.node_points
+    if problem.inertia and step.impulse.any():
+        load = step.derivative[0] * step.impulse
+        state["jump"] = discretisation.velocity_by(matrix, load, _JUMP_TOLERANCE)
+    d, at = problem.dimension, matrix.node_points
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,
         twist=Twist(twist[:, :d], twist[:, d:]),
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
-        kinetic_energy=kinetic_energy(discretisation, system.points, velocity),
-        dissipation=dissipation(discretisation, system.points, velocity),
-        boundary_power=face_power(
-            surfaces, problem.inert_density, at, velocity, equations.pressure_load, solution.reaction
-        ),
+        kinetic_energy=kinetic_energy(discretisation, points, velocity),
+        dissipation=dissipation(discretisation, points, velocity),
+        boundary_power=face_power(surfaces, problem.inert_density, at, velocity, on_faces, solution.reaction),
     )
 
 
-def _equations(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> _Equations:
-    problem, numbering, surfaces = discretisation.problem, discretisation.numbering, discretisation.surfaces
+def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
+    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, both extrapolated or differenced."""
+    problem, numbering = discretisation.problem, discretisation.numbering
     points, density = _new_points(step), problem.inert_density
     d0, d1, d2 = step.derivative
-    e0, e1 = step.extrapolation
     node_points = numbering.node_points(points)
     mesh_velocity = numbering.node_points(d0 * points + d1 * mesh.points + d2 * fluid["points_previous"])
-    extrapolated = e0 * fluid["velocity"] + e1 * fluid["velocity_previous"]
-    density_of_load = -density * (d1 * fluid["velocity"] + d2 * fluid["velocity_previous"])
-    if problem.source is not None:
-        density_of_load += problem.source(step.time, node_points)
-    on_faces = pressure_load(surfaces, node_points, step.time)
-    expected = e0 * fluid["twist"] + e1 * fluid["twist_previous"]
-    position, controlled = step.pose.position, step.controlled
-    system = CoupledSystem(
+    return CoupledMatrix(
         points=points,
         node_points=node_points,
         inertia=density * d0,
         viscosity=problem.dynamic_viscosity,
-        advection=density * (extrapolated - mesh_velocity),
-        load=discretisation.mass_times(points, density_of_load) + on_faces,
-        given=surfaces.prescribed(step.time, node_points, position, step.controlled_twist, controlled),
-        position=position,
+        advection=density * (_extrapolated(fluid, step) - mesh_velocity),
+        position=step.pose.position,
         mass_matrix=step.mass_matrix,
+        controlled=step.controlled,
+    )
+
+
+def _system(
+    discretisation: Discretisation, matrix: CoupledMatrix, on_faces: FloatArray, fluid: FluidState, step: Step
+) -> CoupledSystem:
+    problem, surfaces = discretisation.problem, discretisation.surfaces
+    node_points, position, controlled = matrix.node_points, matrix.position, matrix.controlled
+    _, d1, d2 = step.derivative
+    e0, e1 = step.extrapolation
+    density_of_load = -problem.inert_density * (d1 * fluid["velocity"] + d2 * fluid["velocity_previous"])
+    if problem.source is not None:
+        density_of_load += problem.source(step.time, node_points)
+    expected = e0 * fluid["twist"] + e1 * fluid["twist_previous"]
+    return CoupledSystem(
+        matrix,
+        load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
         body_load=step.load,
-        controlled=controlled,
-        velocity=extrapolated,
+        given=surfaces.prescribed(step.time, node_points, position, step.controlled_twist, controlled),
+        velocity=_extrapolated(fluid, step),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),
+        scale=step.load_scale,
     )
-    return _Equations(system, on_faces)
+
+
+def _extrapolated(fluid: FluidState, step: Step) -> FloatArray:
+    """u* = e₀uⁿ + e₁(uⁿ⁻¹ + δ), where δ is what the impulses of the latest step changed at once: what moves on
+    smoothly is extrapolated, and not the jump."""
+    e0, e1 = step.extrapolation
+    before = fluid["velocity_previous"]
+    if "jump" in fluid:
+        before = before + fluid["jump"]
+    return np.asarray(e0 * fluid["velocity"] + e1 * before)
 
 
 def _new_points(step: Step) -> FloatArray:

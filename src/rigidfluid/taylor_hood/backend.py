@@ -18,9 +18,11 @@ from rigidfluid.core.types import (
     FluidState,
     Mesh,
     Pose,
+    Response,
     Step,
     Twist,
 )
+from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
 
@@ -48,6 +50,7 @@ class TaylorHoodBackend(FluidBackend):
         super().__init__(options, problem)
         self._numbering: Numbering | None = None
         self._latest: tuple[BoolArray, Discretisation] | None = None
+        self._latest_matrix: tuple[Step, CoupledMatrix] | None = None
 
     @abstractmethod
     def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
@@ -73,7 +76,15 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.advance import advance
 
         discretisation = self._on(_given(mesh), step.controlled)
-        return advance(discretisation, self.options.tolerance, fluid, _given(mesh), step)
+        matrix = self._matrix(discretisation, fluid, _given(mesh), step)
+        return advance(discretisation, matrix, self.options.tolerance, fluid, _given(mesh), step)
+
+    @final
+    def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
+        from rigidfluid.taylor_hood.response import response
+
+        discretisation = self._on(mesh, step.controlled)
+        return response(discretisation, self._matrix(discretisation, fluid, mesh, step), step, impulses)
 
     @final
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
@@ -107,7 +118,7 @@ class TaylorHoodBackend(FluidBackend):
     @final
     def forget(self) -> None:
         self.drop_factors()
-        self._latest = None
+        self._latest = self._latest_matrix = None
 
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
@@ -121,6 +132,14 @@ class TaylorHoodBackend(FluidBackend):
         if self._latest is None or not np.array_equal(self._latest[0], controlled):
             self._latest = controlled, self.discretise(numbering, mesh, controlled)
         return self._latest[1]
+
+    def _matrix(self, discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
+        """A step is asked for its solution and then for its responses: its matrix is made once."""
+        from rigidfluid.taylor_hood.advance import step_matrix
+
+        if self._latest_matrix is None or self._latest_matrix[0] is not step:
+            self._latest_matrix = step, step_matrix(discretisation, fluid, mesh, step)
+        return self._latest_matrix[1]
 
     def _for_projection(self, mesh: Mesh) -> Discretisation:
         return self._on(mesh, np.ones(self.problem.bodies, dtype=bool))

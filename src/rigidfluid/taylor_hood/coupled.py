@@ -7,18 +7,16 @@ from dataclasses import dataclass
 from rigidfluid.core.types import BoolArray, FloatArray
 
 
-@dataclass(frozen=True)
-class CoupledSystem:
-    """Find u and p on the nodes and vertices of one process' part, and the twists of the bodies that are free, with
+@dataclass(frozen=True, eq=False)
+class CoupledMatrix:
+    """Of u and p on the nodes and vertices of one process' part, and of the twists of the bodies that are free:
 
-    inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q) = load(v)
+    inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q)
 
-    for velocities that move rigidly with each body, plus ``mass_matrix`` · twist = ``body_load`` + the fluid's wrench.
+    for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies.
 
     ``points`` (vertices, d), ``node_points`` (nodes, d); ``advection`` a (nodes, d) already holds the density.
-    ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``given`` (nodes, d):
-    velocities where they are prescribed, zero elsewhere. ``position``, ``mass_matrix``, ``body_load``, ``controlled``
-    are of all bodies, as in `Step`. ``velocity``, ``pressure``, ``twist`` are a first guess.
+    ``position``, ``mass_matrix``, ``controlled`` are of all bodies, as in `Step`.
     """
 
     points: FloatArray
@@ -26,15 +24,29 @@ class CoupledSystem:
     inertia: float
     viscosity: float
     advection: FloatArray
-    load: FloatArray
-    given: FloatArray
     position: FloatArray
     mass_matrix: FloatArray
-    body_load: FloatArray
     controlled: BoolArray
+
+
+@dataclass(frozen=True)
+class CoupledSystem:
+    """A `CoupledMatrix` with its right side and a first guess.
+
+    ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``body_load`` is of
+    all bodies. ``given`` (nodes, d): velocities where they are prescribed, zero elsewhere. ``velocity``, ``pressure``,
+    ``twist`` are the guess. ``scale``: the size of the largest parts that the right side is a sum of; where they
+    cancel, the residual is held against it.
+    """
+
+    matrix: CoupledMatrix
+    load: FloatArray
+    body_load: FloatArray
+    given: FloatArray
     velocity: FloatArray
     pressure: FloatArray
     twist: FloatArray
+    scale: float = 0.0
 
 
 @dataclass(frozen=True)

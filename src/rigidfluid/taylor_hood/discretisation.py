@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from rigidfluid.core.types import FloatArray, FluidProblem
-from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
@@ -31,6 +31,15 @@ class Discretisation(Protocol):
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """To a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
+
+    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        """Twists (n, d+k, c) that each of c ``wrenches`` (n, d+k, c) on the bodies gives by itself.
+
+        To residuals of ``tolerance`` times each column's norm; raises StepRejected.
+        """
+
+    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        """The velocity (nodes, d) that a ``wrench`` (n, d+k) on the bodies gives by itself."""
 
 
 def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:

@@ -37,7 +37,7 @@ _WORTHLESS = 1e-6
 
 
 class Factors(Protocol):
-    """Something that solves A x = b for the matrix that it was made from."""
+    """Something that solves A x = b, of one right side or of many (N, c), for the matrix that it was made from."""
 
     def solve(self, right_side: FloatArray) -> FloatArray: ...
 
@@ -67,7 +67,7 @@ class _Pardiso:
         weakref.finalize(self, self._solver.free_memory, everything=True)
 
     def solve(self, right_side: FloatArray) -> FloatArray:
-        solution: FloatArray = self._solver._call_pardiso(self._matrix, right_side)
+        solution: FloatArray = self._solver._call_pardiso(self._matrix, np.asfortranarray(right_side))
         return solution
 
     def _residual(self) -> float:

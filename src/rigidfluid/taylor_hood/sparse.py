@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -9,7 +11,7 @@ from scipy import sparse
 
 from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
-from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.surfaces import Surfaces
@@ -33,6 +35,17 @@ class Assembly(Protocol):
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ)."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Assembled:
+    """Pᵀ K P of a `CoupledMatrix`: K ``stiffness``, ``apply`` it, ``build`` it; the ``twists`` among the unknowns."""
+
+    of: CoupledMatrix
+    stiffness: sparse.csr_array
+    apply: Callable[[FloatArray], FloatArray]
+    build: Callable[[], sparse.csr_array]
+    twists: slice
+
+
 class SparseDiscretisation:
     """Pᵀ K P, solved by factors of an earlier step's matrix.
 
@@ -42,8 +55,9 @@ class SparseDiscretisation:
         Equations and boundary conditions.
     assembly : Assembly
         The integrals.
-    solver : StaleFactors
-        Kept from topology to topology; it must have been told to forget the last one.
+    solver, inviscid_solver : StaleFactors
+        Of the matrices of steps, and of those without viscosity. Kept from topology to topology; they must have been
+        told to forget the last one.
     mesh : Mesh
         The topology.
     controlled : (n,) bool
@@ -51,7 +65,13 @@ class SparseDiscretisation:
     """
 
     def __init__(
-        self, problem: FluidProblem, assembly: Assembly, solver: StaleFactors, mesh: Mesh, controlled: BoolArray
+        self,
+        problem: FluidProblem,
+        assembly: Assembly,
+        solver: StaleFactors,
+        inviscid_solver: StaleFactors,
+        mesh: Mesh,
+        controlled: BoolArray,
     ) -> None:
         self.problem = problem
         self.numbering = assembly.numbering
@@ -59,6 +79,8 @@ class SparseDiscretisation:
         self._constraint = Constraint(self.surfaces, mesh, controlled)
         self._assembly = assembly
         self._solver = solver
+        self._inviscid_solver = inviscid_solver
+        self._latest: _Assembled | None = None
 
     @property
     def unknowns(self) -> int:
@@ -72,38 +94,69 @@ class SparseDiscretisation:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
-        s, constraint = system, self._constraint
-        stiffness = self._assembly.matrix(s.points, s.inertia, s.viscosity, s.advection)
-        constraint.place(s.node_points, s.position)
+        s, constraint, free = system, self._constraint, ~system.matrix.controlled
+        assembled = self._assembled(s.matrix)
         zero = np.zeros(self.numbering.vertices)
         given, load = np.concatenate([s.given.ravel(), zero]), np.concatenate([s.load.ravel(), zero])
-        free = ~s.controlled
-        twists = slice(constraint.twist_start, constraint.twist_start + s.body_load[free].size)
-        inertia = sparse.block_diag([*s.mass_matrix[free], sparse.csr_array((0, 0))], format="csr")
+        right_side = constraint.transposed @ (load - assembled.stiffness @ given)
+        right_side[assembled.twists] += s.body_load[free].ravel()
+        guess = self._guess(s, assembled.twists)
+        scale = max(self._solver.norm(right_side), s.scale)
+        residual = right_side - assembled.apply(guess)
+        correction, _ = self._solver.solve(assembled.apply, assembled.build, residual, tolerance * scale)
+        reduced = guess + correction
+        everything = constraint.operator @ reduced + given
+        twist = s.twist.copy()
+        twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
+        velocity, pressure = np.split(everything, [s.given.size])
+        reaction = (assembled.stiffness @ everything - load)[: s.given.size]
+        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape))
+
+    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        assembled, free = self._assembled(matrix), ~matrix.controlled
+        found = np.zeros_like(wrenches)
+        answers = self._answers(assembled, wrenches, tolerance)[assembled.twists]
+        found[free] = answers.reshape(-1, *wrenches.shape[1:])
+        return found
+
+    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        answer = self._answers(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
+        size = self.numbering.nodes * self.numbering.dimension
+        return np.asarray((self._constraint.operator @ answer)[:size].reshape(self.numbering.nodes, -1))
+
+    def _answers(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
+        solver = self._inviscid_solver if assembled.of.viscosity == 0.0 else self._solver
+        right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
+        right_sides[assembled.twists] = wrenches[~assembled.of.controlled].reshape(-1, wrenches.shape[2])
+        return solver.solve_columns(assembled.apply, assembled.build, right_sides, tolerance)
+
+    def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
+        """The latest is kept, since a step's matrix is asked again how bodies answer to impulses."""
+        if self._latest is None or self._latest.of is not matrix:
+            self._latest = None  # frees the one before
+            self._latest = self._assemble(matrix)
+        return self._latest
+
+    def _assemble(self, m: CoupledMatrix) -> _Assembled:
+        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection)
+        constraint, masses = self._constraint, m.mass_matrix[~m.controlled]
+        constraint.place(m.node_points, m.position)
+        twists = slice(constraint.twist_start, constraint.twist_start + masses.shape[0] * masses.shape[1])
+        inertia = sparse.block_diag([*masses, sparse.csr_array((0, 0))], format="csr")
 
         def apply(x: FloatArray) -> FloatArray:
             result: FloatArray = constraint.transposed @ (stiffness @ (constraint.operator @ x))
             result[twists] += inertia @ x[twists]
             return result
 
-        def matrix() -> sparse.csr_array:
+        def build() -> sparse.csr_array:
             entries = inertia.tocoo()
             place = (entries.row + twists.start, entries.col + twists.start)
             embedded = sparse.coo_array((entries.data, place), shape=(constraint.unknowns,) * 2)
             return sparse.csr_array(constraint.transposed @ stiffness @ constraint.operator + embedded)
 
-        right_side = constraint.transposed @ (load - stiffness @ given)
-        right_side[twists] += s.body_load[free].ravel()
-        guess = self._guess(s, twists)
-        scale = self._solver.norm(right_side)
-        correction, _ = self._solver.solve(apply, matrix, right_side - apply(guess), tolerance * scale)
-        reduced = guess + correction
-        everything = constraint.operator @ reduced + given
-        twist = s.twist.copy()
-        twist[free] = reduced[twists].reshape(-1, twist.shape[1])
-        velocity, pressure = np.split(everything, [s.given.size])
-        reaction = (stiffness @ everything - load)[: s.given.size]
-        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape))
+        return _Assembled(m, stiffness, apply, build, twists)
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
         constraint, pressure = self._constraint, system.pressure
@@ -111,5 +164,5 @@ class SparseDiscretisation:
             pressure = pressure - pressure[constraint.pinned]
         guess = np.empty(constraint.unknowns)
         guess[constraint.free_columns] = np.concatenate([system.velocity.ravel(), pressure])[constraint.free_unknowns]
-        guess[twists] = system.twist[~system.controlled].ravel()
+        guess[twists] = system.twist[~system.matrix.controlled].ravel()
         return guess

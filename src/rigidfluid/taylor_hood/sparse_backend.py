@@ -22,7 +22,7 @@ class SparseBackend(TaylorHoodBackend):
         from rigidfluid.taylor_hood.stale_factors import StaleFactors
 
         super().__init__(options, problem)
-        self._solver = StaleFactors()
+        self._solver, self._inviscid_solver = StaleFactors(), StaleFactors()
         self._assembly: Assembly | None = None
 
     @abstractmethod
@@ -35,8 +35,10 @@ class SparseBackend(TaylorHoodBackend):
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
-        return SparseDiscretisation(self.problem, self._assembly, self._solver, mesh, controlled)
+        solvers = self._solver, self._inviscid_solver
+        return SparseDiscretisation(self.problem, self._assembly, *solvers, mesh, controlled)
 
     @final
     def drop_factors(self) -> None:
         self._solver.forget()
+        self._inviscid_solver.forget()

@@ -77,6 +77,35 @@ class StaleSolver(ABC, Generic[Matrix]):
         return correction, iterations
 
     @final
+    def solve_columns(
+        self,
+        apply: Callable[[FloatArray], FloatArray],
+        matrix: Callable[[], Matrix],
+        right_sides: FloatArray,
+        tolerance: float,
+    ) -> FloatArray:
+        """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm; raises StepRejected.
+
+        What these take says nothing of the steps to come, and does not count as wasted.
+        """
+        fresh = not self._is_made
+        if fresh:
+            self._renew(matrix)
+        found = self.iterate_columns(apply, right_sides, tolerance)
+        if found is None and not fresh:
+            self._renew(matrix)
+            found = self.iterate_columns(apply, right_sides, tolerance)
+        if found is None:
+            self.forget()
+            raise StepRejected(
+                "fluid.backend",
+                f"answers to impulses that do not converge to {tolerance:.1e}",
+                "converging ones",
+                "Shorten time.step, or look at the mesh near the bodies.",
+            )
+        return found
+
+    @final
     def norm(self, vector: FloatArray) -> float:
         """Its Euclidean norm, over all processes."""
         return float(np.sqrt(self._ranks.sum(vector @ vector)))
@@ -94,6 +123,21 @@ class StaleSolver(ABC, Generic[Matrix]):
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
     ) -> tuple[FloatArray, int, bool]:
         """The correction, the iterations spent, and whether ‖residual - A x‖ ≤ tolerance was reached."""
+
+    def iterate_columns(
+        self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
+    ) -> FloatArray | None:
+        """The solutions (N, c), or None where one was not reached."""
+        found = np.zeros_like(right_sides)
+        for column in range(right_sides.shape[1]):
+            right_side = right_sides[:, column]
+            enough = tolerance * self.norm(right_side)
+            if enough == 0.0:
+                continue
+            found[:, column], _, converged = self.iterate(apply, right_side, enough)
+            if not converged:
+                return None
+        return found
 
     def _renew(self, matrix: Callable[[], Matrix]) -> None:
         self.forget()  # frees the old one before the new one needs memory

@@ -1,4 +1,4 @@
-"""States whose velocity comes from elsewhere, from another mesh or a blow; it is projected to zero divergence."""
+"""States whose velocity comes from elsewhere, from another mesh or an impact; it is projected to zero divergence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rigidfluid.core.types import FloatArray, FluidState, Mesh, Pose, Twist
-from rigidfluid.taylor_hood.coupled import CoupledSystem
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.sampling import Samples
@@ -45,6 +45,8 @@ def transfer(
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
         forget()
         moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
+    if "jump" in fluid:
+        moved["jump"] = on_nodes.quadratic(fluid["jump"])
     forget()
     return moved
 
@@ -70,18 +72,21 @@ def project(
     """
     numbering, bodies = target.numbering, len(target.surfaces.body_nodes)
     width = numbering.dimension + (1 if numbering.dimension == 2 else 3)
-    system = CoupledSystem(
+    matrix = CoupledMatrix(
         points=points,
         node_points=numbering.node_points(points),
         inertia=1.0,
         viscosity=0.0,
         advection=np.zeros_like(velocity),
-        load=target.mass_times(points, velocity),
-        given=np.where(target.surfaces.velocity_free, 0.0, velocity),
         position=position,
         mass_matrix=np.zeros((bodies, width, width)),
-        body_load=np.zeros((bodies, width)),
         controlled=np.ones(bodies, dtype=bool),
+    )
+    system = CoupledSystem(
+        matrix,
+        load=target.mass_times(points, velocity),
+        body_load=np.zeros((bodies, width)),
+        given=np.where(target.surfaces.velocity_free, 0.0, velocity),
         velocity=velocity,
         pressure=np.zeros(numbering.vertices),
         twist=np.zeros((bodies, width)),

@@ -1,0 +1,136 @@
+"""What the fluid has to do with contacts in one step: its answers to impulses, and all other forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact_path import BodiesPath, Coupling, near_contacts
+from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_within, reduced_model
+from rigidfluid.core.state import State
+from rigidfluid.core.step import step_to
+from rigidfluid.core.system import System
+from rigidfluid.core.types import FloatArray, IntArray, Step, Twist
+from rigidfluid.core.wrenches import flat, nothing
+
+SETTLED = 1e-4
+"""A step is followed again until the bodies' velocities change by less than this part of them."""
+
+
+def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
+    """The coupling of a step from what was before it; None where nothing can touch.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, law, backend.
+    state : State
+        At the start of the step; its model is used where it has one.
+    time, size : float
+        When the step starts and how long it is [time].
+
+    Returns
+    -------
+    Coupling or None
+        With the present mesh, and the latest step's loads.
+    """
+    if not system.backend.needs_mesh:
+        return None
+    velocities = _near_velocities(system, state, size)
+    if velocities is None:
+        return None
+    model = state.model
+    if model is None or not np.array_equal(model.velocities, velocities):
+        zero = nothing(state.pose)
+        step = step_to(system, state, time + size, size, state.pose, zero, state.mesh)
+        model = _asked(system, state, step, velocities)
+    return Coupling(model, _expected_load(system, state, model))
+
+
+def shown_coupling(system: System, state: State, candidate: State, path: BodiesPath, step: Step) -> Coupling:
+    """The coupling that the solution of a step has shown: answers on the mesh at its end, and loads in it.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, backend.
+    state, candidate : State
+        At the start of the step and at its end.
+    path : BodiesPath
+        The path that led to the candidate.
+    step : Step
+        What was solved.
+
+    Returns
+    -------
+    Coupling
+        Of the same velocities.
+    """
+    assert path.coupling is not None
+    model = _asked(system, state, step, path.coupling.model.velocities)
+    past = state.past_twist or state.twist
+    twists = tuple(_of(model, _joined(twist)) for twist in (candidate.twist, state.twist, past))
+    before = flat(state.contact_wrench) * (state.past_step or 0.0)
+    impulses = _of(model, step.impulse), _of(model, before)
+    return Coupling(model, load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses))
+
+
+def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -> bool:
+    """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else."""
+    assert path.coupling is not None
+    used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
+    if len(model.velocities) == 0:
+        return True
+    impulse = _of(model, flat(path.impulse))
+    gained, mobility = model.mobility @ impulse, model.mobility
+    speeds = [np.abs(_of(model, _joined(twist))) for twist in (state.twist, candidate.twist)]
+    scale = max(speeds[0].max(), speeds[1].max(), np.abs(gained).max())
+    by_load = np.abs(mobility @ (found.load - used.load)).max() * size
+    by_answer = np.abs(gained - used.model.mobility @ impulse).max()
+    return bool(max(by_load, by_answer) <= SETTLED * scale)
+
+
+def _near_velocities(system: System, state: State, size: float) -> IntArray | None:
+    """Numbers of the velocity components of free bodies that may touch something; None where nothing may."""
+    near = near_contacts(system, state, size)
+    if len(near) == 0:
+        return None
+    count = len(system.bodies)
+    touching = np.zeros(count, dtype=bool)
+    touching[near.body_a] = True
+    touching[near.body_b[near.body_b < count]] = True
+    free = np.flatnonzero(touching & ~system.controlled)
+    width = state.twist.velocity.shape[1] + state.twist.angular_velocity.shape[1]
+    return np.asarray((free[:, None] * width + np.arange(width)).ravel())
+
+
+def _asked(system: System, state: State, step: Step, velocities: IntArray) -> ReducedModel:
+    """The model of these velocities by the backend's word."""
+    assert state.mesh is not None
+    if len(velocities) == 0:
+        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0))
+    shape = step.load.shape
+    impulses = np.zeros((len(velocities), shape[0] * shape[1]))
+    impulses[np.arange(len(velocities)), velocities] = 1.0
+    response = system.backend.response(state.fluid, state.mesh, step, impulses.reshape(-1, *shape))
+    by_mass, by_step = (
+        twists.reshape(len(velocities), -1)[:, velocities].T for twists in (response.by_mass, response.by_step)
+    )
+    return reduced_model(velocities, by_mass, by_step, float(step.derivative[0]))
+
+
+def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
+    if state.past is None:
+        weight = np.concatenate([system.weight, np.zeros_like(state.twist.angular_velocity)], axis=1)
+        return _of(model, weight)
+    change = _of(model, _joined(state.twist) - _joined(state.past.twist))
+    impulse = _of(model, flat(state.contact_wrench)) * state.past.step
+    return expected_load(model, change, impulse, state.past.step)
+
+
+def _of(model: ReducedModel, field: FloatArray) -> FloatArray:
+    """The model's components (c,) of a field (n, d+k)."""
+    return np.asarray(field.ravel()[model.velocities])
+
+
+def _joined(twist: Twist) -> FloatArray:
+    return np.concatenate([twist.velocity, twist.angular_velocity], axis=1)

@@ -1,0 +1,120 @@
+"""How a few bodies in a fluid answer to their contacts within a step: with a mass matrix and a friction matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedModel:
+    """M dU/dt + R (U - Uⁿ) = Φ + F of some velocities U among those of all bodies.
+
+    M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
+    known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
+    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists.
+    """
+
+    velocities: IntArray
+    modes: FloatArray
+    decay: FloatArray
+
+    @property
+    def mobility(self) -> FloatArray:
+        """M⁻¹ = X Xᵀ, (c, c) [1/mass]."""
+        return self.modes @ self.modes.T
+
+    def mass_times(self, velocity: FloatArray) -> FloatArray:
+        """M U for U (c,)."""
+        inverse = np.linalg.inv(self.modes)
+        return np.asarray(inverse.T @ (inverse @ velocity))
+
+    def friction_times(self, velocity: FloatArray) -> FloatArray:
+        """R U for U (c,)."""
+        inverse = np.linalg.inv(self.modes)
+        return np.asarray(inverse.T @ (self.decay * (inverse @ velocity)))
+
+
+def reduced_model(velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float) -> ReducedModel:
+    """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
+
+    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer. Both are made symmetric, which
+    W_s is not where the fluid convects; where R would be negative it is zero.
+
+    Parameters
+    ----------
+    velocities : (c,) array
+        Numbers of the components that the matrices are of.
+    by_mass, by_step : (c, c) array
+        W_i and W_s, twists by unit impulses [1/mass].
+    d0 : float
+        Weight of the newest velocity in the step's time derivative [1/time].
+
+    Returns
+    -------
+    ReducedModel
+        In its modes.
+    """
+    mass_modes = np.linalg.cholesky(0.5 * (by_mass + by_mass.T))  # L Lᵀ = W_i: XᵀMX = 1 for X = L
+    answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
+    share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
+    return ReducedModel(velocities, mass_modes @ turn, d0 * np.maximum(1.0 / np.maximum(share, _LEAST) - 1.0, 0.0))
+
+
+_LEAST = 1e-12
+"""Less of the inviscid answer than this is the rounding of none."""
+
+
+def load_within(
+    model: ReducedModel,
+    derivative: FloatArray,
+    twists: tuple[FloatArray, FloatArray, FloatArray],
+    impulses: tuple[FloatArray, FloatArray],
+) -> FloatArray:
+    """Φ = M (d₀Uⁿ⁺¹ + d₁Uⁿ + d₂Uⁿ⁻¹) + R (Uⁿ⁺¹ - Uⁿ) - d₀Jⁿ⁺¹ + d₂Jⁿ, all but the contacts, read from a solved step.
+
+    The fluid's Uⁿ⁺¹ is linear in J by W_s, so that Φ does not depend on J.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        With M and R at the end of the step.
+    derivative : (3,) array
+        d₀, d₁, d₂ [1/time].
+    twists : arrays (c,)
+        The model's velocities Uⁿ⁺¹, Uⁿ, Uⁿ⁻¹.
+    impulses : arrays (c,)
+        Jⁿ⁺¹, Jⁿ.
+
+    Returns
+    -------
+    (c,) array
+        Φ [force | force·length].
+    """
+    d0, d1, d2 = derivative
+    new, now, past = twists
+    inertia = model.mass_times(d0 * new + d1 * now + d2 * past)
+    return np.asarray(inertia + model.friction_times(new - now) - d0 * impulses[0] + d2 * impulses[1])
+
+
+def expected_load(model: ReducedModel, change: FloatArray, impulse: FloatArray, step: float) -> FloatArray:
+    """Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 as it was in the latest step, before there is a better one.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Now.
+    change, impulse : (c,) array
+        Uⁿ - Uⁿ⁻¹, and what contacts gave then.
+    step : float
+        Δt of that step [time].
+
+    Returns
+    -------
+    (c,) array
+        Φ [force | force·length].
+    """
+    return np.asarray((model.mass_times(change) - impulse) / step - 0.5 * model.friction_times(change))

@@ -1,0 +1,40 @@
+"""How bodies in the fluid answer to impulses: with mass and incompressibility alone, and by a step's own matrix."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.types import FloatArray, Response, Step
+from rigidfluid.taylor_hood.coupled import CoupledMatrix
+from rigidfluid.taylor_hood.discretisation import Discretisation
+
+_TOLERANCE = 1e-5
+"""A contact is as wrong as the responses: 1e-3 costs one or two per cent of its energy."""
+
+
+def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, impulses: FloatArray) -> Response:
+    """W_s = d₀ Eᵀ S⁻¹ E of the step's ``matrix`` S, and W_i = Eᵀ 𝓜⁻¹ E of its masses 𝓜, times ``impulses`` (c, n, d+k).
+
+    E puts wrenches on the bodies. 𝓜 holds fluid and bodies on velocities that are rigid on bodies and without
+    divergence: so W_i⁻¹ is the bodies' mass with the added mass in the present geometry, walls, films and neighbours in
+    it. Without inertia of the fluid it is the bodies' own.
+    """
+    d0, loads = step.derivative[0], np.moveaxis(impulses, 0, -1)
+    by_step = d0 * discretisation.twists_by(matrix, loads, _TOLERANCE)
+    if matrix.inertia == 0.0:
+        by_mass = _of_bodies_alone(matrix, d0 * loads)
+    else:
+        still = np.zeros_like(matrix.advection)
+        inviscid = replace(
+            matrix, inertia=matrix.inertia / d0, viscosity=0.0, advection=still, mass_matrix=matrix.mass_matrix / d0
+        )
+        by_mass = discretisation.twists_by(inviscid, loads, _TOLERANCE)
+    return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
+
+
+def _of_bodies_alone(matrix: CoupledMatrix, loads: FloatArray) -> FloatArray:
+    free, twists = ~matrix.controlled, np.zeros_like(loads)
+    twists[free] = np.linalg.solve(matrix.mass_matrix[free], loads[free])
+    return twists
