@@ -82,19 +82,19 @@ def dropped(step: float, stepping: Stepping = "substeps") -> Scene:
 
 def stacked(step: float, stepping: Stepping = "substeps") -> Scene:
     """Two disks, one above the other, fall onto the floor and onto each other."""
-    return in_fluid(repulsion(stepping, 1e-9), heavy(0.4, 0.2), heavy(0.4, 0.59), end=0.24, step=step)
+    return in_fluid(repulsion(stepping, 1e-9), heavy(0.4, 0.14), heavy(0.4, 0.65), end=0.2, step=step)
 
 
 def cradle(step: float, stepping: Stepping = "substeps", density: float = 3.0) -> Scene:
     """Three disks in a row; the first hits the second, and that the third."""
-    row = [heavy(0.2, 0.4, (10.0, 0.0)), heavy(0.49, 0.4), heavy(0.73, 0.4)]
+    row = [heavy(0.2, 0.35, (10.0, 0.0)), heavy(0.49, 0.35), heavy(0.73, 0.35)]
     disks = [disk | {"density": density} for disk in row]
-    return in_fluid(repulsion(stepping, 1e-8), *disks, end=0.032, step=step, upper=(1.2, SIDE), gravity=0.0)
+    return in_fluid(repulsion(stepping, 1e-8), *disks, end=0.032, step=step, upper=(1.2, 0.7), gravity=0.0)
 
 
 def heap(step: float, stepping: Stepping = "substeps") -> Scene:
     """Seven disks in two rows fall into a heap."""
-    places = [(0.13, 0.14), (0.31, 0.13), (0.49, 0.14), (0.67, 0.13), (0.22, 0.3), (0.4, 0.31), (0.58, 0.3)]
+    places = [(0.13, 0.16), (0.31, 0.15), (0.49, 0.16), (0.67, 0.15), (0.22, 0.32), (0.4, 0.33), (0.58, 0.32)]
     disks = [heavy(x, y, radius=0.06) for x, y in places]
     return in_fluid(repulsion(stepping, 1e-9), *disks, end=0.24, step=step)
 
@@ -221,8 +221,8 @@ def head_on(step: float, stepping: Stepping = "substeps") -> Scene:
 
 
 def thin_film(step: float) -> Scene:
-    """A disk is let go from a gap of 1e-6 radius."""
-    return film(step, gap=1e-6, refinements=9)
+    """A disk is let go from a gap of 1e-5 radius, about the smallest that the mesher keeps open."""
+    return film(step, gap=1e-5, refinements=12)
 
 
 def spun(step: float, stepping: Stepping = "substeps") -> Scene:
