@@ -126,9 +126,9 @@ def settling(step: float) -> Scene:
 
 def stokes_pressed(step: float, density: float = 2.0) -> Scene:
     """Without inertia of the fluid, a disk sinks onto the floor, or rises to the ceiling if it is light."""
-    disk = heavy(0.4, 0.2 if density > 1.0 else SIDE - 0.2, density=density)
+    disk = heavy(0.4, 0.14 if density > 1.0 else SIDE - 0.14, density=density)
     fluid = {"model": "stokes", "viscosity": 0.3}
-    return in_fluid(repulsion("substeps", 1e-8), disk, end=0.5, step=step, fluid=fluid)
+    return in_fluid(repulsion("substeps", 1e-8), disk, end=0.3, step=step, fluid=fluid)
 
 
 def ellipse(step: float, stepping: Stepping = "substeps") -> Scene:
