@@ -48,16 +48,20 @@ class Gathered(FluidBackend):
         return self._on_root(lambda mesh: self._inner.initial(mesh, pose, twist), mesh)
 
     def advance(self, fluid, mesh, step):
-        points = self._whole(replace(mesh, points=step.points))
+        step = self._of_the_whole(mesh, step)
         if os.environ.get("RIGIDFLUID_TEST_FAILING_RANK") == str(self.ranks.rank):
             raise ZeroDivisionError
 
         def work(mesh, fluid):
-            advance = self._inner.advance(fluid, mesh, replace(step, points=points.points))
+            advance = self._inner.advance(fluid, mesh, step)
             return advance.fluid, replace(advance, fluid={})
 
         fluid, advance = self._on_root(work, mesh, fluid)
         return replace(advance, fluid=fluid)
+
+    def response(self, fluid, mesh, step, impulses):
+        step = self._of_the_whole(mesh, step)
+        return self._on_root(lambda mesh, fluid: ({}, self._inner.response(fluid, mesh, step, impulses)), mesh, fluid)[1]
 
     def transfer(self, fluid, old, new):
         made = self._whole(new)
@@ -89,6 +93,11 @@ class Gathered(FluidBackend):
                 cut = {name: np.array_split(values, self.ranks.size) for name, values in state.items()}
                 slices = [{name: cut[name][rank] for name in cut} for rank in range(self.ranks.size)]
         return self.ranks.scattered(slices), self.ranks.shared(rest)
+
+    def _of_the_whole(self, mesh, step):
+        """The step with all points on the root, of use there alone."""
+        moved = self._whole(replace(mesh, points=step.points))
+        return replace(step, points=moved.points) if self.ranks.is_root else step
 
     def _whole(self, mesh):
         """The whole mesh on the root, with the same arrays of cells as long as the part has them."""

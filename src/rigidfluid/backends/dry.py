@@ -50,6 +50,7 @@ class Dry(FluidBackend):
             hydrodynamic_wrench=Wrench(nothing[:, :dimension], nothing[:, dimension:]),
             kinetic_energy=0.0,
             dissipation=0.0,
+            dissipation_midway=0.0,
             boundary_power=0.0,
         )
 

@@ -21,7 +21,7 @@ from rigidfluid.core.rigid import inverse_lab_inertia, rotation_matrices
 from rigidfluid.core.state import State
 from rigidfluid.core.substep import Plan, plan, relative_motion, relative_velocity
 from rigidfluid.core.system import System
-from rigidfluid.core.time_scheme import predict_pose
+from rigidfluid.core.time_scheme import predict_pose, start_pose
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.core.wrenches import contact_wrench, nothing, power
 from rigidfluid.errors import StepRejected
@@ -105,6 +105,12 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
         pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
         return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
     return _follow_coupled(system, system.law, state, size, coupling)
+
+
+def first_step_again(state: State, end_twist: Twist, size: float) -> BodiesPath:
+    """The first step of bodies that touch nothing, followed again to the mean of the twists at its start and its end."""
+    pose = start_pose(state.pose, state.twist, end_twist, size)
+    return BodiesPath(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
 
 
 def near_contacts(system: System, state: State, size: float) -> Contacts:

@@ -13,11 +13,12 @@ from rigidfluid.core.types import FloatArray, Pose, Twist
 @dataclass(frozen=True, slots=True)
 class Power:
     """Rates at one time [energy/time]: of what enters by the faces, of what drives bodies through the fluid, and of
-    viscous dissipation."""
+    viscous dissipation, also ``dissipation_midway`` through the step that led there."""
 
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
+    dissipation_midway: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +69,16 @@ class Ledger:
         return self.residual / passed if passed > 0 else 0.0
 
     def after(self, step: float, power: Power, work: Work, kinetic: float, contact: float) -> Ledger:
-        """The ledger one step later, rates integrated by the trapezoidal rule."""
+        """The ledger one step later, rates integrated by the trapezoidal rule.
+
+        Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign.
+        """
 
         def total(name: str) -> float:
             mean: float = 0.5 * (getattr(self.power, name) + getattr(power, name))
             return float(getattr(self, name)) + step * mean
 
+        dissipated = (self.power.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
         return replace(
             self,
             kinetic=kinetic,
@@ -81,7 +86,7 @@ class Ledger:
             gravity=self.gravity + work.gravity,
             boundary=total("boundary"),
             control=total("control") + work.control,
-            dissipation=total("dissipation"),
+            dissipation=self.dissipation + step * dissipated,
             contact_loss=self.contact_loss + work.contact_loss,
             path_friction=self.path_friction + work.path_friction,
             power=power,

@@ -13,7 +13,7 @@ import numpy as np
 
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.contact_path import BodiesPath, Coupling, follow
+from rigidfluid.core.contact_path import BodiesPath, Coupling, first_step_again, follow
 from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
@@ -36,6 +36,9 @@ from rigidfluid.errors import OutputError, SceneError, StepError, StepRejected
 
 MOST_ATTEMPTS = 4
 """Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
+
+START_LEVEL = 6
+"""In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +118,7 @@ class Simulation:
         self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
-            self.state = _initial_state(self.system, self.mover)
+            self.state = _initial_state(self.system, self.mover, self.clock)
         if self._ranks.shared(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
@@ -159,7 +162,10 @@ class Simulation:
         for number in range(MOST_ATTEMPTS):
             candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
             if path.coupling is None:
-                return candidate
+                if number > 0 or self.state.past is not None or self.state.mesh is None:
+                    return candidate
+                path = first_step_again(self.state, candidate.twist, self.clock.size(level))
+                continue
             with self.watch("response"):
                 found = shown_coupling(self.system, self.state, candidate, path, step)
             if number == MOST_ATTEMPTS - 1 or settled(found, path, self.state, candidate):
@@ -256,7 +262,7 @@ class Simulation:
         )
 
 
-def _initial_state(system: System, mover: Mover) -> State:
+def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
     zero = nothing(system.pose)
     mesh = mover.first_mesh()
     contacts, gaps = surroundings(system, system.pose, mesh)
@@ -266,7 +272,7 @@ def _initial_state(system: System, mover: Mover) -> State:
     return State(
         tick=0,
         count=0,
-        level=None,
+        level=_start_level(system, clock),
         pose=system.pose,
         twist=system.twist,
         past=None,
@@ -280,6 +286,15 @@ def _initial_state(system: System, mover: Mover) -> State:
         contact_wrench=zero,
         ledger=Ledger(kinetic, stored, kinetic + stored),
     )
+
+
+def _start_level(system: System, clock: Clock) -> int | None:
+    """The level that the first step may be twice as long as; any where nothing moves at the start.
+
+    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast.
+    """
+    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
+    return min(START_LEVEL + 1, clock.levels) if system.backend.needs_mesh and moves else None
 
 
 def _sizes(scene: Scene, system: System) -> Sizes | None:

@@ -221,7 +221,8 @@ class Advance:
     """What a backend returns from one step: its candidate state, the bodies' twist, and the fluid's own figures.
 
     ``hydrodynamic_wrench`` is the fluid's force and torque alone, without buoyancy, weight or contact.
-    ``boundary_power`` is the mechanical power that enters through the domain's faces [energy/time].
+    ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
+    [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's faces [energy/time].
     """
 
     fluid: FluidState
@@ -229,6 +230,7 @@ class Advance:
     hydrodynamic_wrench: Wrench
     kinetic_energy: float
     dissipation: float
+    dissipation_midway: float
     boundary_power: float
 
 

@@ -43,6 +43,9 @@ def advance(
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
         kinetic_energy=kinetic_energy(discretisation, points, velocity),
         dissipation=dissipation(discretisation, points, velocity),
+        dissipation_midway=dissipation(
+            discretisation, 0.5 * (mesh.points + points), 0.5 * (fluid["velocity"] + velocity)
+        ),
         boundary_power=face_power(surfaces, problem.inert_density, at, velocity, on_faces, solution.reaction),
     )
 

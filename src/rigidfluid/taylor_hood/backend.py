@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from abc import abstractmethod
 from typing import ClassVar, final
 
@@ -50,7 +51,7 @@ class TaylorHoodBackend(FluidBackend):
         super().__init__(options, problem)
         self._numbering: Numbering | None = None
         self._latest: tuple[BoolArray, Discretisation] | None = None
-        self._latest_matrix: tuple[Step, CoupledMatrix] | None = None
+        self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
 
     @abstractmethod
     def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
@@ -130,6 +131,7 @@ class TaylorHoodBackend(FluidBackend):
     def _on(self, mesh: Mesh, controlled: BoolArray) -> Discretisation:
         numbering = self.numbering_of(mesh)
         if self._latest is None or not np.array_equal(self._latest[0], controlled):
+            self.drop_factors()  # of other unknowns
             self._latest = controlled, self.discretise(numbering, mesh, controlled)
         return self._latest[1]
 
@@ -137,8 +139,9 @@ class TaylorHoodBackend(FluidBackend):
         """A step is asked for its solution and then for its responses: its matrix is made once."""
         from rigidfluid.taylor_hood.advance import step_matrix
 
-        if self._latest_matrix is None or self._latest_matrix[0] is not step:
-            self._latest_matrix = step, step_matrix(discretisation, fluid, mesh, step)
+        asked = fluid, mesh, step
+        if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
+            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, step)
         return self._latest_matrix[1]
 
     def _for_projection(self, mesh: Mesh) -> Discretisation:

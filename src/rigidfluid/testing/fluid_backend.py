@@ -7,11 +7,18 @@ from rigidfluid.testing.fluid.balances import BalancesContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.output import OutputContract
+from rigidfluid.testing.fluid.responses import ResponsesContract
 from rigidfluid.testing.fluid.transfer import TransferContract
 
 
 class FluidBackendContract(
-    AccuracyContract, BalancesContract, CylinderContract, TransferContract, MemoryContract, OutputContract
+    AccuracyContract,
+    BalancesContract,
+    CylinderContract,
+    ResponsesContract,
+    TransferContract,
+    MemoryContract,
+    OutputContract,
 ):
     """Fluid and bodies in 2D and 3D, by results alone and not by how a backend lays out its state.
 

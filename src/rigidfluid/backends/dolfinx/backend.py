@@ -37,7 +37,8 @@ class Dolfinx(TaylorHoodBackend):
         if MPI.COMM_WORLD.size > 1:
             self.ranks = MpiRanks(MPI.COMM_WORLD)
         by_schur = self.options.solver == "schur" or (self.options.solver == "auto" and self.problem.dimension == 3)
-        self._solver = (StaleSchur if by_schur else StaleLU)(self.ranks, self.options.petsc)
+        kind = StaleSchur if by_schur else StaleLU
+        self._solver, self._inviscid_solver = (kind(self.ranks, self.options.petsc) for _ in range(2))
         self._topology: Topology | None = None
 
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
@@ -51,17 +52,19 @@ class Dolfinx(TaylorHoodBackend):
         from rigidfluid.backends.dolfinx.discretisation import PetscDiscretisation
 
         topology = self._topology_of(numbering, mesh)
-        return PetscDiscretisation(self.problem, topology, self._solver, mesh, controlled)
+        solvers = self._solver, self._inviscid_solver
+        return PetscDiscretisation(self.problem, topology, *solvers, mesh, controlled)
 
     def drop_factors(self) -> None:
         self._solver.forget()
+        self._inviscid_solver.forget()
 
     def _topology_of(self, numbering: Numbering, mesh: Mesh) -> Topology:
         from rigidfluid.backends.dolfinx.discretisation import Topology
 
         if self._topology is None or self._topology.numbering is not numbering:
             if self._topology is not None:
-                self._solver.forget()
+                self.drop_factors()
                 self._topology.destroy()
             self._topology = Topology(numbering, mesh)
         return self._topology

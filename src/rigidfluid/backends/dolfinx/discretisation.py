@@ -15,7 +15,7 @@ from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
-from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
 
@@ -52,8 +52,9 @@ class PetscDiscretisation:
         Equations and boundary conditions.
     topology : Topology
         The space.
-    solver : Krylov
-        Kept from topology to topology; it must have been told to forget the last one.
+    solver, inviscid_solver : Krylov
+        Of the matrices of steps, and of those without viscosity. Kept from topology to topology; they must have been
+        told to forget the last one.
     mesh : Mesh
         The mesh, for its surfaces.
     controlled : (n,) bool
@@ -61,12 +62,18 @@ class PetscDiscretisation:
     """
 
     def __init__(
-        self, problem: FluidProblem, topology: Topology, solver: Krylov, mesh: Mesh, controlled: BoolArray
+        self,
+        problem: FluidProblem,
+        topology: Topology,
+        solver: Krylov,
+        inviscid_solver: Krylov,
+        mesh: Mesh,
+        controlled: BoolArray,
     ) -> None:
         self.problem = problem
         self.numbering = topology.numbering
         self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies)
-        self._topology, self._solver = topology, solver
+        self._topology, self._solver, self._inviscid_solver = topology, solver, inviscid_solver
         pinned = far_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, StaleLU) else None
         self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pinned)
         self._pinned = pinned
@@ -85,27 +92,49 @@ class PetscDiscretisation:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
-        self._topology.clean()
         s, space, constraint = system, self._topology.space, self._constraint
-        reduced, free = self._reduced(s), ~s.controlled
+        reduced, free = self._reduced(s.matrix), ~s.matrix.controlled
         none = np.zeros(len(space.owned_vertices))
         given = np.concatenate([s.given[space.owned_nodes].ravel(), none])
         load = np.concatenate([space.owned_sums(s.load), none])
         right_side = reduced.collect(load - reduced.times(given))
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
-        scale = self._solver.norm(right_side)
+        scale = max(self._solver.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
         correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, tolerance * scale)
         return self._solution(s, reduced, guess + correction, given, load)
 
-    def _reduced(self, system: CoupledSystem) -> Reduced:
-        s, topology, constraint = system, self._topology, self._constraint
-        topology.space.move(s.points)
-        topology.forms.assemble(topology.matrix, s.inertia, s.viscosity, s.advection)
-        operator = constraint.operator(s.node_points, s.position)
-        inertia = block_diag(*s.mass_matrix[~s.controlled]) if constraint.twists else np.zeros((0, 0))
-        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, s.points, s.inertia, s.viscosity)
+    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
+        found = np.zeros_like(wrenches)
+        on_root = answers[self._constraint.twist_slice]
+        found[~matrix.controlled] = self.surfaces.ranks.shared(on_root).reshape(-1, *wrenches.shape[1:])
+        return found
+
+    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        reduced, space = self._reduced(matrix), self._topology.space
+        answer = self._answers(reduced, matrix, wrench[:, :, None], tolerance)[:, 0]
+        return space.velocities(reduced.expand(answer)[: space.owned_nodes.size * space.numbering.dimension])
+
+    def _answers(self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        """This process' unknowns (columns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
+        solver = self._inviscid_solver if matrix.viscosity == 0.0 else self._solver
+        constraint = self._constraint
+        right_sides = np.zeros((constraint.columns, wrenches.shape[2]))
+        on_bodies = wrenches[~matrix.controlled].reshape(-1, wrenches.shape[2])
+        right_sides[constraint.twist_slice] = on_bodies[: constraint.twists]
+        return solver.solve_columns(reduced.apply, lambda: reduced, right_sides, tolerance)
+
+    def _reduced(self, matrix: CoupledMatrix) -> Reduced:
+        """Of this matrix, until the next one is assembled in the place of K."""
+        m, topology, constraint = matrix, self._topology, self._constraint
+        topology.clean()
+        topology.space.move(m.points)
+        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection)
+        operator = constraint.operator(m.node_points, m.position)
+        inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
+        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, m.points, m.inertia, m.viscosity)
         return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:
@@ -122,6 +151,6 @@ class PetscDiscretisation:
         reaction = np.zeros_like(system.given)
         reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
         twist = system.twist.copy()
-        free = ~system.controlled
+        free = ~system.matrix.controlled
         twist[free] = ranks.shared(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
         return Solution(space.velocities(everything[:size]), space.pressures(everything[size:]), twist, reaction)

@@ -101,6 +101,7 @@ class Flow:
         pose: Pose | None = None,
         twist: FloatArray | None = None,
         push: FloatArray | None = None,
+        impulse: FloatArray | None = None,
     ) -> Step:
         """The step from here.
 
@@ -116,13 +117,15 @@ class Flow:
             Of the controlled bodies; else they rest.
         push : (n, d+k) array, optional
             Force and torque on the bodies besides the fluid's [force | force·length].
+        impulse : (n, d+k) array, optional
+            Of contacts, which give it at once [force·time | force·length·time].
         """
         pose = pose or self.pose
         before = None if self.past is None else self.past[2]
         weights = np.zeros(3) if length is None else derivative_weights(length, before)
         extrapolation = np.array([1.0, 0.0]) if length is None else extrapolation_weights(length, before)
         nothing = np.zeros((len(pose.position), size(pose)))
-        pushed = nothing if push is None else push
+        pushed, given = (nothing if each is None else each for each in (push, impulse))
         d = pose.position.shape[1]
         poses, twists = [self.pose], [self.twist]
         if self.past is not None:
@@ -144,9 +147,11 @@ class Flow:
             pose=pose,
             points=self.mesh.points if points is None else points,
             mass_matrix=mass_matrix,
-            load=load,
+            load=load + weights[0] * given,
             controlled=self.bodies.controlled,
             controlled_twist=nothing if twist is None else twist,
+            impulse=given,
+            load_scale=0.0,
         )
 
     def probe(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from rigidfluid.core.types import FluidState
+from rigidfluid.core.types import Advance, FluidState
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import copied
 from rigidfluid.testing.fluid.exact import problem
@@ -46,15 +46,33 @@ class MemoryContract(FluidContract):
         _assert_same(given, before)
         _assert_same(returned, kept)
 
+    def test_asking_for_answers_changes_nothing(self, dimension: int) -> None:
+        """Neither what is given, nor what was returned, nor, to the solver's tolerance, the step."""
+        flow = self.stirred(dimension, steps=2)
+        step = self.stirring(flow)
+        first = flow.backend.advance(flow.fluid, flow.mesh, step)
+        impulses = np.random.default_rng(6).normal(size=(3, *step.load.shape))
+        given = [flow.fluid, first.fluid, _arrays(flow.mesh), _arrays(step), _arrays(step.pose), {"asked": impulses}]
+        before = _copies(given)
+        flow.backend.response(flow.fluid, flow.mesh, step, impulses)
+        _assert_same(given, before)
+        self._assert_close_figures(flow.backend.advance(flow.fluid, flow.mesh, step), first)
+
+    def test_one_step_from_another_state_is_another_one(self, dimension: int) -> None:
+        """As a backend takes it that has not seen the step before."""
+        flow = self.stirred(dimension, steps=2)
+        step, other = self.stirring(flow), self.stir(flow).fluid
+        flow.backend.advance(flow.fluid, flow.mesh, step)
+        anew = self.make_backend(problem(dimension, bodies=2))
+        expected = anew.advance(other, flow.mesh, step)
+        self._assert_close_figures(flow.backend.advance(other, flow.mesh, step), expected)
+
     def test_a_rejected_step_leaves_no_trace(self, dimension: int) -> None:
         """A step repeated after another one that was not accepted is the same to the solver's tolerance."""
         flow = self.stirred(dimension, steps=2)
         first = self.stir(flow)
         flow.after(0.5, points=flow.mesh.points, push=np.ones_like(first.step.load))
-        again = self.stir(flow)
-        for name, found in figures(again.advance).items():
-            expected = figures(first.advance)[name]
-            self.assert_close(found, expected, scale=float(np.abs(expected).max()))
+        self._assert_close_figures(self.stir(flow).advance, first.advance)
 
     def test_going_on_from_a_checkpoint_is_bit_identical(self, dimension: int) -> None:
         """After ``forget``, a new backend with the state from a file takes the same two steps as the old one."""
@@ -69,6 +87,10 @@ class MemoryContract(FluidContract):
         for _ in range(2):
             flow, resumed = self.stir(flow), self.stir(resumed)
             _assert_same([resumed.fluid, figures(resumed.advance)], [flow.fluid, figures(flow.advance)])
+
+    def _assert_close_figures(self, found: Advance, expected: Advance) -> None:
+        for name, wanted in figures(expected).items():
+            self.assert_close(figures(found)[name], wanted, scale=float(np.abs(wanted).max()))
 
 
 def _through_a_file(state: FluidState) -> FluidState:
