@@ -134,7 +134,7 @@ def test_an_ellipse_does_so_as_well(part):
 
 
 def test_what_flies_apart_needs_ever_fewer_substeps(monkeypatch):
-    """They start where the barrier is far stiffer than further out; substeps for that all the way would be half a million."""
+    """The barrier is far stiffer where they start than further out; substeps for that all the way: half a million."""
     counts = []
 
     def counted(*arguments):
