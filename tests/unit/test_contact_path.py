@@ -103,6 +103,53 @@ def test_a_long_step_is_divided_as_the_contact_needs(law, epsilon):
     assert history.bodies["vy"][-1] == pytest.approx(SPEED, rel=2e-3)
 
 
+PAIR = (
+    {"position": [0.375, 0.5], "velocity": [2.0, 0.0]},
+    {"position": [0.625, 0.58], "velocity": [-1.0, 0.0], "density": 3.0},
+)
+AT_A_WALL = ({"position": [0.5, 0.15], "velocity": [0.5, -SPEED]},)
+
+
+@pytest.mark.parametrize("bodies", [PAIR, AT_A_WALL], ids=["pair", "wall"])
+@pytest.mark.parametrize(("law", "epsilon"), [("centre", 1e-6), ("normal", 1e-5), ("barrier", 1e-3)])
+def test_a_blow_keeps_its_energy_however_many_steps_it_lasts(law, epsilon, bodies):
+    """Each step plans its substeps anew; they must not change within the blow, or it costs a thousandth."""
+    lasted = []
+    for step in 0.003 / np.sqrt(2.0) ** np.arange(8):
+        history = rigidfluid.run(dry(*bodies, step=step, end=0.06, law=law, epsilon=epsilon))
+        lasted.append(np.count_nonzero(history.energy["contact"]))
+        assert abs(history.summary["energy"]["relative_residual"]) < 5e-5
+    assert min(lasted) <= 5
+    assert max(lasted) >= 30
+
+
+@pytest.mark.parametrize("part", [0.5, 1.0, 2.0])
+def test_an_ellipse_does_so_as_well(part):
+    shape = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.6, "density": 1.0}
+    shape |= {"position": [0.5, 0.11], "velocity": [0.0, -2.0], "angular_velocity": [3.0]}
+    scene = dry({}, step=7.5e-4 * part, end=0.06, law="normal", epsilon=1e-6).to_dict()
+    history = rigidfluid.run(Scene.from_dict(scene | {"body": [shape]}))
+    assert np.count_nonzero(history.energy["contact"]) >= 5
+    assert abs(history.summary["energy"]["relative_residual"]) < 1.5e-5
+
+
+def test_what_flies_apart_needs_ever_fewer_substeps(monkeypatch):
+    """The barrier is far stiffer where they start than further out; substeps for that all the way: half a million."""
+    counts = []
+
+    def counted(*arguments):
+        path = follow(*arguments)
+        counts.append(path.substeps)
+        return path
+
+    follow = contact_path._resolve
+    monkeypatch.setattr(contact_path, "_resolve", counted)
+    pair = [{"position": [x, 0.5], "velocity": [0.0, 0.0]} for x in (0.4 - 5e-8, 0.6 + 5e-8)]
+    history = rigidfluid.run(dry(*pair, step=0.01, end=0.02, law="barrier", epsilon=1e-2))
+    assert abs(history.summary["energy"]["relative_residual"]) < 1e-4
+    assert sum(counts) < 10_000
+
+
 def test_two_that_meet_swap_their_speeds():
     left = {"position": [0.3, 0.5], "velocity": [2.0, 0.0]}
     right = {"position": [0.6, 0.5], "velocity": [0.0, 0.0]}

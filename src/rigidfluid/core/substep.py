@@ -8,16 +8,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.contacts import select
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import Movement
 from rigidfluid.core.rigid import cross
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Motion, Pose, Twist
+from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
 
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
 
 MOST_LEVERAGE = 5.0
 """Mass times (r × n)·I⁻¹(r × n) is no more at any point of a homogeneous ellipsoid, however slender."""
+
+FADED = 8.0
+"""The frequency of balls that part is taken for no more than so many times the highest that is still to come."""
 
 _HALVINGS = 30
 _SAMPLES = 8
@@ -33,9 +37,10 @@ class Plan(NamedTuple):
 def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray, size: float, span: float) -> Plan:
     """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
 
-    Not the one they have now: substeps of equal length keep the energy of a collision. h is the step halved a whole
-    number of times, so that it seldom changes from step to step; each change costs some energy. A body that is no ball
-    may hit with its fastest point, wherever its nearest one is now.
+    Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
+    constant through a collision, and so is h, also where each of many steps plans anew. Substeps of equal length keep
+    the energy; each change costs some. h is the step halved a whole number of times, so that other bodies seldom
+    change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
 
     Parameters
     ----------
@@ -58,7 +63,7 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray
     if len(contacts) == 0:
         return Plan(span, span)
     pulled = _of_both(movement.pull(span), contacts).sum(axis=1)
-    approach = _approach(contacts, movement, arms)
+    approach = _approach(law, contacts, movement, arms)
     speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
     halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
@@ -68,33 +73,89 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray
 
 
 class _Approach(NamedTuple):
-    """Of the m contacts: no two points are ``fastest`` to meet, the gap shrinks with ``closing`` at most (m,)
-    [length/time]; ``inverse`` (m, 2): 1/m_a and 1/m_b, as much as they can be where the contact may wander [1/mass]."""
+    """Of the m contacts: no two points are ``fastest`` to meet [length/time]; ``energy``: what they have to meet with;
+    ``inverse`` (m, 2): 1/m_a and 1/m_b, as much as they can be where the contact may wander [1/mass]; ``parting``:
+    which are balls in range that part."""
 
     fastest: FloatArray
-    closing: FloatArray
+    energy: FloatArray
     inverse: FloatArray
+    parting: BoolArray
 
 
-def _approach(contacts: Contacts, movement: Movement, arms: FloatArray) -> _Approach:
-    """Normals of balls do not turn away from where they meet; those of other shapes may turn anywhere."""
+def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray) -> _Approach:
+    """Normals of balls turn with the line of centres; those of other shapes may turn anywhere."""
     twist, arm = movement.twist, _of_both(arms, contacts)
-    spin = _of_both(arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts).sum(axis=1)
-    resting = np.vstack([twist.velocity, np.zeros_like(twist.velocity[:1])])
-    velocity = resting[contacts.body_a] - resting[np.minimum(contacts.body_b, len(arms))]
-    fastest = np.linalg.norm(velocity, axis=1) + spin
-    head_on = np.maximum(-np.sum(velocity * contacts.normal, axis=1), 0.0)
+    spin = _of_both(arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
+    velocity = _relative(twist.velocity, contacts)
+    opening = np.sum(velocity * contacts.normal, axis=1)
+    inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
+    energy = _radial_energy(contacts, movement, velocity, opening, inside)
+    if tumbling.any():
+        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], arms)
     inverse = _inverse_masses(contacts, movement) * np.where(arm > 0.0, 1.0 + MOST_LEVERAGE, 1.0)
-    return _Approach(fastest, np.where(arm.any(axis=1), fastest, head_on), inverse)
+    fastest = np.linalg.norm(velocity, axis=1) + spin.sum(axis=1)
+    return _Approach(fastest, energy, inverse, ~tumbling & (inside > 0.0) & (opening > 0.0))
+
+
+def _radial_energy(
+    contacts: Contacts, movement: Movement, velocity: FloatArray, opening: FloatArray, inside: FloatArray
+) -> FloatArray:
+    """Of two balls, m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins [energy].
+
+    With the energy of the contact that is constant while they touch, as v_t r is. Out of range, balls that part have
+    none.
+    """
+    mass = relative_motion(contacts, movement).mass
+    distance = np.linalg.norm(_relative(movement.pose.position, contacts), axis=1)
+    on_body = contacts.body_b < len(movement.pose.position)
+    turned = np.where(on_body, 1.0 - (distance / (distance + inside)) ** 2, 0.0)
+    sliding = np.sum(velocity**2, axis=1) - opening**2
+    square = np.where(inside > 0.0, opening**2 + sliding * turned, np.minimum(opening, 0.0) ** 2)
+    return np.asarray(0.5 * mass * square)
+
+
+def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArray, arms: FloatArray) -> FloatArray:
+    """As if all mass had the speed that the kinetic energy can give to the fastest point of a free body, (m,) [energy].
+
+    Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A driven body is
+    not stopped; so its fastest point counts.
+    """
+    spin, inverse = movement.twist.angular_velocity, movement.inverse_inertia
+    free, turning = inverse.any(axis=(1, 2)), np.zeros(len(arms))
+    own = free & (arms > 0.0)
+    turning[own] = 0.5 * np.einsum("ni,nij,nj->n", spin[own], np.linalg.inv(inverse[own]), spin[own])
+    driven = np.where(free, 0.0, arms * np.linalg.norm(spin, axis=1))
+    speed = np.linalg.norm(velocity, axis=1) + _of_both(driven, contacts).sum(axis=1)
+    lightness: FloatArray = np.asarray(np.linalg.eigvalsh(movement.mobility)[:, 0], dtype=np.float64)
+    mass = _reciprocal(_of_both(lightness, contacts).sum(axis=1))
+    kinetic = 0.5 * mass * speed**2 + _of_both(turning, contacts).sum(axis=1)
+    return np.asarray((1.0 + MOST_LEVERAGE) * kinetic)
 
 
 def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _Approach, pull: FloatArray) -> float:
     """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time]."""
-    motion, inverse = relative_motion(contacts, movement), approach.inverse
-    energy = 0.5 * motion.mass * approach.closing**2 + law.energy(contacts)
-    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, energy, motion.mass * pull))
+    stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
+    inverse = approach.inverse
     rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
     return RESOLUTION / rate if rate > 0 else np.inf
+
+
+def _reached(
+    law: ForceLaw, contacts: Contacts, motion: Motion, approach: _Approach, pull: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The greatest stiffness and damping coefficient (m,) that count.
+
+    A law may be far stiffer where bodies start than on their way apart. Their substeps grow there, but only where the
+    contact is so soft that the change costs next to no energy.
+    """
+    stored, force = law.energy(contacts), motion.mass * pull
+    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, approach.energy + stored, force))
+    if approach.parting.any():
+        left = _greatest(law, contacts, motion, _deepest(law, contacts, stored, force))
+        stiffness = np.where(approach.parting, np.minimum(stiffness, FADED**2 * left[0]), stiffness)
+        damping = np.where(approach.parting, np.minimum(damping, FADED * left[1]), damping)
+    return stiffness, damping
 
 
 def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: FloatArray) -> FloatArray:
@@ -143,9 +204,18 @@ def relative_motion(contacts: Contacts, movement: Movement) -> Motion:
     on_body = contacts.body_b < len(movement.pose.position)
     inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
     inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
-    mass = np.zeros_like(inverse)
-    np.divide(1.0, inverse, out=mass, where=inverse > 0.0)
-    return Motion(velocity, mass)
+    return Motion(velocity, _reciprocal(inverse))
+
+
+def _reciprocal(inverse: FloatArray) -> FloatArray:
+    """Zero where ``inverse`` is."""
+    return np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+
+
+def _relative(quantity: FloatArray, contacts: Contacts) -> FloatArray:
+    """What ``quantity`` (n, d) is of a less what it is of b, zero for walls, (m, d)."""
+    extended = np.vstack([quantity, np.zeros_like(quantity[:1])])
+    return np.asarray(extended[contacts.body_a] - extended[np.minimum(contacts.body_b, len(quantity))])
 
 
 def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
