@@ -29,7 +29,7 @@ from rigidfluid.errors import StepRejected
 MOST_SUBSTEPS = 100_000
 """More of them in one step are refused."""
 
-IMPLICIT_PARTS = int(__import__("os").environ.get("PARTS","8"))
+IMPLICIT_PARTS = 8
 """Of a step in a fluid, each an implicit step of the bodies."""
 
 MOST_ALIKE = 1_000
@@ -108,7 +108,7 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
 
 
 def first_step_again(state: State, end_twist: Twist, size: float) -> BodiesPath:
-    """The first step of bodies that touch nothing, followed again to the mean of the twists at its start and its end."""
+    """The first step of bodies that touch nothing, once more: by the mean of the twists at its start and its end."""
     pose = start_pose(state.pose, state.twist, end_twist, size)
     return BodiesPath(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
 
@@ -339,9 +339,11 @@ def _refuse_overlap(system: System, contacts: Contacts) -> None:
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
-    worst = int(np.argmin(contacts.gap))
+    subject = "the bodies"
+    if len(contacts):
+        subject = f"body {system.surfaces[contacts.body_a[int(np.argmin(contacts.gap))]]}"
     return StepRejected(
-        f"body {system.surfaces[contacts.body_a[worst]]}",
+        subject,
         f"a contact that needs substeps of {part:.1e}",
         f"at most {MOST_SUBSTEPS} substeps in a step",
         "Soften the contact force: raise contact.epsilon, or widen contact.range.",

@@ -12,7 +12,7 @@ from rigidfluid.core.system import System
 from rigidfluid.core.types import FloatArray, IntArray, Step, Twist
 from rigidfluid.core.wrenches import flat, nothing
 
-SETTLED = 1e-4
+SETTLED = 1e-3
 """A step is followed again until the bodies' velocities change by less than this part of them."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -32,17 +32,20 @@ _STILL = 1e-6
 _ROUNDING = 1e-14
 
 
-class Crossing(NamedTuple):
+M = TypeVar("M", bound=Movement)
+
+
+class Crossing(NamedTuple, Generic[M]):
     """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``."""
 
-    movement: Movement
+    movement: M
     wrench: Wrench
     lost: float
 
 
 def cross_contacts(
-    law: ForceLaw, movement: Movement, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
-) -> Crossing:
+    law: ForceLaw, movement: M, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
+) -> Crossing[M]:
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
 
     f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
@@ -101,14 +104,14 @@ def cross_contacts(
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
 
-class _Look(NamedTuple):
+class _Look(NamedTuple, Generic[M]):
     """Where some forces take the bodies.
 
     ``movement`` at the end; ``pose``, contacts and mean motion in mid-step; ``way`` n·Δx and ``gap`` at the end (m,)
     [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force]; the ``wrench``.
     """
 
-    movement: Movement
+    movement: M
     pose: Pose
     middle: Contacts
     motion: Motion
@@ -126,7 +129,7 @@ class _Dampers(NamedTuple):
     along: FloatArray
 
 
-def _straight_on(movement: Movement, start: Contacts, size: float) -> _Look:
+def _straight_on(movement: M, start: Contacts, size: float) -> _Look[M]:
     """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
@@ -138,12 +141,12 @@ def _straight_on(movement: Movement, start: Contacts, size: float) -> _Look:
 
 def _looked(
     law: ForceLaw,
-    movement: Movement,
+    movement: M,
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     wrench: Wrench,
     size: float,
-) -> _Look:
+) -> _Look[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size)
     trial.drift(0.5 * size)
@@ -165,7 +168,7 @@ def _compliance(contacts: Contacts, movement: Movement, size: float) -> Any:
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
 
-def _dampers(law: ForceLaw, look: _Look, size: float) -> _Dampers:
+def _dampers(law: ForceLaw, look: _Look[M], size: float) -> _Dampers:
     if not law.dissipative:
         return _Dampers(np.zeros_like(look.way), np.zeros_like(look.middle.normal))
     speed, normal = _normal_part(look.motion.velocity, look.middle), look.middle.normal
@@ -176,14 +179,14 @@ def _dampers(law: ForceLaw, look: _Look, size: float) -> _Dampers:
     return _Dampers(-_normal_part(straight, look.middle) / speed / size, along)
 
 
-def _settled(law: ForceLaw, look: _Look, gap: FloatArray, missing: FloatArray) -> bool:
+def _settled(law: ForceLaw, look: _Look[M], gap: FloatArray, missing: FloatArray) -> bool:
     """Whether gaps are as foreseen, and what the forces still lack moves nothing."""
     enough = TOLERANCE * law.range + _ROUNDING * np.abs(look.pose.position).max()
     moved = look.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(look.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _crossing(look: _Look, dampers: _Dampers, size: float) -> Crossing:
+def _crossing(look: _Look[M], dampers: _Dampers, size: float) -> Crossing[M]:
     """The step is done, unless dampers that were not renewed to the end would give energy."""
     lost = float(np.sum(dampers.across * look.way**2) - size * np.sum(dampers.along * look.motion.velocity))
     if lost < 0.0:

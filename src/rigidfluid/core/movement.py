@@ -29,6 +29,14 @@ class Movement(Protocol):
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for bodies that are driven [1/mass]."""
 
+    @property
+    def mobility(self) -> FloatArray:
+        """M⁻¹ of straight motion of each body by itself (n, d, d), zero for bodies that are driven [1/mass]."""
+
+    @property
+    def inverse_inertia(self) -> FloatArray:
+        """(R I Rᵀ)⁻¹ (n, k, k), zero for bodies that are driven [1/(mass·length²)]."""
+
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for bodies that are driven: times a wrench that lasts for
         ``time``, and the time, it is what that adds to the velocities [1/mass | 1/(mass·length²)]."""
@@ -94,10 +102,17 @@ class FreeMovement:
         """1/m, whatever the direction."""
         return np.asarray(self._free[body, 0] / self._mass[body])
 
+    @property
+    def mobility(self) -> FloatArray:
+        return np.asarray((self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1]))
+
+    @property
+    def inverse_inertia(self) -> FloatArray:
+        return self._inverse_inertia() * self._free[:, :, None]
+
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """1/m and (R I Rᵀ)⁻¹, whatever the time."""
-        mobility = (self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1])
-        return block_diagonal(mobility, self._inverse_inertia() * self._free[:, :, None])
+        return block_diagonal(self.mobility, self.inverse_inertia)
 
     def copied(self) -> Self:
         """With momenta of its own, which kicks change in place."""
