@@ -489,6 +489,12 @@ def test_a_wall_that_holds_each_body_but_not_the_stack() -> None:
     assert again.grade == "note"
 
 
+def test_a_wall_that_cannot_hold_one_body_is_not_asked_for_the_stack() -> None:
+    weak = {"epsilon_wall": 1.1 * RANGE**2 / WEIGHT}
+    assert found("rest", BALL, UPPER, contact=weak)[0].grade == "error"
+    assert found("stack", BALL, UPPER, contact=weak) == []
+
+
 def test_bodies_that_hold_each_other_but_not_a_third() -> None:
     three = [BALL | {"position": [1.0, 0.3 + 0.4 * i]} for i in range(3)]
     weak = found("stack", *three, contact={"epsilon": RANGE**2 / (1.5 * WEIGHT), "epsilon_wall": 1e-7})

@@ -92,3 +92,4 @@ def test_nothing_rebounds_without_inertia_and_nothing_is_lost_without_a_fluid() 
 
 def test_a_body_that_cannot_hit_loses_nothing() -> None:
     assert findings(gravity=[0.0, 0.0]) == []
+    assert findings(BALL | {"position": [0.4, 0.12]}) == []  # within range, at rest

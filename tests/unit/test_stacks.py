@@ -106,3 +106,6 @@ def test_a_driven_body_bears_without_bound_and_presses_on_nothing() -> None:
     found = loads({"position": [0.4, 0.2]}, {"position": [0.4, 0.5], "fixed": True})
     np.testing.assert_allclose(found.stacked_weight, [2.0 * AREA * 10.0, np.inf])
     assert found.stacked_energy[1] == np.inf
+    moved = loads({"position": [0.4, 0.2]}, {"position": [0.4, 0.5], "prescribed": {"velocity": [0.0, -3.0]}})
+    assert moved.speed[1] == 3.0
+    np.testing.assert_allclose(moved.stacked_energy, [0.5 * 4.0 * AREA * moved.speed[0] ** 2, np.inf])
