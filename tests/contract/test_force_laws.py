@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
+from touching import unstacked
 
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.repulsion import Repulsion
-from rigidfluid.core.types import Loads
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.contact import ContactLaw
@@ -13,7 +13,7 @@ from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOpti
 from rigidfluid.testing import ForceLawContract
 
 RANGE = 0.02
-LOADS = Loads(np.array([2.0, 3.0]), np.array([5.0, 0.0]), np.array([1.0, 4.0]), smallest_gap=0.3 * RANGE)
+LOADS = unstacked(np.array([2.0, 3.0]), np.array([5.0, 0.0]), np.array([1.0, 4.0]), smallest_gap=0.3 * RANGE)
 EPSILONS = {
     "one epsilon": {"epsilon": 5e-6},
     "wall epsilon": {"epsilon": 5e-6, "epsilon_wall": 2e-6},

@@ -1,10 +1,10 @@
-"""One contact of two surfaces, made on the spot."""
+"""One contact of two surfaces, made on the spot, and what it must hold."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import Contacts
+from rigidfluid.core.types import Contacts, FloatArray, Loads
 
 NORMAL = np.array([[0.6, 0.8]])
 
@@ -22,3 +22,11 @@ def contact(gap: float, radius_a: float = np.nan, radius_b: float = np.nan, dime
         radius_a=np.array([radius_a]),
         radius_b=np.array([radius_b]),
     )
+
+
+def unstacked(mass: FloatArray, weight: FloatArray, speed: FloatArray, smallest_gap: float) -> Loads:
+    """Of bodies that never come to lie on each other; those without finite mass have a given twist."""
+    free = np.isfinite(mass)
+    energy = 0.5 * np.where(free, mass, 0.0) * speed**2
+    stacked_weight, stacked_energy = np.where(free, [weight, energy], np.inf)
+    return Loads(mass, weight, speed, stacked_weight, stacked_energy, smallest_gap)

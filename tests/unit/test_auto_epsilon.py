@@ -1,10 +1,12 @@
 """The stiffness that is left to the loads, seen by dry head-on impacts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pydantic import ValidationError
 from scipy.integrate import solve_ivp
-from touching import NORMAL, contact
+from touching import NORMAL, contact, unstacked
 
 from rigidfluid.core.loads import work_to_stop
 from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
@@ -23,7 +25,7 @@ LOADS = [(1e-2, 1e-2), (1e-2, 1e2), (1e2, 1e-2), (1e2, 1e2), (1.0, 0.0), (0.0, 1
 
 def loads(weight: float, speed: float, smallest: float = SMALLEST) -> Loads:
     """The second body weighs half as much and is faster by half."""
-    return Loads(MASSES, weight * np.array([1.0, 0.5]), speed * np.array([1.0, 1.5]), smallest)
+    return unstacked(MASSES, weight * np.array([1.0, 0.5]), speed * np.array([1.0, 1.5]), smallest)
 
 
 def smallest_gap(part: type[Repulsion], held: Loads, at_wall: bool) -> float:
@@ -86,20 +88,40 @@ def test_work_to_stop_is_that_of_the_pair() -> None:
     np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), held, RANGE), pair)
 
 
+def test_a_wall_holds_what_comes_down_on_the_lower_body_and_a_pair_what_the_upper_one_brings() -> None:
+    lower, upper = 0, 1
+    weight, energy = np.array([9.0, 2.0]), np.array([40.0, 30.0])
+    held = replace(loads(4.0, 3.0), stacked_weight=weight, stacked_energy=energy)
+    way = RANGE - SMALLEST
+    np.testing.assert_allclose(
+        work_to_stop(contact(0.01, 0.5, np.inf), held, RANGE), energy[lower] + weight[lower] * way
+    )
+    pair = 0.5 * 0.4 * 7.5**2  # of the two alone
+    np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), held, RANGE), energy[upper] + 4.0 * way)
+    held = replace(held, stacked_energy=np.array([40.0, 0.9 * pair]), stacked_weight=np.array([9.0, 6.0]))
+    np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), held, RANGE), pair + 6.0 * way)
+
+
+def test_a_driven_body_is_pressed_on_by_a_stack_like_a_wall() -> None:
+    driven = unstacked(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.array([3.0, 0.0]), SMALLEST)
+    held = replace(driven, stacked_weight=np.array([9.0, np.inf]), stacked_energy=np.array([40.0, np.inf]))
+    np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), held, RANGE), 40.0 + 9.0 * (RANGE - SMALLEST))
+
+
 def test_a_driven_body_counts_as_a_wall_that_moves() -> None:
-    driven = Loads(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.array([3.0, 1.0]), SMALLEST)
+    driven = unstacked(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.array([3.0, 1.0]), SMALLEST)
     expected = 0.5 * 2.0 * 4.0**2 + 4.0 * (RANGE - SMALLEST)
     np.testing.assert_allclose(work_to_stop(contact(0.01, 0.5, 0.3), driven, RANGE), expected)
 
 
 def test_a_driven_body_needs_neither_weight_nor_speed() -> None:
-    held = Loads(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.zeros(2), SMALLEST)
+    held = unstacked(np.array([2.0, np.inf]), np.array([4.0, 0.0]), np.zeros(2), SMALLEST)
     law = NormalLaw(NormalLaw.Options(epsilon="auto"), RANGE, held)
     np.testing.assert_allclose(law.epsilon(contact(0.01)), (RANGE - SMALLEST) ** 2 / 3 / 4.0)
 
 
 def test_two_driven_bodies_hold_nothing() -> None:
-    driven = Loads(np.full(2, np.inf), np.zeros(2), np.array([3.0, 1.0]), SMALLEST)
+    driven = unstacked(np.full(2, np.inf), np.zeros(2), np.array([3.0, 1.0]), SMALLEST)
     law = NormalLaw(NormalLaw.Options(epsilon="auto"), RANGE, driven)
     assert not law.force(contact(0.01)).any()
 
@@ -108,7 +130,7 @@ def test_two_driven_bodies_hold_nothing() -> None:
     ("held", "text"),
     [
         (None, 'contact.epsilon: found "auto" without known loads; .* Give `epsilon` as a number'),
-        (Loads(MASSES, np.array([1.0, 0.0]), np.zeros(2), SMALLEST), "body.1 that has neither weight nor speed"),
+        (unstacked(MASSES, np.array([1.0, 0.0]), np.zeros(2), SMALLEST), "body.1 that has neither weight nor speed"),
         (loads(1.0, 1.0, 0.0), "contact.smallest_gap: found 0.0; .*below contact.range = 0.02"),
         (loads(1.0, 1.0, RANGE), "contact.smallest_gap: found 0.02"),
     ],

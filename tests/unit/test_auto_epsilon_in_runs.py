@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -87,18 +88,31 @@ def test_drop_onto_a_ball_ends_at_the_smallest_gap(law: str, gravity: float, spe
 def test_the_summary_says_what_was_chosen_and_why() -> None:
     drop = scene("normal", 2, 10.0, ball(1.0), ball(1.6, density=4.0), epsilon=1e-3, epsilon_wall="auto")
     data = drop.to_dict() | {"time": {"end": 1e-3, "step": 1e-3}, "output": {"every": 1e-3}}
-    softer, stiffer = rigidfluid.run(Scene.from_dict(data)).summary["auto_epsilon"]
-    assert (softer["between"], stiffer["between"]) == (["body0", "wall"], ["body1", "wall"])
-    for row, mass, height in ((softer, 2.0, 0.75), (stiffer, 4.0, 1.35)):
-        weight = 10.0 * mass * np.pi * RADIUS**2
-        assert row["impact_energy"] == pytest.approx(weight * (height - RANGE))
-        assert row["weight_work"] == pytest.approx(weight * (RANGE - SMALLEST))
+    lower, upper = rigidfluid.run(Scene.from_dict(data)).summary["auto_epsilon"]
+    assert (lower["between"], upper["between"]) == (["body0", "wall"], ["body1", "wall"])
+    light, heavy = (10.0 * density * np.pi * RADIUS**2 for density in (2.0, 4.0))
+    alone = heavy * (1.35 - RANGE)
+    for row, weight, energy, height in (
+        (upper, heavy, alone, 1.35),
+        (lower, light + heavy, alone + light * (0.75 - RANGE), 0.75),
+    ):
+        work = weight * (RANGE - SMALLEST)
+        assert row["impact_energy"] == pytest.approx(energy)
+        assert row["weight_work"] == pytest.approx(work)
         assert row["smallest_gap"] == SMALLEST
         assert row["impact_speed"] == pytest.approx(np.sqrt(20.0 * (height - RANGE)))
-        assert row["epsilon"] == pytest.approx((RANGE - SMALLEST) ** 3 / 3 / (weight * (height - SMALLEST)))
+        assert row["epsilon"] == pytest.approx((RANGE - SMALLEST) ** 3 / 3 / (energy + work))
 
 
 def test_the_summary_is_silent_where_the_scene_gives_numbers() -> None:
     drop = scene("normal", 2, 10.0, ball(1.0), epsilon=1e-3)
     data = drop.to_dict() | {"time": {"end": 1e-3, "step": 1e-3}, "output": {"every": 1e-3}}
     assert rigidfluid.run(Scene.from_dict(data)).summary["auto_epsilon"] == []
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("densities", [(2.0, 2.0, 2.0), (2.0, 200.0, 200.0), (200.0, 2.0, 2.0)])
+def test_a_stack_that_comes_down_keeps_its_smallest_gap(law: str, densities: Sequence[float], dimension: int) -> None:
+    stack = [ball(RADIUS + START + i * (2 * RADIUS + START), density=density) for i, density in enumerate(densities)]
+    assert smallest_gap(scene(law, dimension, 10.0, *stack), 0.0, 10.0) >= 0.98 * SMALLEST

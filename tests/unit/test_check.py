@@ -338,7 +338,7 @@ def test_many_different_bodies_are_asked_at_their_extremes() -> None:
         BALL | {"radius": 0.02 + 1e-4 * i, "position": [0.1 + 0.1 * (i % 18), 0.2 + 0.15 * (i // 18)]}
         for i in range(90)
     ]
-    assert len(representatives(build_system(Scene.from_dict(tables(*row))))) <= 16
+    assert len(representatives(build_system(Scene.from_dict(tables(*row))))) <= 24
     assert found("rest", *row)[0].subject == ("body89", "bottom")
 
 
@@ -448,37 +448,111 @@ def test_every_question_and_figure_is_explained() -> None:
     coarse = {"mesh": {"size": 0.2, "size_body": 0.16, "refinements": 0}}
     reports = [
         report(contact=weak | {"substeps": 1, "range": 0.15}, **WET, **coarse),
-        report(near, contact={"epsilon": "auto"}, **WET, **MESH),
+        report(near, BALL | {"position": [1.0, 0.5]}, contact={"epsilon": "auto"}, **WET, **MESH),
         report(
             contact=weak, boundary=[{"on": "bottom", "type": "slip"}], domain={"lower": [0.8, 0.0], "upper": [1.2, 2.0]}
         ),
+        report(contact={"epsilon": 1e-12}, **WET, **MESH),
         check(Scene.from_dict(tables() | {"contact": {}})),
     ]
     findings = [one for each in reports for one in each.to_dict()["findings"]]
     words = {word for one in findings for word in (one["question"], *one["found"], *one["enough"])}
     words |= {word for each in reports[0].to_dict()["bodies"] for word in each}
     assert {"rest", "impact", "smallest-gap", "step", "cells", "start", "range", "law", "open-face", "auto"} <= words
+    assert {"stack", "energy-error", "force_over_stacked_weight", "layer_error"} <= words
     assert sorted(word for word in words if f"`{word}`" not in page) == []
 
 
-def test_a_light_body_under_a_heavy_one_is_warned_of():
-    """`auto` looks at each body's own weight; what comes to lie on it is more."""
-    light = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.15]}
-    heavy = light | {"density": 400.0, "position": [0.5, 0.5]}
-    tables = {
-        "scene": {"name": "stack", "dimension": 2},
-        "fluid": {"backend": "dry", "gravity": [0.0, -10.0]},
-        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "contact": {"law": "normal", "range": 0.02, "epsilon": "auto"},
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 0.5},
-    }
+# stacks
 
-    def stacks(*bodies, **contact):
-        data = tables | {"body": list(bodies), "contact": tables["contact"] | contact}
-        return [finding for finding in check(Scene.from_dict(data)).findings if finding.question == "stack"]
+UPPER = BALL | {"position": [1.0, 1.5]}
+LIGHT, HEAVY = BALL | {"density": 1.0, "position": [1.0, 0.2]}, BALL | {"density": 400.0}
+HEAVY_WEIGHT = 400.0 / 3.0 * WEIGHT
 
-    (finding,) = stacks(light, heavy)
-    assert (finding.grade, finding.subject[0]) == ("warning", "body0")
-    assert stacks(light, heavy, epsilon_wall=finding.enough["epsilon_wall"]) == []
-    assert stacks(heavy) == []
+
+def test_what_the_lower_body_bears_at_a_wall() -> None:
+    finding = found("stack", BALL, UPPER)[0]
+    assert (finding.grade, finding.subject) == ("note", ("body0", "bottom"))
+    assert finding.found["stacked_weight"] == pytest.approx(2 * WEIGHT)
+    assert finding.found["force_over_stacked_weight"] == pytest.approx(RANGE**2 / 1e-7 / (2 * WEIGHT))
+    assert finding.found["rest_gap"] == pytest.approx(RANGE - np.sqrt(1e-7 * 2 * WEIGHT))
+    assert only("rest", BALL).found["rest_gap"] == found("rest", BALL, UPPER)[0].found["rest_gap"]
+
+
+def test_a_wall_that_holds_each_body_but_not_the_stack() -> None:
+    share = 0.7
+    (finding,) = found("stack", BALL, UPPER, contact={"epsilon_wall": RANGE**2 / (share * 2 * WEIGHT)})
+    assert (finding.grade, finding.subject) == ("warning", ("body0", "bottom"))
+    assert finding.found["force_over_stacked_weight"] == pytest.approx(share)
+    assert finding.enough["epsilon_wall"] == pytest.approx(RANGE**2 / (2 * WEIGHT))
+    (again,) = found("stack", BALL, UPPER, contact={"epsilon_wall": 0.99 * RANGE**2 / (2 * WEIGHT)})
+    assert again.grade == "note"
+
+
+def test_a_wall_that_cannot_hold_one_body_is_not_asked_for_the_stack() -> None:
+    weak = {"epsilon_wall": 1.1 * RANGE**2 / WEIGHT}
+    assert found("rest", BALL, UPPER, contact=weak)[0].grade == "error"
+    assert found("stack", BALL, UPPER, contact=weak) == []
+
+
+def test_bodies_that_hold_each_other_but_not_a_third() -> None:
+    three = [BALL | {"position": [1.0, 0.3 + 0.4 * i]} for i in range(3)]
+    weak = found("stack", *three, contact={"epsilon": RANGE**2 / (1.5 * WEIGHT), "epsilon_wall": 1e-7})
+    assert [(one.grade, one.subject) for one in weak] == [
+        ("warning", ("body0", "body1")),
+        ("note", ("body0", "bottom")),
+    ]
+    assert weak[0].found["stacked_weight"] == pytest.approx(2 * WEIGHT)
+    assert weak[0].enough["epsilon"] == pytest.approx(RANGE**2 / (2 * WEIGHT))
+
+
+def test_the_lower_body_may_be_any_of_its_kind() -> None:
+    """In a thick fluid all fall alike, so that no speed tells the lowest."""
+    thick = {"fluid": WET["fluid"] | {"viscosity": 100.0}}
+    row = [BALL | {"position": [1.0, 0.15 + 0.26 * i]} for i in (3, 4, 5, 0, 6, 2, 1)]
+    (at_wall, _) = found("stack", *row, **thick, **MESH)
+    assert at_wall.subject == ("body3", "bottom")
+
+
+def test_auto_holds_a_heavy_body_on_a_light_one() -> None:
+    stacks = found("stack", LIGHT, HEAVY, contact={"epsilon": "auto"})
+    assert [(one.grade, one.subject) for one in stacks] == [("note", ("body0", "bottom"))]
+    assert stacks[0].found["stacked_weight"] == pytest.approx(HEAVY_WEIGHT * (1 + 1 / 400))
+
+
+def test_impact_of_a_stack_is_that_of_all_its_bodies() -> None:
+    alone, both = WEIGHT * HEIGHT, WEIGHT * (HEIGHT + 1.5 - RADIUS)
+    share = 0.9
+    at_wall, _ = found("impact", BALL, UPPER, contact={"epsilon_wall": RANGE**3 / (3 * share * both)})
+    assert (at_wall.grade, at_wall.subject) == ("warning", ("body0", "bottom"))  # each body alone is stopped
+    assert "come down" in at_wall.text
+    assert at_wall.found["pair_energy"] == pytest.approx(alone - WEIGHT * RANGE)
+    assert at_wall.found["impact_energy"] == pytest.approx(both - 2 * WEIGHT * RANGE)
+    assert at_wall.found["barrier_over_impact"] == pytest.approx(share)
+    at_wall, _ = found("impact", BALL, UPPER, contact={"epsilon_wall": RANGE**3 / (3 * 0.9 * alone)})
+    assert at_wall.grade == "error"
+
+
+def test_cells_across_the_gap_under_a_stack() -> None:
+    submerged = 2.0 * np.pi * RADIUS**2 * GRAVITY
+    at_wall, between = found("cells", BALL, UPPER, contact={"epsilon": 1e-5}, **WET, **MESH)
+    assert at_wall.found["gap"] == pytest.approx(RANGE - np.sqrt(1e-5 * 2 * submerged))
+    assert between.found["gap"] == pytest.approx(RANGE - np.sqrt(1e-5 * submerged))
+
+
+def test_auto_stops_a_stack_at_the_smallest_gap() -> None:
+    for finding in found("impact", LIGHT, HEAVY, contact={"epsilon": "auto"}):
+        assert finding.found["turning_gap"] == pytest.approx(0.25 * RANGE)
+
+
+def test_the_check_asks_a_law_at_as_many_gaps_as_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The law `contact` is stiffest at 2/3 of its range, which lies between two of the gaps."""
+    from rigidfluid.core import stiffness
+
+    scene = tables(contact={"law": "contact", "epsilon": 1e-12})
+    (finding,) = answers(scene, "step")
+    gap = float(answers(scene, "impact")[0].found["turning_gap"])  # type: ignore[arg-type]
+    gaps = gap + np.arange(stiffness.SAMPLES) / stiffness.SAMPLES * (RANGE - gap)
+    asked = (RANGE - gaps) * (3 * gaps - RANGE) / 1e-12
+    assert finding.found["stiffness"] == pytest.approx(asked.max(), rel=1e-6)
+    assert asked.max() < RANGE**2 / 3 / 1e-12 * 0.9999

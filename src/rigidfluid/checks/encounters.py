@@ -7,9 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.checks.response import turning_gap
 from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.loads import closing_speed, held_weight, impact_energy, inverse_mass
+from rigidfluid.core.loads import (
+    closing_speed,
+    held_weight,
+    impact_energy,
+    inverse_mass,
+    pair_energy,
+    stacked_weight,
+)
 from rigidfluid.core.meetings import body_meetings, free, kinds, representatives, wall_meetings
+from rigidfluid.core.stiffness import greatest_stiffness
 from rigidfluid.core.system import System
 from rigidfluid.core.types import Contacts, FloatArray, Wall
 
@@ -21,8 +30,9 @@ MOST_SHOWN = 8
 class Encounters:
     """Contacts of bodies with walls, or with each other, as they are to be expected.
 
-    ``weight`` (m,) presses the two together at rest [force], ``energy`` (m,) is that of the approach [energy],
-    ``speed`` (m,) [length/time], ``inverse_mass`` (m,) [1/mass]; ``kind`` is equal for bodies that are alike.
+    ``weight`` (m,) presses the two together at rest [force], ``speed`` (m,) is that of the approach [length/time] and
+    ``pair_energy`` (m,) its energy [energy]; ``stacked_weight`` (m,) and ``energy`` (m,) are the same with the bodies
+    that may come to press on the contact. ``inverse_mass`` (m,) [1/mass]; ``kind`` is equal for bodies that are alike.
     """
 
     system: System
@@ -30,10 +40,20 @@ class Encounters:
     at_walls: bool
     contacts: Contacts
     weight: FloatArray
+    stacked_weight: FloatArray
+    pair_energy: FloatArray
     energy: FloatArray
     speed: FloatArray
     inverse_mass: FloatArray
     kind: Mapping[int, int]
+
+    def turning_gaps(self) -> FloatArray:
+        """Where the impacts end, that the stacked weight pushes on (m,) [length]."""
+        return turning_gap(self.law, self.contacts, self.energy, self.stacked_weight)
+
+    def stiffness(self) -> FloatArray:
+        """The greatest on the way to the turning gaps (m,) [force/length]."""
+        return greatest_stiffness(self.law, self.contacts, self.turning_gaps())
 
     def names(self, row: int) -> tuple[str, str]:
         """Of the two surfaces."""
@@ -71,15 +91,22 @@ def encounters(system: System, law: ForceLaw) -> Iterator[Encounters]:
     if system.walls and moving:
         walls = [_pressing(system, body) for body in moving]
         contacts = wall_meetings(system, moving, walls)
-        pull = -np.einsum("md,md->m", contacts.normal, system.weight[moving])
-        yield _encounters(system, law, True, contacts, np.maximum(pull, 0.0), kind)
+        yield _encounters(system, law, True, contacts, _pressing_share(system, moving, contacts), kind)
     contacts = body_meetings(system, bodies)
     if len(contacts):
-        yield _encounters(system, law, False, contacts, held_weight(contacts, system.loads), kind)
+        yield _encounters(system, law, False, contacts, np.ones(len(contacts)), kind)
 
 
 def _pressing(system: System, body: int) -> Wall:
     return max(system.walls, key=lambda wall: -float(wall.normal @ system.weight[body]))
+
+
+def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> FloatArray:
+    """The part of the weight of each of m ``bodies`` that presses it on its wall, (m,) [1]."""
+    weight = system.weight[bodies]
+    pull, whole = -np.einsum("md,md->m", contacts.normal, weight), np.linalg.norm(weight, axis=1)
+    share: FloatArray = np.divide(np.maximum(pull, 0.0), whole, out=np.zeros(len(bodies)), where=whole > 0.0)
+    return share
 
 
 def _encounters(
@@ -87,9 +114,21 @@ def _encounters(
     law: ForceLaw,
     at_walls: bool,
     contacts: Contacts,
-    weight: FloatArray,
+    pressing: FloatArray,
     kind: Mapping[int, int],
 ) -> Encounters:
+    """``pressing`` (m,) is the part of the weight that acts across each contact [1]."""
     loads = system.loads
-    energy, speed = impact_energy(contacts, loads), closing_speed(contacts, loads)
-    return Encounters(system, law, at_walls, contacts, weight, energy, speed, inverse_mass(contacts, loads), kind)
+    return Encounters(
+        system=system,
+        law=law,
+        at_walls=at_walls,
+        contacts=contacts,
+        weight=pressing * held_weight(contacts, loads),
+        stacked_weight=pressing * stacked_weight(contacts, loads),
+        pair_energy=pair_energy(contacts, loads),
+        energy=impact_energy(contacts, loads),
+        speed=closing_speed(contacts, loads),
+        inverse_mass=inverse_mass(contacts, loads),
+        kind=kind,
+    )

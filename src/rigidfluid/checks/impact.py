@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
-from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.checks.remedies import stronger
-from rigidfluid.checks.response import barrier, energy_along, turning_gap
+from rigidfluid.checks.response import barrier, energy_along
 from rigidfluid.core.types import FloatArray
 
 QUESTION = "impact"
@@ -18,7 +18,7 @@ _SLACK = 0.8
 
 
 def on_impact(met: Encounters, wanted: float | None) -> Iterator[Finding]:
-    """Compare what the law stores up to contact with ½ m v² + W range.
+    """Compare what the law stores up to contact with the energy of the impact, that of a stack if need be, + W range.
 
     Parameters
     ----------
@@ -30,23 +30,26 @@ def on_impact(met: Encounters, wanted: float | None) -> Iterator[Finding]:
     Yields
     ------
     Finding
-        One for each kind of pair that moves or has weight; an error where the law is too weak and nothing else brakes,
-        a warning where a fluid or the law's dampers brake too.
+        One for each kind of pair that moves or has weight; an error where the law is too weak for the two alone and
+        nothing else brakes, a warning where a fluid or the law's dampers brake too, or bodies come down together.
     """
-    work = met.energy + met.weight * met.law.range
+    work = met.energy + met.stacked_weight * met.law.range
     stored = barrier(met.law, met.contacts)
     share = np.divide(stored, work, out=np.full(len(work), np.inf), where=work > 0.0)
-    gaps = turning_gap(met.law, met.contacts, met.energy, met.weight)
+    stops_two = stored >= met.pair_energy + met.weight * met.law.range
+    gaps = met.turning_gaps()
     for row in met.worst(-share):
         if work[row] > 0.0:
-            yield _finding(met, row, float(share[row]), float(gaps[row]))
+            yield _finding(met, row, float(share[row]), bool(stops_two[row]), float(gaps[row]))
     if wanted is not None:
         yield from _too_near(met, gaps, wanted)
 
 
-def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
+def _finding(met: Encounters, row: int, share: float, stops_two: bool, gap: float) -> Finding:
     found = _figures(met, row, gap if share >= 1.0 else np.nan) | {"barrier_over_impact": share}
     fast = f"{' against '.join(met.names(row))} at a speed of {figure(met.speed[row])}"
+    if met.energy[row] > met.pair_energy[row]:
+        fast += " (with the bodies that come down on it)"
     if share >= 1.0:
         text = f"{fast} is stopped at a gap of {figure(gap)}, if nothing else brakes it"
         return Finding("note", QUESTION, met.names(row), text, found=found)
@@ -57,12 +60,13 @@ def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
         text += (
             "; the film between them must brake the rest" if met.system.backend.needs_mesh else "; dampers brake too"
         )
-    return Finding("warning" if braked else "error", QUESTION, met.names(row), text, remedy, found, enough)
+    grade: Grade = "warning" if braked or stops_two else "error"
+    return Finding(grade, QUESTION, met.names(row), text, remedy, found, enough)
 
 
 def _too_near(met: Encounters, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
     """Which impacts end nearer than the smallest gap that the scene asks for."""
-    needed = met.energy + met.weight * (met.law.range - wanted)
+    needed = met.energy + met.stacked_weight * (met.law.range - wanted)
     stored = energy_along(met.law, met.contacts, np.full((len(gaps), 1), wanted))[:, 0]
     for row in met.worst(-gaps):
         if gaps[row] < _SLACK * wanted:
@@ -78,5 +82,6 @@ def _figures(met: Encounters, row: int, gap: float) -> dict[str, float]:
         "turning_gap": gap,
         "impact_speed": float(met.speed[row]),
         "impact_energy": float(met.energy[row]),
-        "weight_work": float(met.weight[row] * met.law.range),
+        "pair_energy": float(met.pair_energy[row]),
+        "weight_work": float(met.stacked_weight[row] * met.law.range),
     }

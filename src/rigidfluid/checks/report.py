@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.checks.encounters import encounters
+from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.holding import by_a_law, by_auto, by_walls
 from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.reach import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
-from rigidfluid.checks.rest import at_rest, under_the_others
+from rigidfluid.checks.rest import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.core.features import Feature, features
 from rigidfluid.core.geometry_checks import initial_contacts
@@ -97,10 +98,12 @@ def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]
         return
     if law.conservative:
         for met in encounters(system, law):
-            yield from chain(at_rest(met), under_the_others(met))
+            yield from chain(at_rest(met), under_a_stack(met))
             yield from chain(on_impact(met, scene.contact.smallest_gap), in_steps(met, scene.time))
             if mesh is not None:
                 yield from in_the_gap(met, mesh)
+            if mesh is not None and system.backend.problem is not None:
+                yield from in_the_fluid(met, system.backend.problem, scene.time.step)
     yield from at_the_start(system, law, start)
     yield from chain(between_walls(system, law), beside_sizes(system, law, mesh))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, at_most, figure
-from rigidfluid.checks.response import rest_gap, turning_gap
+from rigidfluid.checks.response import rest_gap
 from rigidfluid.core.scene import MeshTable
 
 QUESTION = "cells"
@@ -18,7 +18,7 @@ _ROUNDING = 1e-9
 
 
 def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
-    """Compare the finest cells, size_body/2^refinements, with the gap at rest, or where an impact ends.
+    """Compare the finest cells, size_body/2^refinements, with the gap at rest under a stack, or where an impact ends.
 
     Parameters
     ----------
@@ -32,9 +32,8 @@ def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
     Finding
         One for each kind of pair whose gap is known; a warning where fewer than cells_per_gap cells fit.
     """
-    gaps = turning_gap(met.law, met.contacts, met.energy, met.weight)
-    resting = met.weight > 0.0
-    gaps = np.where(resting, rest_gap(met.law, met.contacts, met.weight, 0.0), gaps)
+    resting = met.stacked_weight > 0.0
+    gaps = np.where(resting, rest_gap(met.law, met.contacts, met.stacked_weight, 0.0), met.turning_gaps())
     finest = mesh.size_body / 2**mesh.refinements
     gaps = np.where(gaps > _ROUNDING * met.law.range, gaps, np.nan)
     for row in met.worst(-np.nan_to_num(gaps, nan=np.inf)):
@@ -45,7 +44,7 @@ def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
 def _finding(met: Encounters, row: int, gap: float, finest: float, mesh: MeshTable) -> Finding:
     cells = gap / float(np.clip(gap / mesh.cells_per_gap, finest, mesh.size_body))
     found = {"gap": gap, "cells": cells, "finest_cell": finest}
-    where = "gap at rest" if met.weight[row] > 0.0 else "gap at the impact"
+    where = "gap at rest" if met.stacked_weight[row] > 0.0 else "gap at the impact"
     text = f"{' and '.join(met.names(row))}: {figure(cells)} cells across the {where} of {figure(gap)}"
     if cells >= mesh.cells_per_gap * (1.0 - _ROUNDING):
         return Finding("note", QUESTION, met.names(row), text, found=found)

@@ -1,4 +1,4 @@
-"""How a law answers along the gap: its largest force, where it holds a weight, how much it stores, how stiff it gets.
+"""How a law answers along the gap: its largest force, where it holds a weight, how much it stores.
 
 Everything is asked of the law itself, on contacts made up for the purpose, so that it holds for any law.
 """
@@ -88,13 +88,6 @@ def turning_gap(law: ForceLaw, contacts: Contacts, energy: FloatArray, weight: F
         stopped = energy_along(law, contacts, middle) >= energy[:, None] + weight[:, None] * (law.range - middle)
         low, high = np.where(stopped, middle, low), np.where(stopped, high, middle)
     return np.asarray(high[:, 0])
-
-
-def greatest_stiffness(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> FloatArray:
-    """The greatest stiffness of each contact between its ``deepest`` gap (m,) and the range, (m,) [force/length]."""
-    gaps = deepest[:, None] + np.linspace(0.0, 1.0, 65)[:-1] * (law.range - deepest)[:, None]
-    stiffness = law.stiffness(at_gaps(contacts, gaps)).reshape(gaps.shape)
-    return np.asarray(np.maximum(stiffness.max(axis=1), 0.0))
 
 
 def _grid(law: ForceLaw, contacts: Contacts) -> FloatArray:

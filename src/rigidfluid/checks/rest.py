@@ -7,12 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure
 from rigidfluid.checks.remedies import stronger
 from rigidfluid.checks.response import largest_force, rest_gap
-from rigidfluid.core.repulsion import Repulsion
 
 QUESTION = "rest"
+_STACK = "stack"
+_ROUNDING = 1e-9
 
 
 def at_rest(met: Encounters) -> Iterator[Finding]:
@@ -39,36 +40,38 @@ def at_rest(met: Encounters) -> Iterator[Finding]:
             yield _finding(met, row, float(share[row]), float(gaps[row]))
 
 
-def under_the_others(met: Encounters) -> Iterator[Finding]:
-    """Compare the largest force of a wall on each body with the weight of all bodies that may come to lie on it.
+def under_a_stack(met: Encounters) -> Iterator[Finding]:
+    """Compare the largest force without overlap with the weight of all that may come to press on the contact.
 
     Parameters
     ----------
     met : Encounters
-        The bodies, each at a wall.
+        The bodies, one at a wall or on another body.
 
     Yields
     ------
     Finding
-        A warning for the worst kind of body where the wall's law holds less.
+        One for each kind of pair that bears more than its own weight, and at least that; a warning where the law is
+        too weak.
     """
-    free = ~met.system.controlled
-    together = float(np.linalg.norm(met.system.weight[free].sum(axis=0)))
-    if not met.at_walls or np.count_nonzero(free) < 2 or together == 0.0:
-        return
-    share = largest_force(met.law, met.contacts)[0] / together
-    row = int(np.argmin(share))
-    if share[row] >= 1.0 or share[row] * together < met.weight[row]:
-        return  # that it cannot hold itself is an error of its own
-    names = met.names(row)
-    text = f"{names[0]} on {names[1]}: the law gives at most {figure(float(share[row]))} of the weight of all bodies"
-    text += "; others that come to lie on it may press it through"
-    enough, remedy = {"strength": 1.0 / float(share[row])}, "Make the law stronger at walls."
-    if isinstance(met.law, Repulsion):
-        enough["epsilon_wall"] = float(share[row] * met.law.epsilon(met.contacts)[row])
-        remedy = f"Set contact.epsilon_wall to {at_most(enough['epsilon_wall'])} or less."
-    found = {"force_over_all_weights": float(share[row]), "all_weights": together}
-    yield Finding("warning", "stack", names, text, remedy, found, enough)
+    most, _ = largest_force(met.law, met.contacts)
+    borne = (met.stacked_weight > met.weight * (1.0 + _ROUNDING)) & (most >= met.weight)
+    share = np.divide(most, met.stacked_weight, out=np.full(len(most), np.inf), where=borne)
+    gaps = rest_gap(met.law, met.contacts, met.stacked_weight, _deepest(met))
+    for row in met.worst(-share):
+        if borne[row]:
+            yield _stack(met, row, float(share[row]), float(gaps[row]))
+
+
+def _stack(met: Encounters, row: int, share: float, gap: float) -> Finding:
+    pressing = float(met.stacked_weight[row])
+    found = {"force_over_stacked_weight": share, "stacked_weight": pressing, "rest_gap": gap}
+    text = f"{' on '.join(met.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
+    if share >= 1.0:
+        return Finding("note", _STACK, met.names(row), f"{text}, and rests at a gap of {figure(gap)}", found=found)
+    enough, remedy = stronger(met.law, met.at_walls, share)
+    text += f", of which the law gives at most {figure(share)}: they may press it through"
+    return Finding("warning", _STACK, met.names(row), text, remedy, found, enough)
 
 
 def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:

@@ -9,7 +9,6 @@ import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, Grade, at_most, figure
-from rigidfluid.checks.response import greatest_stiffness, turning_gap
 from rigidfluid.core.contact_path import MOST_SUBSTEPS
 from rigidfluid.core.scene import TimeTable
 from rigidfluid.core.substep import RESOLUTION
@@ -17,7 +16,8 @@ from rigidfluid.core.substep import RESOLUTION
 QUESTION = "step"
 _STABLE = 2.0
 """Verlet's scheme explodes above this substep times frequency."""
-_ACCURATE = 0.5
+ACCURATE = 0.5
+"""Up to this step times frequency a contact is resolved."""
 
 
 def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
@@ -36,8 +36,7 @@ def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
         One for each kind of pair. With fixed substeps h, ω h > 2 is an error and > 0.5 a warning; in one implicit step
         h, ω h > 0.5 is a warning where there are dampers.
     """
-    turning = turning_gap(met.law, met.contacts, met.energy, met.weight)
-    stiffness = greatest_stiffness(met.law, met.contacts, turning)
+    stiffness = met.stiffness()
     frequency = np.sqrt(stiffness * met.inverse_mass)
     for row in met.worst(frequency):
         if frequency[row] > 0.0:
@@ -66,11 +65,11 @@ def _fixed(names: tuple[str, str], text: str, found: dict[str, float], turn: flo
     each = turn / substeps
     found |= {"substeps": substeps, "turn_per_substep": each}
     text += f" of {substeps} substeps; frequency times substep is {figure(each)}"
-    if each <= _ACCURATE:
+    if each <= ACCURATE:
         return Finding("note", QUESTION, names, text, found=found)
     grade: Grade = "error" if each > _STABLE else "warning"
     text += ", which explodes above 2" if each > _STABLE else ", which is inaccurate above 0.5"
-    enough = {"substeps": ceil(turn / _ACCURATE)}
+    enough = {"substeps": ceil(turn / ACCURATE)}
     remedy = f"Set contact.substeps to {enough['substeps']} or more, or leave it out."
     return Finding(grade, QUESTION, names, text, remedy, found, enough)
 
@@ -81,9 +80,9 @@ def _implicit(
     turn = frequency * time.step
     found |= {"turn_per_step": turn}
     text += f", which is implicit; frequency times step is {figure(turn)}"
-    if turn <= _ACCURATE or not damped:
+    if turn <= ACCURATE or not damped:
         return Finding("note", QUESTION, names, text, found=found)
-    enough = {"time_step": _ACCURATE / frequency}
+    enough = {"time_step": ACCURATE / frequency}
     remedy = f"Set time.step to {at_most(enough['time_step'])} or less, or contact.stepping to substeps."
     return Finding("warning", QUESTION, names, f"{text}: dampers are missed above 0.5", remedy, found, enough)
 

@@ -45,14 +45,14 @@ def require_loads(loads: Loads | None, law_range: float) -> Loads:
 
 
 def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArray:
-    """½ m v² + W (range - smallest_gap), what a head-on impact puts into each contact.
+    """What a head-on impact puts into each contact: its energy + W (range - smallest_gap), W the weight of a stack.
 
     Parameters
     ----------
     contacts : Contacts
         The m contacts.
     loads : Loads
-        Masses, weights, speeds and the smallest gap.
+        Loads of the bodies and the smallest gap.
     law_range : float
         The gap where the law begins [length].
 
@@ -61,10 +61,31 @@ def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArr
     (m,) array
         Work [energy].
     """
-    return impact_energy(contacts, loads) + held_weight(contacts, loads) * (law_range - loads.smallest_gap)
+    return impact_energy(contacts, loads) + stacked_weight(contacts, loads) * (law_range - loads.smallest_gap)
 
 
 def impact_energy(contacts: Contacts, loads: Loads) -> FloatArray:
+    """The energy of an approach: of the two bodies alone, or if it is more, of the bodies that come down together.
+
+    Those that come down on a wall or on a body of given twist bring ``stacked_energy`` of the lowest. Of two bodies
+    the upper one hits the lower, and brings its own: it is the one with less.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        The m contacts.
+    loads : Loads
+        Masses, speeds and stacked energies.
+
+    Returns
+    -------
+    (m,) array
+        Kinetic energy [energy].
+    """
+    return _of_stack(loads.stacked_energy, pair_energy(contacts, loads), contacts, loads)
+
+
+def pair_energy(contacts: Contacts, loads: Loads) -> FloatArray:
     """½ m v² with the effective mass m and v = v_a + v_b; a wall is heavy and rests.
 
     Between two bodies of given twist it is zero, since nothing is to be stopped.
@@ -89,20 +110,44 @@ def impact_energy(contacts: Contacts, loads: Loads) -> FloatArray:
 
 def closing_speed(contacts: Contacts, loads: Loads) -> FloatArray:
     """v_a + v_b, (m,) [length/time]."""
-    return np.asarray(_both(loads.speed, contacts).sum(axis=0))
+    return np.asarray(of_both(loads.speed, contacts).sum(axis=0))
 
 
 def held_weight(contacts: Contacts, loads: Loads) -> FloatArray:
-    """W, the larger of the two weights, (m,) [force]."""
-    return np.asarray(_both(loads.weight, contacts).max(axis=0))
+    """The larger of the two bodies' own weights, (m,) [force]."""
+    return np.asarray(of_both(loads.weight, contacts).max(axis=0))
+
+
+def stacked_weight(contacts: Contacts, loads: Loads) -> FloatArray:
+    """The larger of the two bodies' own weights, or if it is more, that of the stack on top of the contact.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        The m contacts.
+    loads : Loads
+        Weights, of bodies and of stacks.
+
+    Returns
+    -------
+    (m,) array
+        Weight [force]; zero between two bodies of given twist.
+    """
+    return _of_stack(loads.stacked_weight, held_weight(contacts, loads), contacts, loads)
 
 
 def inverse_mass(contacts: Contacts, loads: Loads) -> FloatArray:
     """1/m_a + 1/m_b, (m,) [1/mass]."""
-    return np.asarray(_both(1.0 / loads.mass, contacts).sum(axis=0))
+    return np.asarray(of_both(1.0 / loads.mass, contacts).sum(axis=0))
 
 
-def _both(column: FloatArray, contacts: Contacts) -> FloatArray:
-    """What ``column`` (n,) says of a and of b, zero for walls, (2, m)."""
-    extended = np.append(column, 0.0)
+def of_both(column: FloatArray, contacts: Contacts, at_wall: float = 0.0) -> FloatArray:
+    """What ``column`` (n,) says of a and of b, ``at_wall`` for walls, (2, m)."""
+    extended = np.append(column, at_wall)
     return np.stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])
+
+
+def _of_stack(column: FloatArray, single: FloatArray, contacts: Contacts, loads: Loads) -> FloatArray:
+    """The load ``single`` (m,) of two bodies, or what stands behind both of them, by ``column`` (n,), if more, (m,)."""
+    behind = of_both(column, contacts, at_wall=np.inf).min(axis=0)
+    return np.where(inverse_mass(contacts, loads) > 0.0, np.maximum(single, behind), 0.0)

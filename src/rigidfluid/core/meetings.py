@@ -16,7 +16,7 @@ from rigidfluid.core.system import System
 from rigidfluid.core.types import Contacts, FloatArray, Wall
 
 MOST = 40
-"""More bodies than that do not stand for all: then those with the extremes of mass, weight, size and speed do."""
+"""More bodies than that do not stand for all: then those with the extremes of all that counts do."""
 
 
 def kinds(system: System) -> tuple[tuple[int, ...], ...]:
@@ -29,14 +29,24 @@ def kinds(system: System) -> tuple[tuple[int, ...], ...]:
 
 
 def representatives(system: System) -> tuple[int, ...]:
-    """Numbers of the bodies that stand for all: of each kind the two slowest and the two fastest."""
-    chosen = sorted({i for kind in kinds(system) for i in (*kind[:2], *kind[-2:])})
+    """Numbers of the bodies that stand for all: of each kind the two slowest and fastest, the least and most stacked.
+
+    Those with the extremes of mass, weight, size, speed and stack, if these are too many.
+    """
+    loads = system.loads
+    stacks = loads.stacked_weight, loads.stacked_energy
+    chosen = sorted({i for kind in kinds(system) for i in _extremes(kind, (loads.speed, *stacks))})
     if len(chosen) <= MOST:
         return tuple(chosen)
     size = np.array([body.bounding_radius for body in system.bodies])
     weight = np.linalg.norm(system.weight, axis=1)
-    orders = (np.argsort(column[chosen]) for column in (system.mass, weight, size, system.loads.speed))
-    return tuple(sorted({chosen[i] for order in orders for i in (*order[:2], *order[-2:])}))
+    return tuple(sorted(_extremes(chosen, (system.mass, weight, size, loads.speed, *stacks))))
+
+
+def _extremes(bodies: Sequence[int], columns: Sequence[FloatArray]) -> set[int]:
+    """Those of ``bodies`` with the two least and the two greatest values in each of the columns (n,)."""
+    orders = (np.argsort(column[list(bodies)], kind="stable") for column in columns)
+    return {bodies[i] for order in orders for i in (*order[:2], *order[-2:])}
 
 
 def wall_meetings(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:

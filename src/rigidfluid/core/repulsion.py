@@ -46,8 +46,8 @@ class RepulsionOptions(PartOptions):
 class Repulsion(ForceLaw):
     """F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
 
-    With ``auto``, ε = U₁(smallest_gap) / [½ m v² + W (range - smallest_gap)] for each contact, so that a dry head-on
-    impact of the expected speed v, that the weight W still pushes on, ends at the smallest gap.
+    With ``auto``, ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a dry head-on impact
+    of the expected energy E, that the weight W still pushes on, ends at the smallest gap.
 
     Parameters
     ----------

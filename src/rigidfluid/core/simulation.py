@@ -272,7 +272,7 @@ def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
     return State(
         tick=0,
         count=0,
-        level=_start_level(system, clock),
+        level=_start_level(system, clock, stored),
         pose=system.pose,
         twist=system.twist,
         past=None,
@@ -288,12 +288,13 @@ def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
     )
 
 
-def _start_level(system: System, clock: Clock) -> int | None:
-    """The level that the first step may be twice as long as; any where nothing moves at the start.
+def _start_level(system: System, clock: Clock, stored: float) -> int | None:
+    """The level that the first step may be twice as long as; any where nothing moves or is thrown at the start.
 
-    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast.
+    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast, and
+    so do contacts that let go.
     """
-    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
+    moves = system.twist.velocity.any() or system.twist.angular_velocity.any() or stored > 0.0
     return min(START_LEVEL + 1, clock.levels) if system.backend.needs_mesh and moves else None
 
 

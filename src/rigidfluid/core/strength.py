@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.loads import closing_speed, held_weight, impact_energy
+from rigidfluid.core.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.meetings import body_meetings, free, representatives, wall_meetings
 from rigidfluid.core.repulsion import AUTO, Repulsion
 from rigidfluid.core.system import System
@@ -46,7 +46,7 @@ def _extremes(system: System, law: Repulsion, contacts: Contacts) -> Iterator[di
         return
     epsilon = law.epsilon(contacts)
     speed, energy = closing_speed(contacts, system.loads), impact_energy(contacts, system.loads)
-    work = held_weight(contacts, system.loads) * (law.range - system.loads.smallest_gap)
+    work = stacked_weight(contacts, system.loads) * (law.range - system.loads.smallest_gap)
     for i in sorted({int(np.argmax(epsilon)), int(np.argmin(epsilon))}):
         yield {
             "between": [system.surfaces[contacts.body_a[i]], _other(system, contacts, i)],

@@ -12,6 +12,7 @@ from rigidfluid.core.contacts import select
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import Movement
 from rigidfluid.core.rigid import cross
+from rigidfluid.core.stiffness import greatest_stiffness, on_the_way
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
 
 RESOLUTION = 0.1
@@ -24,7 +25,6 @@ FADED = 8.0
 """The frequency of balls that part is taken for no more than so many times the highest that is still to come."""
 
 _HALVINGS = 30
-_SAMPLES = 8
 
 
 class Plan(NamedTuple):
@@ -174,14 +174,12 @@ def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: Float
 
 def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The greatest stiffness and damping coefficient (m,) between the deepest gap and the range."""
-    stiffness, damping = np.zeros((2, len(contacts)))
-    unit = replace(motion, velocity=contacts.normal)
-    for part in np.linspace(0.0, 1.0, _SAMPLES, endpoint=False):
-        there = replace(contacts, gap=deepest + part * (law.range - deepest))
-        stiffness = np.maximum(stiffness, law.stiffness(there))
-        if law.dissipative:
+    damping = np.zeros(len(contacts))
+    if law.dissipative:
+        unit = replace(motion, velocity=contacts.normal)
+        for there in on_the_way(law, contacts, deepest):
             damping = np.maximum(damping, -np.sum(law.damping(there, unit) * contacts.normal, axis=1))
-    return stiffness, damping
+    return greatest_stiffness(law, contacts, deepest), damping
 
 
 def relative_motion(contacts: Contacts, movement: Movement) -> Motion:

@@ -16,6 +16,7 @@ from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.parts import Parts, resolve
 from rigidfluid.core.prescribed import prescribed_motion
 from rigidfluid.core.scene import Scene
+from rigidfluid.core.stacks import stacked
 from rigidfluid.core.types import (
     BoolArray,
     BoundaryCondition,
@@ -101,7 +102,7 @@ def build_system(scene: Scene) -> System:
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
     speed = impact_speeds(scene, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
-    loads = _loads(scene, controlled, moved, weight, speed)
+    loads = _loads(scene, parts.bodies, controlled, moved, weight, speed)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts, loads)
     return System(
         dimension=scene.dimension,
@@ -167,11 +168,18 @@ def _inert_density(scene: Scene, parts: Parts) -> float:
     return (scene.fluid.density or 0.0) if inert else 0.0
 
 
-def _loads(scene: Scene, controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray) -> Loads:
+def _loads(
+    scene: Scene, bodies: Sequence[Body], controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
+) -> Loads:
     """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
     smallest = scene.contact.smallest_gap or _SMALLEST_GAP * (scene.contact.range or 0.0)
     pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
-    return Loads(np.where(controlled, np.inf, mass), pull, speed, smallest)
+    own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
+    position = np.array([table.position for table in scene.body])
+    radius = np.array([body.bounding_radius for body in bodies])
+    together = stacked(own, weight, position, radius, np.subtract(scene.domain.upper, scene.domain.lower))
+    stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
+    return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
 
 
 def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProblem | None:

@@ -87,12 +87,16 @@ class Loads:
     """What the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
 
     Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
-    submerged weight [force]; ``speed`` (n,), expected at the impact [length/time].
+    submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
+    ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
+    where its twist is given.
     """
 
     mass: FloatArray
     weight: FloatArray
     speed: FloatArray
+    stacked_weight: FloatArray
+    stacked_energy: FloatArray
     smallest_gap: float
 
 

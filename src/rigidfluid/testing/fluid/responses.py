@@ -1,0 +1,213 @@
+"""How bodies answer to impulses: with the mass of the fluid about them at once, with its viscosity in a step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import ClassVar
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from rigidfluid.core.rigid import rotation_matrices
+from rigidfluid.core.types import FloatArray, Mesh, Pose
+from rigidfluid.testing.arrangement import in_a_box
+from rigidfluid.testing.fluid.base import FluidContract
+from rigidfluid.testing.fluid.boxes import balls_pose
+from rigidfluid.testing.fluid.exact import DENSITY, problem
+from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
+
+STEP = 0.01
+"""Of what is asked with the mass alone, where none counts [time]."""
+
+SHORT = 10.0 ** -np.arange(2.0, 6.0)
+"""Steps in which viscosity does less and less [time]."""
+
+RADII, GAP = np.array([1.0, 0.6]), 0.2
+"""Of two disks near each other [length]."""
+
+
+class ResponsesContract(FluidContract):
+    """Added masses that are known, and what the same backend's steps do."""
+
+    answer_tolerance: ClassVar[float] = 1e-4
+    """Accuracy of answers to impulses by the discrete equations, relative to the largest."""
+
+    def test_a_disk_takes_its_own_volume_of_fluid_along(self) -> None:
+        """Mass m + ρπr² along, and none of the fluid's as it turns (Lamb 1932, §68)."""
+        flow = self._in_a_wide_box(np.ones((1, 2)), np.zeros((1, 2)), mass=DENSITY * np.pi)
+        expected = DENSITY * np.pi * np.array([2.0, 2.0, 1.0])
+        _assert_near(_mass(flow), np.diag(expected), 0.02)
+
+    def test_an_ellipse_takes_more_along_across_than_along(self) -> None:
+        """ρπb² and ρπa² along its axes a and b, ρπ(a² - b²)²/8 as it turns (Lamb 1932, §71); its axes are tilted."""
+        a, b, mass, tilt = 1.0, 0.5, 0.1, np.array([[0.5]])
+        flow = self._in_a_wide_box(np.array([[a, b]]), np.zeros((1, 2)), mass, tilt)
+        turn = rotation_matrices(tilt)[0]
+        added = DENSITY * np.pi * np.array([b**2, a**2, (a**2 - b**2) ** 2 / 8])
+        along = turn @ np.diag(mass + added[:2]) @ turn.T
+        found = _mass(flow)
+        _assert_near(found[:2, :2], along, 0.02)
+        _assert_near(found[2:, 2:], mass + added[2:, None], 0.03)
+        assert np.abs(found[:2, 2:]).max() < 0.01 * along.max()
+
+    def test_two_disks_near_each_other(self) -> None:
+        """Along the line of centres and across, one of them moving or both: as by images of doublets."""
+        centres, mass = np.array([[0.0, 0.0], [RADII.sum() + GAP, 0.0]]), 0.1
+        found = _mass(self._in_a_wide_box(np.tile(RADII[:, None], 2), centres, mass))
+        for axis in range(2):
+            expected = mass * np.eye(2) + DENSITY * _added_to_two_disks(across=axis == 1)
+            _assert_near(found[axis::3, axis::3], expected, 0.015)
+
+    def test_a_ball_takes_half_its_volume_of_fluid_along(self) -> None:
+        """Mass m + ρV/2 (Lamb 1932, §92), on a coarse mesh, in which more than the ball moves along."""
+        volume = 4.0 / 3.0 * np.pi
+        flow = self._in_a_wide_box(np.ones((1, 3)), np.zeros((1, 3)), 3.0 * DENSITY * volume)
+        _assert_near(_mass(flow)[:3, :3], 3.5 * DENSITY * volume * np.eye(3), 0.05)
+
+    def test_answers_are_reciprocal(self, dimension: int) -> None:
+        """As one body answers to the other, so does the other to it, by mass and, from rest, by a step."""
+        for found in _answers(self._free_balls(dimension), STEP):
+            self._assert_answers(found, found.T)
+            assert np.linalg.eigvalsh(0.5 * (found + found.T)).min() > 0.0
+
+    def test_answers_add_up(self, dimension: int) -> None:
+        """In a stirred flow the answer to several impulses is the sum of those to each."""
+        flow = self._stirred_free(dimension)
+        step = flow.step_after(STEP)
+        impulses = np.random.default_rng(4).normal(size=(2, *step.load.shape))
+        asked = np.concatenate([impulses, 2.0 * impulses[:1] - impulses[1:]])
+        response = flow.backend.response(flow.fluid, flow.mesh, step, asked)
+        for found in (response.by_mass, response.by_step):
+            assert found.shape == asked.shape
+            self._assert_answers(found[2], 2.0 * found[0] - found[1])
+
+    def test_in_a_short_step_masses_alone_count(self) -> None:
+        """Viscosity makes answers smaller, by less and less as the step gets shorter."""
+        flow, apart = self._free_balls(2), []
+        for length in SHORT:
+            by_mass, by_step = _answers(flow, length)
+            held = np.linalg.inv(by_step) - np.linalg.inv(by_mass)
+            least = -self.answer_tolerance * np.linalg.norm(np.linalg.inv(by_mass))
+            assert np.linalg.eigvalsh(0.5 * (held + held.T)).min() > least
+            apart.append(np.linalg.norm(by_mass - by_step) / np.linalg.norm(by_mass))
+        assert np.all(np.diff(apart) < 0.0), apart
+        assert apart[-1] < 0.02 < 0.05 < apart[0], apart
+
+    def test_a_step_answers_as_was_told(self, dimension: int) -> None:
+        """Two steps of a stirred flow, one with an impulse in its load, differ by the answer to it."""
+        flow = self.stirred(dimension, steps=2)
+        step = self.stirring(flow)
+        impulse = 0.01 * np.random.default_rng(5).normal(size=step.load.shape)
+        pushed = replace(step, load=step.load + step.derivative[0] * impulse, impulse=impulse)
+        told = flow.backend.response(flow.fluid, flow.mesh, step, impulse[None]).by_step[0]
+        twists = [components(flow.taken(taken, None).twist) for taken in (step, pushed)]
+        self._assert_answers(told, twists[1] - twists[0])
+        assert np.abs(told).max() > 1e-3
+
+    def test_without_inertia_of_the_fluid_it_only_drags(self, dimension: int) -> None:
+        """Stokes flow: M⁻¹ by mass and d₀ (d₀M + R)⁻¹ by a step, R from steady flows past bodies that are driven."""
+        flow = self._free_balls(dimension, inertia=False)
+        driven = self.with_balls(problem(dimension, bodies=2, inertia=False))
+        drag = [-components(driven.after(None, twist=unit).advance.hydrodynamic_wrench) for unit in _units(flow)]
+        step = flow.step_after(STEP)
+        by_mass, by_step = _answers(flow, STEP)
+        resisted = block_diag(*step.mass_matrix) + np.array(drag).reshape(by_mass.shape).T
+        d0 = step.derivative[0]
+        self._assert_answers(by_mass, d0 * np.linalg.inv(block_diag(*step.mass_matrix)))
+        self._assert_answers(by_step, d0 * np.linalg.inv(resisted))
+        assert np.linalg.norm(by_mass - by_step) > 0.1 * np.linalg.norm(by_mass)
+
+    def test_driven_bodies_do_not_answer(self, dimension: int) -> None:
+        """Neither they to an impulse nor a free body to one on them, which it feels as a wall."""
+        flow = self._free_balls(dimension)
+        held = replace(flow, bodies=replace(flow.bodies, controlled=np.array([True, False])))
+        width = size(flow.pose)
+        for found, free in zip(_answers(held, STEP), _answers(flow, STEP), strict=True):
+            assert not found[:width].any()
+            assert not found[:, :width].any()
+            mass = np.linalg.inv(free)  # of both: beside a body that is held the other one's own part of it counts
+            self._assert_answers(found[width:, width:], np.linalg.inv(mass[width:, width:]))
+
+    def _assert_answers(self, found: FloatArray, expected: FloatArray) -> None:
+        np.testing.assert_allclose(found, expected, rtol=0, atol=self.answer_tolerance * np.abs(expected).max())
+
+    def _free_balls(self, dimension: int, inertia: bool = True) -> Flow:
+        """Two light balls in fluid at rest."""
+        bodies = Bodies.of(balls_pose(dimension), mass=0.05, controlled=False)
+        return self.with_balls(problem(dimension, bodies=2, inertia=inertia), bodies)
+
+    def _stirred_free(self, dimension: int) -> Flow:
+        flow = self.stirred(dimension, steps=2)
+        return replace(flow, bodies=replace(flow.bodies, controlled=np.zeros(2, dtype=bool)))
+
+    def _in_a_wide_box(
+        self, semi_axes: FloatArray, centres: FloatArray, mass: float, turned: FloatArray | None = None
+    ) -> Flow:
+        """Free bodies of one mass and moment of inertia in fluid at rest, the walls far away."""
+        count, dimension = centres.shape
+        upright = np.tile(np.eye(1, 1 if dimension == 2 else 4) * (dimension == 3), (count, 1))
+        pose = Pose(centres, upright if turned is None else turned)
+        mesh = _wide_box(_rows(semi_axes), _rows(centres), _rows(pose.orientation))
+        inertia = np.tile(mass * np.eye(1 if dimension == 2 else 3), (count, 1, 1))
+        bodies = Bodies(np.full(count, mass), inertia, np.zeros(count, dtype=bool))
+        return Flow.start(self.make_backend(problem(dimension, bodies=count)), self.make_mesh(mesh), pose, bodies)
+
+
+def _answers(flow: Flow, length: float) -> tuple[FloatArray, FloatArray]:
+    """By mass and by a step, the matrices from all components of the impulses to those of the twists."""
+    units = _units(flow)
+    response = flow.backend.response(flow.fluid, flow.mesh, flow.step_after(length), units)
+    return response.by_mass.reshape(len(units), -1).T, response.by_step.reshape(len(units), -1).T
+
+
+def _mass(flow: Flow) -> FloatArray:
+    """The mass matrix of bodies and fluid that the answers by mass tell."""
+    return np.asarray(np.linalg.inv(_answers(flow, STEP)[0]))
+
+
+def _units(flow: Flow) -> FloatArray:
+    """Each component by itself, (n·(d+k), n, d+k)."""
+    count, width = len(flow.pose.position), size(flow.pose)
+    return np.eye(count * width).reshape(-1, count, width)
+
+
+def _assert_near(found: FloatArray, expected: FloatArray, part: float) -> None:
+    """Equal but for this ``part`` of the largest entry expected."""
+    np.testing.assert_allclose(found, expected, rtol=0, atol=part * np.abs(expected).max())
+
+
+def _added_to_two_disks(across: bool) -> FloatArray:
+    """What the fluid adds, over its density, to motions along or ``across`` the line of centres, (2, 2) [length²].
+
+    A disk of radius a that moves with speed 1 is a doublet of strength a²; its image in a circle of radius b, at a
+    distance f from there, is one of ∓(b/f)² times the strength at b²/f (Milne-Thomson 1968, Theoretical Hydrodynamics,
+    §6.21, the circle theorem), which has an image in the first one. The impulse of the fluid about a disk is 2π times
+    all doublets in it less the area times its velocity.
+    """
+    added = -np.diag(np.pi * RADII**2)
+    for mover in range(2):
+        body, strength, inside = mover, RADII[mover] ** 2, 0.0
+        for _ in range(100):
+            added[body, mover] += 2.0 * np.pi * strength
+            body, away = 1 - body, RADII.sum() + GAP - inside
+            strength *= (1.0 if across else -1.0) * (RADII[body] / away) ** 2
+            inside = RADII[body] ** 2 / away
+    return added
+
+
+Rows = tuple[tuple[float, ...], ...]
+
+
+def _rows(array: FloatArray) -> Rows:
+    return tuple(map(tuple, array.tolist()))
+
+
+@cache
+def _wide_box(semi_axes: Rows, centres: Rows, orientation: Rows) -> Mesh:
+    """Bodies of size 1 about the origin of a box, fine on them: elements on them move along, a layer of added mass."""
+    dimension = len(centres[0])
+    half, sizes = (20.0, (5.0, 0.02)) if dimension == 2 else (3.0, (3.0, 0.35))
+    corners = np.full(dimension, -half), np.full(dimension, half)
+    pose = Pose(np.array(centres), np.array(orientation))
+    return in_a_box(np.array(semi_axes), pose, corners, range(2 * dimension), sizes).mesh
