@@ -25,7 +25,7 @@ from rigidfluid.core.records import records
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.state import State
-from rigidfluid.core.step import CLOSEST_APPROACH, attempt, bodies_energy, contact_energy
+from rigidfluid.core.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt, bodies_energy, contact_energy
 from rigidfluid.core.stopwatch import Stopwatch
 from rigidfluid.core.summary import summarise
 from rigidfluid.core.system import System, build_system
@@ -171,6 +171,8 @@ class Simulation:
             if number == MOST_ATTEMPTS - 1 or settled(found, path, self.state, candidate):
                 break
             path = self._path(level, found)
+            if level < self.clock.levels and self._changes_gaps_too_fast(path.pose):
+                raise _too_fast()
         return replace(candidate, model=found.model)
 
     def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
@@ -185,19 +187,20 @@ class Simulation:
             return follow(self.system, self.state, time, size, coupling)
 
     def _first_level(self) -> tuple[int, BodiesPath | None]:
-        """The longest step on the clock's grid that closes no gap too fast for the mesh in it, and the way it takes."""
+        """The longest step on the clock's grid that changes no gap too fast for the mesh, and the way it takes."""
         level = self.clock.longest_level(self.state.tick, self.state.level)
         while level < self.clock.levels:
             try:
                 path = self._path(level)
             except StepRejected:
                 break
-            if not self._closes_too_fast(path.pose):
+            if not self._changes_gaps_too_fast(path.pose):
                 return level, path
             level += 1
         return level, None
 
-    def _closes_too_fast(self, pose: Pose) -> bool:
+    def _changes_gaps_too_fast(self, pose: Pose) -> bool:
+        """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
         if self.state.mesh is None:
             return False
         moved = travel(self.system, self.state.pose, pose)
@@ -210,7 +213,9 @@ class Simulation:
             return True
         with self.watch("detect"):
             _, gaps = surroundings(self.system, pose, mesh)
-        return bool((gaps < CLOSEST_APPROACH * before).any())
+        film = self.state.gaps < (self.system.law.range if self.system.law else 0.0)
+        opens = film & (gaps > WIDEST_OPENING * self.state.gaps)
+        return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())
 
     def _smallest_gap(self) -> float:
         return float(self.state.gaps.min())
@@ -262,6 +267,11 @@ class Simulation:
         )
 
 
+def _too_fast() -> StepRejected:
+    found = f"a gap that closes to less than {CLOSEST_APPROACH} of it or a film that opens {WIDEST_OPENING}-fold"
+    return StepRejected("the step", found, "slower changes", "Shorten time.step.")
+
+
 def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
     zero = nothing(system.pose)
     mesh = mover.first_mesh()
@@ -289,13 +299,17 @@ def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
 
 
 def _start_level(system: System, clock: Clock, stored: float) -> int | None:
-    """The level that the first step may be twice as long as; any where nothing moves or is thrown at the start.
+    """The level that the first step may be twice as long as; any where the motion starts smoothly.
 
-    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast, and
-    so do contacts that let go.
+    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
+    contacts that let go, and weight where the fluid has no inertia.
     """
-    moves = system.twist.velocity.any() or system.twist.angular_velocity.any() or stored > 0.0
-    return min(START_LEVEL + 1, clock.levels) if system.backend.needs_mesh and moves else None
+    problem = system.backend.problem
+    if not system.backend.needs_mesh or problem is None:
+        return None
+    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
+    at_once = moves or stored > 0.0 or (not problem.inertia and system.weight.any())
+    return min(START_LEVEL + 1, clock.levels) if at_once else None
 
 
 def _sizes(scene: Scene, system: System) -> Sizes | None:

@@ -19,6 +19,9 @@ from rigidfluid.core.wrenches import flat, power
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
 
+WIDEST_OPENING = 2.0
+"""A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
+
 
 def attempt(
     system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int, path: BodiesPath
@@ -107,13 +110,13 @@ def step_to(
 
 
 def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
-    """Of weight and contacts, which cancel each other at rest, the larger [force].
+    """A hundredth of weight and contacts, which cancel each other at rest [force].
 
-    Forces alone: moments are of another dimension, and at rest they vanish with the forces' arms.
+    What remains of them is rounding, and no residual can be made small beside it.
     """
     free = ~system.controlled
     pushed = derivative[0] * np.linalg.norm(impulse.force[free])
-    return float(max(np.linalg.norm(system.weight[free]), pushed))
+    return float(0.01 * max(np.linalg.norm(system.weight[free]), pushed))
 
 
 def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
