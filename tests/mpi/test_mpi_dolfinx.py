@@ -1,4 +1,4 @@
-"""Three processes with DOLFINx' backend take the steps that one takes with scikit-fem's."""
+"""Several processes with DOLFINx' backend take the steps, and give the answers, that one does with scikit-fem's."""
 
 import json
 import shutil
@@ -14,6 +14,7 @@ pytestmark = [
 ]
 
 STEPS = Path(__file__).parents[1] / "support" / "shared_steps.py"
+ANSWERS = Path(__file__).parent / "shared_answers.py"
 CHANNEL = {
     "scene": {"name": "channel", "dimension": 2},
     "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0], "tolerance": 1e-11},
@@ -51,30 +52,50 @@ ROOM = CHANNEL | {
 
 
 @pytest.fixture
-def stepped(mpirun, tmp_path):
-    """What `shared_steps` prints."""
+def printed(mpirun, tmp_path):
+    """What a script prints of a scene."""
 
-    def run(scene, more):
+    def run(count, script, scene, more):
         (tmp_path / "scene.json").write_text(json.dumps(scene))
-        result = mpirun(3, STEPS, tmp_path / "scene.json", json.dumps(more))
+        result = mpirun(count, script, tmp_path / "scene.json", json.dumps(more))
         assert result.returncode == 0, result.stderr
         return json.loads(result.stdout)
 
     return run
 
 
-@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM], ids=["channel", "enclosed", "room"])
-def test_three_processes_step_as_one_does(stepped, scene):
-    found = stepped(scene, [])
-    assert found["alone"]["remeshes"] == 1
+def assert_all_as_alone(found, tolerance):
     for shared, _ in found["shared"]:
         assert shared == found["shared"][0][0]
         for name, expected in found["alone"].items():
             scale = np.abs(expected).max()
-            np.testing.assert_allclose(shared[name], expected, rtol=0, atol=1e-8 * scale, err_msg=name)
+            np.testing.assert_allclose(shared[name], expected, rtol=0, atol=tolerance * scale, err_msg=name)
 
 
-def test_a_step_keeps_no_memory(stepped):
-    for _, held in stepped(CHANNEL, [20, 20, 20, 20])["shared"]:
-        kept = np.diff(held).min()  # a leak shows each time; the heap grows in leaps
-        assert kept < 20 * 30_000  # far less than the matrices of a step, or a mesh of every second
+def assert_keeps_no_memory(found, times):
+    """Far less each time than the matrices of a step, or a mesh of every second; a leak shows always, the heap grows
+    in leaps."""
+    for _, held in found["shared"]:
+        assert np.diff(held).min() < times * 30_000
+
+
+@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM], ids=["channel", "enclosed", "room"])
+def test_three_processes_step_as_one_does(printed, scene):
+    found = printed(3, STEPS, scene, [])
+    assert found["alone"]["remeshes"] == 1
+    assert_all_as_alone(found, 1e-8)
+
+
+@pytest.mark.parametrize("scene", [CHANNEL, ROOM], ids=["channel", "room"])
+@pytest.mark.parametrize("count", [1, 2])
+def test_processes_answer_to_impulses_as_one_does(printed, count, scene):
+    """To the accuracy that is asked of answers."""
+    assert_all_as_alone(printed(count, ANSWERS, scene, []), 2e-5)
+
+
+def test_a_step_keeps_no_memory(printed):
+    assert_keeps_no_memory(printed(3, STEPS, CHANNEL, [20, 20, 20, 20]), 20)
+
+
+def test_an_answer_keeps_no_memory(printed):
+    assert_keeps_no_memory(printed(2, ANSWERS, CHANNEL, [10, 10, 10, 10]), 10)

@@ -33,6 +33,20 @@ SETTINGS = {
 }
 """A disk that nears the floor; its mesh is made anew on the way."""
 
+BOUNCE = {
+    "fluid__viscosity": 0.01,
+    "body__0__position": [1.0, 0.2],
+    "body__0__velocity": [0.0, -10.0],
+    "body__0__density": 8.0,
+    "contact__detector": '"sphere"',
+    "contact__range": 0.05,
+    "contact__epsilon_wall": 1e-7,
+    "time__step": 0.001,
+    "time__end": 0.012,
+    "output__every": 0.001,
+}
+"""A heavy disk that the floor throws back."""
+
 
 def fall(out, *options, **settings):
     chosen = SETTINGS | {key.replace("__", "."): value for key, value in settings.items()}
@@ -56,10 +70,21 @@ def succeeded(result):
     return result
 
 
-@pytest.mark.parametrize("backend", ["gathered", "dolfinx"])
-def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, backend):
-    if backend == "dolfinx" and not installed(backend):
+def assert_same_tables(folders, names, rtol):
+    for name in names:
+        expected, found = (table(folder / name) for folder in folders)
+        for column, values in expected.items():
+            np.testing.assert_allclose(found[column], values, rtol=rtol, atol=1e-9, err_msg=f"{name} {column}")
+
+
+@pytest.fixture(params=["gathered", "dolfinx"])
+def backend(request):
+    if request.param == "dolfinx" and not installed("dolfinx"):
         pytest.skip("DOLFINx is not installed")
+    return request.param
+
+
+def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, backend):
     chosen = {"fluid__backend": f'"{backend}"'}
     succeeded(mpirun(1, *fall(tmp_path / "one", **chosen)))
     succeeded(mpirun(2, *fall(tmp_path / "two", time__end=0.02, **chosen)))
@@ -70,13 +95,22 @@ def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, 
     assert two["remeshes"] > 0
     for figure in ("status", "cells", "unknowns", "steps", "remeshes", "rejected_steps"):
         assert one[figure] == two[figure]
-    for name in ("bodies.csv", "energy.csv"):
-        expected, found = table(tmp_path / "one" / name), table(tmp_path / "two" / name)
-        for column, values in expected.items():
-            np.testing.assert_allclose(found[column], values, rtol=1e-7, atol=1e-9)
+    assert_same_tables([tmp_path / "one", tmp_path / "two"], ("bodies.csv", "energy.csv"), rtol=1e-7)
     last = [read_vtu(read_pvd(tmp_path / name / "fields.pvd")[-1][1]) for name in ("one", "two")]
     assert len(last[0].points) == len(last[1].points)
     assert (tmp_path / "two" / "state.1.h5").exists()
+
+
+def test_two_processes_see_the_impact_that_one_does(mpirun, tmp_path, backend):
+    """In a fluid, where what a contact gives follows from the answers to impulses, on all processes alike."""
+    folders = [tmp_path / "one", tmp_path / "two"]
+    for count, folder in enumerate(folders, start=1):
+        succeeded(mpirun(count, *fall(folder, fluid__backend=f'"{backend}"', **BOUNCE)))
+    speed, pushed = (table(folders[0] / "bodies.csv")[name] for name in ("vy", "cfy"))
+    assert speed.min() < -8.0
+    assert speed[-1] > 5.0
+    assert pushed.max() > 100.0 * pushed[-1] >= 0.0
+    assert_same_tables(folders, ("bodies.csv", "energy.csv"), rtol=1e-6)
 
 
 def test_a_folder_of_two_processes_is_not_resumed_by_one(mpirun, tmp_path):

@@ -61,7 +61,9 @@ class Gathered(FluidBackend):
 
     def response(self, fluid, mesh, step, impulses):
         step = self._of_the_whole(mesh, step)
-        return self._on_root(lambda mesh, fluid: ({}, self._inner.response(fluid, mesh, step, impulses)), mesh, fluid)[1]
+        return self._on_root(lambda mesh, fluid: ({}, self._inner.response(fluid, mesh, step, impulses)), mesh, fluid)[
+            1
+        ]
 
     def transfer(self, fluid, old, new):
         made = self._whole(new)

@@ -45,10 +45,15 @@ M = TypeVar("M", bound=Movement)
 @dataclass(frozen=True, slots=True)
 class Coupling:
     """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
-    ``load`` (c,), its Φ [force | force·length]."""
+    ``load`` (c,), its Φ [force | force·length].
+
+    ``correction`` (c,): of a fluid without inertia, what takes its answer to the end of the path. It answers to the
+    force there, and the mean of the step is not that [force | force·length].
+    """
 
     model: ReducedModel
     load: FloatArray
+    correction: FloatArray
 
 
 @dataclass(frozen=True, slots=True)

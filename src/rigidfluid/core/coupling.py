@@ -9,6 +9,7 @@ from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_with
 from rigidfluid.core.state import State
 from rigidfluid.core.step import step_to
 from rigidfluid.core.system import System
+from rigidfluid.core.time_scheme import derivative_weights
 from rigidfluid.core.types import FloatArray, IntArray, Step, Twist
 from rigidfluid.core.wrenches import flat, nothing
 
@@ -43,7 +44,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
         zero = nothing(state.pose)
         step = step_to(system, state, time + size, size, state.pose, zero, state.mesh)
         model = _asked(system, state, step, velocities)
-    return Coupling(model, _expected_load(system, state, model))
+    return Coupling(model, _expected_load(system, state, model), np.zeros(len(velocities)))
 
 
 def shown_coupling(system: System, state: State, candidate: State, path: BodiesPath, step: Step) -> Coupling:
@@ -66,12 +67,23 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
         Of the same velocities.
     """
     assert path.coupling is not None
-    model = _asked(system, state, step, path.coupling.model.velocities)
+    used = path.coupling
+    model = _asked(system, state, step, used.model.velocities)
     past = state.past_twist or state.twist
     twists = tuple(_of(model, _joined(twist)) for twist in (candidate.twist, state.twist, past))
     before = flat(state.contact_wrench) * (state.past_step or 0.0)
     impulses = _of(model, step.impulse), _of(model, before)
-    return Coupling(model, load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses))
+    load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
+    missed = _of(model, _joined(path.twist)) - twists[0]
+    return Coupling(model, load, used.correction + _correction(system, model, step, missed))
+
+
+def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
+    """(d₀M + R) times the velocities that the solution ``missed`` (c,), where the fluid has no inertia."""
+    problem = system.backend.problem
+    if problem is None or problem.inertia:
+        return np.zeros_like(missed)
+    return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
 
 def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -> bool:
@@ -86,7 +98,9 @@ def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -
     scale = max(speeds[0].max(), speeds[1].max(), np.abs(gained).max())
     by_load = np.abs(mobility @ (found.load - used.load)).max() * size
     by_answer = np.abs(gained - used.model.mobility @ impulse).max()
-    return bool(max(by_load, by_answer) <= SETTLED * scale)
+    d0 = derivative_weights(size, state.past_step)[0]
+    missed = np.abs(model.answer(d0, found.correction - used.correction)).max()
+    return bool(max(by_load, by_answer, missed) <= SETTLED * scale)
 
 
 def _near_velocities(system: System, state: State, size: float) -> IntArray | None:

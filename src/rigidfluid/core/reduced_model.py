@@ -32,6 +32,10 @@ class ReducedModel:
         inverse = np.linalg.inv(self.modes)
         return np.asarray(inverse.T @ (inverse @ velocity))
 
+    def answer(self, d0: float, force: FloatArray) -> FloatArray:
+        """(d₀M + R)⁻¹ F for F (c,): velocities at the end of a BDF step."""
+        return np.asarray(self.modes @ ((self.modes.T @ force) / (d0 + self.decay)))
+
     def friction_times(self, velocity: FloatArray) -> FloatArray:
         """R U for U (c,)."""
         inverse = np.linalg.inv(self.modes)

@@ -44,6 +44,8 @@ def attempt(
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.together():
         step = step_to(system, state, time, size, pose, path.impulse, mesh)
+        if path.coupling is not None:
+            step.load.flat[path.coupling.model.velocities] += path.coupling.correction
         advance = system.backend.advance(state.fluid, state.mesh, step)
     candidate = State(
         tick=state.tick + clock.ticks(level),
