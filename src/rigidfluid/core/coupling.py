@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.answers import updated_model
 from rigidfluid.core.contact_path import BodiesPath, Coupling, near_contacts
-from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_within, reduced_model
+from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_within
 from rigidfluid.core.state import State
 from rigidfluid.core.step import step_to
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import derivative_weights
-from rigidfluid.core.types import FloatArray, IntArray, Step, Twist
+from rigidfluid.core.types import Contacts, FloatArray, IntArray, Step, Twist
 from rigidfluid.core.wrenches import flat, nothing
 
 SETTLED = 1e-3
@@ -36,14 +37,12 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     """
     if not system.backend.needs_mesh:
         return None
-    velocities = _near_velocities(system, state, size)
-    if velocities is None:
+    near = near_contacts(system, state, size)
+    if len(near) == 0:
         return None
-    model = state.model
-    if model is None or not np.array_equal(model.velocities, velocities):
-        zero = nothing(state.pose)
-        step = step_to(system, state, time + size, size, state.pose, zero, state.mesh)
-        model = _asked(system, state, step, velocities)
+    velocities = _velocities(system, near)
+    step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
+    model = updated_model(system, state, step, state.contacts, velocities, state.model)
     return Coupling(model, _expected_load(system, state, model), np.zeros(len(velocities)))
 
 
@@ -68,7 +67,7 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
     """
     assert path.coupling is not None
     used = path.coupling
-    model = _asked(system, state, step, used.model.velocities)
+    model = updated_model(system, state, step, candidate.contacts, used.model.velocities, used.model)
     past = state.past_twist or state.twist
     twists = tuple(_of(model, _joined(twist)) for twist in (candidate.twist, state.twist, past))
     before = flat(state.contact_wrench) * (state.past_step or 0.0)
@@ -99,37 +98,21 @@ def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -
     by_load = np.abs(mobility @ (found.load - used.load)).max() * size
     by_answer = np.abs(gained - used.model.mobility @ impulse).max()
     d0 = derivative_weights(size, state.past_step)[0]
-    missed = np.abs(model.answer(d0, found.correction - used.correction)).max()
+    missed = np.abs(model.answer(d0, found.correction - used.correction)).max() / d0
     return bool(max(by_load, by_answer, missed) <= SETTLED * scale)
 
 
-def _near_velocities(system: System, state: State, size: float) -> IntArray | None:
-    """Numbers of the velocity components of free bodies that may touch something; None where nothing may."""
-    near = near_contacts(system, state, size)
-    if len(near) == 0:
-        return None
-    count = len(system.bodies)
+def _velocities(system: System, near: Contacts) -> IntArray:
+    """Numbers of the velocity components of free bodies that contacts can change: balls turn by friction alone."""
+    count, d = len(system.bodies), system.dimension
+    width = d + (1 if d == 2 else 3)
     touching = np.zeros(count, dtype=bool)
     touching[near.body_a] = True
     touching[near.body_b[near.body_b < count]] = True
-    free = np.flatnonzero(touching & ~system.controlled)
-    width = state.twist.velocity.shape[1] + state.twist.angular_velocity.shape[1]
-    return np.asarray((free[:, None] * width + np.arange(width)).ravel())
-
-
-def _asked(system: System, state: State, step: Step, velocities: IntArray) -> ReducedModel:
-    """The model of these velocities by the backend's word."""
-    assert state.mesh is not None
-    if len(velocities) == 0:
-        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0))
-    shape = step.load.shape
-    impulses = np.zeros((len(velocities), shape[0] * shape[1]))
-    impulses[np.arange(len(velocities)), velocities] = 1.0
-    response = system.backend.response(state.fluid, state.mesh, step, impulses.reshape(-1, *shape))
-    by_mass, by_step = (
-        twists.reshape(len(velocities), -1)[:, velocities].T for twists in (response.by_mass, response.by_step)
-    )
-    return reduced_model(velocities, by_mass, by_step, float(step.derivative[0]))
+    moves = np.repeat((touching & ~system.controlled)[:, None], width, axis=1)
+    if system.law is not None and not system.law.dissipative:
+        moves[np.array([body.radius is not None for body in system.bodies]), d:] = False
+    return np.flatnonzero(moves)
 
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:

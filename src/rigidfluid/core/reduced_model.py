@@ -15,12 +15,14 @@ class ReducedModel:
 
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
-    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists.
+    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``tightness`` (c,): Σ 1/gap of the
+    contacts of their body when it was asked [1/length].
     """
 
     velocities: IntArray
     modes: FloatArray
     decay: FloatArray
+    tightness: FloatArray
 
     @property
     def mobility(self) -> FloatArray:
@@ -32,9 +34,10 @@ class ReducedModel:
         inverse = np.linalg.inv(self.modes)
         return np.asarray(inverse.T @ (inverse @ velocity))
 
-    def answer(self, d0: float, force: FloatArray) -> FloatArray:
-        """(d₀M + R)⁻¹ F for F (c,): velocities at the end of a BDF step."""
-        return np.asarray(self.modes @ ((self.modes.T @ force) / (d0 + self.decay)))
+    def answer(self, d0: float, impulse: FloatArray) -> FloatArray:
+        """d₀ (d₀M + R)⁻¹ J for J (c, …): velocities that impulses give, at the end of a BDF step."""
+        share = 1.0 / (1.0 + self.decay / d0)
+        return np.asarray((self.modes * share) @ (self.modes.T @ impulse))
 
     def friction_times(self, velocity: FloatArray) -> FloatArray:
         """R U for U (c,)."""
@@ -42,7 +45,9 @@ class ReducedModel:
         return np.asarray(inverse.T @ (self.decay * (inverse @ velocity)))
 
 
-def reduced_model(velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float) -> ReducedModel:
+def reduced_model(
+    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, tightness: FloatArray
+) -> ReducedModel:
     """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
 
     M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer. Both are made symmetric, which
@@ -56,16 +61,25 @@ def reduced_model(velocities: IntArray, by_mass: FloatArray, by_step: FloatArray
         W_i and W_s, twists by unit impulses [1/mass].
     d0 : float
         Weight of the newest velocity in the step's time derivative [1/time].
+    tightness : (c,) array
+        Of the contacts of each velocity's body [1/length].
 
     Returns
     -------
     ReducedModel
         In its modes.
     """
-    mass_modes = np.linalg.cholesky(0.5 * (by_mass + by_mass.T))  # L Lᵀ = W_i: XᵀMX = 1 for X = L
+    mass_modes = _root(0.5 * (by_mass + by_mass.T))  # L Lᵀ = W_i: XᵀMX = 1 for X = L
     answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
     share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
-    return ReducedModel(velocities, mass_modes @ turn, d0 * np.maximum(1.0 / np.maximum(share, _LEAST) - 1.0, 0.0))
+    decay = d0 * np.maximum(1.0 / np.maximum(share, _LEAST) - 1.0, 0.0)
+    return ReducedModel(velocities, mass_modes @ turn, decay, tightness)
+
+
+def _root(matrix: FloatArray) -> FloatArray:
+    """L with L Lᵀ the matrix; directions in which answers put together from many questions are none get a little."""
+    value, vector = np.linalg.eigh(matrix)
+    return np.asarray(vector * np.sqrt(np.maximum(value, _LEAST * value.max())))
 
 
 _LEAST = 1e-12

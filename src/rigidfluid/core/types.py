@@ -188,7 +188,7 @@ class Step:
 
     ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
     uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
-    ``points`` (N, d): the mesh at the new time, None without a mesh.
+    ``points`` (N, d): the mesh at the new time; None without a mesh, and for responses on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
@@ -14,12 +16,26 @@ _JUMP_TOLERANCE = 1e-3
 
 
 def advance(
-    discretisation: Discretisation, matrix: CoupledMatrix, tolerance: float, fluid: FluidState, mesh: Mesh, step: Step
+    discretisation: Discretisation,
+    matrix: CoupledMatrix,
+    tolerance: float,
+    fluid: FluidState,
+    mesh: Mesh,
+    step: Step,
+    attempt: FluidState | None,
 ) -> Advance:
-    """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``."""
+    """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``.
+
+    Where an earlier ``attempt`` has led is the first guess, and else what is extrapolated.
+    """
     problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
     on_faces = pressure_load(surfaces, matrix.node_points, step.time)
-    solution = discretisation.solve(_system(discretisation, matrix, on_faces, fluid, step), tolerance)
+    system = _system(discretisation, matrix, on_faces, fluid, step)
+    if attempt is not None:
+        system = replace(
+            system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=attempt["twist"]
+        )
+    solution = discretisation.solve(system, tolerance)
     velocity, twist = solution.velocity, solution.twist
     state = {
         "velocity": velocity,
@@ -51,12 +67,17 @@ def advance(
 
 
 def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
-    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, both extrapolated or differenced."""
-    problem, numbering = discretisation.problem, discretisation.numbering
-    points, density = _new_points(step), problem.inert_density
-    d0, d1, d2 = step.derivative
+    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, both extrapolated or differenced.
+
+    Without new points it is that of the present mesh, which moves on as it did.
+    """
+    problem, numbering, density = discretisation.problem, discretisation.numbering, discretisation.problem.inert_density
+    (d0, d1, d2), (e0, e1) = step.derivative, step.extrapolation
+    before = fluid["points_previous"]
+    points = mesh.points if step.points is None else step.points
+    expected = e0 * mesh.points + e1 * before if step.points is None else points
     node_points = numbering.node_points(points)
-    mesh_velocity = numbering.node_points(d0 * points + d1 * mesh.points + d2 * fluid["points_previous"])
+    mesh_velocity = numbering.node_points(d0 * expected + d1 * mesh.points + d2 * before)
     return CoupledMatrix(
         points=points,
         node_points=node_points,
@@ -100,11 +121,6 @@ def _extrapolated(fluid: FluidState, step: Step) -> FloatArray:
     if "jump" in fluid:
         before = before + fluid["jump"]
     return np.asarray(e0 * fluid["velocity"] + e1 * before)
-
-
-def _new_points(step: Step) -> FloatArray:
-    assert step.points is not None, "backends of finite elements declare needs_mesh"
-    return step.points
 
 
 def _centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:

@@ -52,6 +52,7 @@ class TaylorHoodBackend(FluidBackend):
         self._numbering: Numbering | None = None
         self._latest: tuple[BoolArray, Discretisation] | None = None
         self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
+        self._latest_attempt: tuple[FluidState, FluidState] | None = None
 
     @abstractmethod
     def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
@@ -78,7 +79,11 @@ class TaylorHoodBackend(FluidBackend):
 
         discretisation = self._on(_given(mesh), step.controlled)
         matrix = self._matrix(discretisation, fluid, _given(mesh), step)
-        return advance(discretisation, matrix, self.options.tolerance, fluid, _given(mesh), step)
+        attempt = self._latest_attempt
+        guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
+        advanced = advance(discretisation, matrix, self.options.tolerance, fluid, _given(mesh), step, guess)
+        self._latest_attempt = fluid, advanced.fluid
+        return advanced
 
     @final
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
@@ -119,7 +124,7 @@ class TaylorHoodBackend(FluidBackend):
     @final
     def forget(self) -> None:
         self.drop_factors()
-        self._latest = self._latest_matrix = None
+        self._latest = self._latest_matrix = self._latest_attempt = None
 
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""

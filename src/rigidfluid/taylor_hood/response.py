@@ -10,7 +10,7 @@ from rigidfluid.core.types import FloatArray, Response, Step
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
-_TOLERANCE = 1e-5
+_TOLERANCE = 1e-4
 """A contact is as wrong as the responses: 1e-3 costs one or two per cent of its energy."""
 
 

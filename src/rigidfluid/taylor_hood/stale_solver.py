@@ -86,15 +86,16 @@ class StaleSolver(ABC, Generic[Matrix]):
     ) -> FloatArray:
         """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm; raises StepRejected.
 
-        What these take says nothing of the steps to come, and does not count as wasted.
+        What stale factors waste counts like that of a step.
         """
         fresh = not self._is_made
         if fresh:
             self._renew(matrix)
-        found = self.iterate_columns(apply, right_sides, tolerance)
+        found, wasted = self.iterate_columns(apply, right_sides, tolerance)
         if found is None and not fresh:
             self._renew(matrix)
-            found = self.iterate_columns(apply, right_sides, tolerance)
+            found, wasted = self.iterate_columns(apply, right_sides, tolerance)
+        self._wasted += wasted
         if found is None:
             self.forget()
             raise StepRejected(
@@ -126,18 +127,19 @@ class StaleSolver(ABC, Generic[Matrix]):
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
-    ) -> FloatArray | None:
-        """The solutions (N, c), or None where one was not reached."""
-        found = np.zeros_like(right_sides)
+    ) -> tuple[FloatArray | None, int]:
+        """The solutions (N, c), or None where one was not reached, and the iterations that fresh factors would save."""
+        found, wasted = np.zeros_like(right_sides), 0
         for column in range(right_sides.shape[1]):
             right_side = right_sides[:, column]
             enough = tolerance * self.norm(right_side)
             if enough == 0.0:
                 continue
-            found[:, column], _, converged = self.iterate(apply, right_side, enough)
+            found[:, column], iterations, converged = self.iterate(apply, right_side, enough)
+            wasted += max(0, iterations - self.when_fresh)
             if not converged:
-                return None
-        return found
+                return None, wasted
+        return found, wasted
 
     def _renew(self, matrix: Callable[[], Matrix]) -> None:
         self.forget()  # frees the old one before the new one needs memory
