@@ -67,7 +67,8 @@ def test_both_backends_take_the_same_steps_on_one_mesh(make, model):
 @pytest.mark.parametrize("make", [two_dimensional, three_dimensional])
 @pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
 def test_the_schur_complement_gives_what_factors_give(make, model):
-    runs = [after(make(backend="dolfinx", model=model, tolerance=1e-11, solver=kind), 3) for kind in ("lu", "schur")]
+    """The first steps are short: next to the inertia in their residual the pressure is small."""
+    runs = [after(make(backend="dolfinx", model=model, tolerance=1e-13, solver=kind), 3) for kind in ("lu", "schur")]
     assert_same(*runs, 1e-7)
 
 

@@ -52,8 +52,9 @@ def updated_model(
     fresh = ~(np.abs(now - before) <= CHANGED * before)
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
-    for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
-        _take_over(matrix, answers, fresh)
+    if fresh.any():
+        for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
+            _take_over(matrix, answers, fresh)
     return reduced_model(velocities, by_mass, by_step, d0, np.where(fresh, now, before))
 
 
