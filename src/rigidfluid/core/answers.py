@@ -55,7 +55,8 @@ def updated_model(
     if fresh.any():
         for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
             _take_over(matrix, answers, fresh)
-    return reduced_model(velocities, by_mass, by_step, d0, np.where(fresh, now, before))
+    shared = len(np.unique(velocities // width)) > ALONE
+    return reduced_model(velocities, by_mass, by_step, d0, np.where(fresh, now, before), shared)
 
 
 def _tightness(contacts: Contacts, count: int) -> FloatArray:

@@ -92,14 +92,13 @@ def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -
     if len(model.velocities) == 0:
         return True
     impulse = _of(model, flat(path.impulse))
-    gained, mobility = model.mobility @ impulse, model.mobility
-    speeds = [np.abs(_of(model, _joined(twist))) for twist in (state.twist, candidate.twist)]
-    scale = max(speeds[0].max(), speeds[1].max(), np.abs(gained).max())
-    by_load = np.abs(mobility @ (found.load - used.load)).max() * size
-    by_answer = np.abs(gained - used.model.mobility @ impulse).max()
-    d0 = derivative_weights(size, state.past_step)[0]
-    missed = np.abs(model.answer(d0, found.correction - used.correction)).max() / d0
-    return bool(max(by_load, by_answer, missed) <= SETTLED * scale)
+    gained, d0 = model.mobility @ impulse, derivative_weights(size, state.past_step)[0]
+    before, after = (_of(model, _joined(twist)) for twist in (state.twist, candidate.twist))
+    by_load = size * (model.mobility @ found.load - used.model.mobility @ used.load)
+    by_answer = gained - used.model.mobility @ impulse
+    missed = model.answer(d0, found.correction - used.correction) / d0
+    scale = max(map(np.linalg.norm, (before, after, gained)))
+    return bool(max(map(np.linalg.norm, (by_load, by_answer, missed))) <= SETTLED * scale)
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:

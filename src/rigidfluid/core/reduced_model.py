@@ -46,7 +46,7 @@ class ReducedModel:
 
 
 def reduced_model(
-    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, tightness: FloatArray
+    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, tightness: FloatArray, shared: bool
 ) -> ReducedModel:
     """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
 
@@ -63,27 +63,34 @@ def reduced_model(
         Weight of the newest velocity in the step's time derivative [1/time].
     tightness : (c,) array
         Of the contacts of each velocity's body [1/length].
+    shared : bool
+        Whether far bodies shared questions: then their errors may leave modes no answer at all, or a negative one.
 
     Returns
     -------
     ReducedModel
         In its modes.
     """
-    mass_modes = _root(0.5 * (by_mass + by_mass.T))  # L Lᵀ = W_i: XᵀMX = 1 for X = L
+    mass_modes = _root(0.5 * (by_mass + by_mass.T), shared)  # L Lᵀ = W_i: XᵀMX = 1 for X = L
     answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
     share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
-    decay = d0 * np.maximum(1.0 / np.maximum(share, _LEAST) - 1.0, 0.0)
+    floor = _LEAST_SHARE * float(np.min(by_step.diagonal() / by_mass.diagonal())) if shared else _LEAST
+    decay = d0 * np.maximum(1.0 / np.maximum(share, floor) - 1.0, 0.0)
     return ReducedModel(velocities, mass_modes @ turn, decay, tightness)
 
 
-def _root(matrix: FloatArray) -> FloatArray:
-    """L with L Lᵀ the matrix; directions in which answers put together from many questions are none get a little."""
+def _root(matrix: FloatArray, shared: bool) -> FloatArray:
+    """L with L Lᵀ the matrix."""
     value, vector = np.linalg.eigh(matrix)
-    return np.asarray(vector * np.sqrt(np.maximum(value, _LEAST * value.max())))
+    floor = _LEAST_SHARE * float(matrix.diagonal().min()) if shared else _LEAST * value.max()
+    return np.asarray(vector * np.sqrt(np.maximum(value, floor)))
 
 
 _LEAST = 1e-12
 """Less of the inviscid answer than this is the rounding of none."""
+
+_LEAST_SHARE = 0.1
+"""Of the least answer of a single velocity, what a mode of many has at least where questions were shared."""
 
 
 def load_within(

@@ -32,8 +32,12 @@ class BalancesContract(FluidContract):
 
     @pytest.mark.parametrize("inertia", [False, True], ids=["stokes", "navier-stokes"])
     def test_flow_between_a_plane_of_symmetry_and_a_wall(self, dimension: int, inertia: bool) -> None:
-        """Driven by pressures: u = Δp/(2μL)(1 - y²), in → out the power Δp Q, all of it dissipated."""
-        flow = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None).after(0.1)
+        """Driven by pressures: u = Δp/(2μL)(1 - y²), in → out the power Δp Q, all of it dissipated.
+
+        Midway from rest half the velocity dissipates a quarter.
+        """
+        started = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None)
+        flow = started.after(0.1)
         points, advance = samples(dimension), flow.advance
         velocity, pressure = flow.probe(points)
         exact = np.zeros_like(points)
@@ -42,6 +46,8 @@ class BalancesContract(FluidContract):
         self.assert_close(pressure, BACK + DROP * (1 - points[:, 0]), scale=10.0)
         work = DROP**2 / (3 * VISCOSITY)
         self.assert_close([advance.dissipation, advance.boundary_power], work, scale=10.0)
+        midway = [started.advance.dissipation_midway, advance.dissipation_midway]
+        self.assert_close(midway, [0.25 * work, work], scale=10.0)
         kinetic = 0.5 * DENSITY * (DROP / (2 * VISCOSITY)) ** 2 * 8 / 15
         self.assert_close(advance.kinetic_energy, kinetic if inertia else 0.0)
 

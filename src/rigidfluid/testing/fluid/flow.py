@@ -178,5 +178,9 @@ def components(record: Twist | Wrench) -> FloatArray:
 
 def figures(advance: Advance) -> Mapping[str, FloatArray]:
     """All of a result that does not depend on how a backend lays out its state."""
-    energies = np.array([advance.kinetic_energy, advance.dissipation, advance.boundary_power])
-    return {"twist": components(advance.twist), "wrench": components(advance.hydrodynamic_wrench), "energies": energies}
+    energies = [advance.kinetic_energy, advance.dissipation, advance.dissipation_midway, advance.boundary_power]
+    return {
+        "twist": components(advance.twist),
+        "wrench": components(advance.hydrodynamic_wrench),
+        "energies": np.array(energies),
+    }

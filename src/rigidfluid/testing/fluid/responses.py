@@ -106,6 +106,16 @@ class ResponsesContract(FluidContract):
         self._assert_answers(told, twists[1] - twists[0])
         assert np.abs(told).max() > 1e-3
 
+    def test_without_new_points_the_present_mesh_answers(self, dimension: int) -> None:
+        """The same where it is at rest, in fluid that is not."""
+        flow = self._stirred_free(dimension).after(STEP).after(STEP)
+        step, units = flow.step_after(STEP), _units(flow)
+        there, here = (
+            flow.backend.response(flow.fluid, flow.mesh, asked, units) for asked in (step, replace(step, points=None))
+        )
+        self._assert_answers(here.by_mass, there.by_mass)
+        self._assert_answers(here.by_step, there.by_step)
+
     def test_without_inertia_of_the_fluid_it_only_drags(self, dimension: int) -> None:
         """Stokes flow: M⁻¹ by mass and d₀ (d₀M + R)⁻¹ by a step, R from steady flows past bodies that are driven."""
         flow = self._free_balls(dimension, inertia=False)
