@@ -98,15 +98,10 @@ def energy_plot(results: Results) -> Figure:
     axes.set_ylabel("energy [energy]")
     account = energy_account(energy)
     scale = 100.0 / (account.put_in or 1.0)
-    below.plot(energy["time"], scale * energy["residual"], color=VERMILLION, label="not accounted for")
-    below.plot(
-        energy["time"],
-        scale * energy["path_friction"],
-        color=BLACK,
-        linestyle=":",
-        label="friction of impacts, at most",
-    )
-    below.set_ylabel("residual\n[% of what was put in]")
+    below.plot(energy["time"], scale * energy["residual"], color=VERMILLION, label="residual")
+    friction = scale * energy["path_friction"]
+    below.plot(energy["time"], friction, color=BLACK, linestyle=":", label="path friction")
+    below.set_ylabel("not accounted for\n[% of what was put in]")
     below.set_title(f"created {per_cent(account.created)}, lost {per_cent(account.lost)}", fontsize=9)
     add_legend(figure)
     return figure
