@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rigidfluid.checks import Report
     from rigidfluid.comparison.compare import CompareProgress
     from rigidfluid.comparison.comparison import Comparison as BackendComparison
+    from rigidfluid.core.history import History
     from rigidfluid.core.run import Progress
     from rigidfluid.core.scene import Scene
     from rigidfluid.crosscheck import Comparison
@@ -99,9 +100,13 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
 
         loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
-        with _progress_bar(loaded) as show:
-            history = simulate(loaded, folder, resume=resume, progress=show, processes=LAUNCH.size)
-        _print_end(history.summary, folder)
+        ends: list[History] = []
+        try:
+            with _progress_bar(loaded) as show:
+                simulate(loaded, folder, resume=resume, progress=show, processes=LAUNCH.size, finished=ends.append)
+        finally:
+            for history in ends:
+                _print_end(history, folder)
 
 
 @app.command()
@@ -321,14 +326,33 @@ def _print_study(results: Results) -> None:
             _print(f"on the Pareto front: {knobs}: error {_figure(error)} in {_figure(seconds)} s")
 
 
-def _print_end(summary: dict[str, Any], folder: Path) -> None:
+def _print_end(history: History, folder: Path) -> None:
+    """The figures of a run, complete or not, and where it has written."""
+    summary = history.summary
     if summary["reynolds"]:
         solid, fluid = _figure(summary["reynolds_solid_density"]), _figure(summary["reynolds"])
         _print(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
     if summary["smallest_gap"] is not None:
         _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
     _print(f"rest position: {_figure(summary['rest_position'])}")
+    _print_energy(history)
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
+
+
+def _print_energy(history: History) -> None:
+    """What came from nowhere and what vanished, and the likely causes where it is much."""
+    from rigidfluid.core.energy_account import contacts_pushed, energy_account, energy_warnings, per_cent
+
+    energy = history.energy
+    account = energy_account(energy)
+    friction = f", friction of impacts {per_cent(account.path_friction)} at most" if account.path_friction else ""
+    _print(
+        f"energy: {per_cent(account.created)} created, {per_cent(account.lost)} lost{friction}, "
+        f"of {_figure(account.put_in)} put in"
+    )
+    for warning in energy_warnings(energy, contacts_pushed(history.bodies, len(energy["time"]))):
+        grade, style = ("serious warning", "red") if warning.serious else ("warning", "yellow")
+        _print(f"{grade}: {warning.text}. {warning.remedy}", style)
 
 
 def _print_features(report: Report) -> None:
@@ -427,9 +451,9 @@ def _figure(value: Any) -> str:
     return f"{value:.4g}"
 
 
-def _print(text: str) -> None:
+def _print(text: str, style: str = "") -> None:
     if LAUNCH.rank == 0:
-        Console().print(Text(text), soft_wrap=True)
+        Console().print(Text(text, style=style), soft_wrap=True)
 
 
 def _complain(text: str) -> None:

@@ -9,7 +9,6 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import jsonschema
 import pytest
@@ -18,6 +17,8 @@ from typer.testing import CliRunner, Result
 import rigidfluid.core.run
 from rigidfluid import __version__
 from rigidfluid.cli import app
+from rigidfluid.core.history import History
+from rigidfluid.core.records import columns
 
 SCENE = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
 Install = Callable[..., Path]
@@ -161,11 +162,57 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "smallest_gap": None,
         "rest_position": [1.0, 2.0],
     }
-    history = SimpleNamespace(summary=figures | {"files": [tmp_path / "bodies.csv"]})
-    monkeypatch.setattr(rigidfluid.core.run, "run", lambda *_, **__: history)
+    history = at_rest()
+    history.summary = figures | {"files": [tmp_path / "bodies.csv"]}
+    monkeypatch.setattr(rigidfluid.core.run, "run", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
     assert "rest position: (1, 2)" in text
+    assert "energy: 0 % created, 0 % lost, of 0 put in" in text
+
+
+def at_rest() -> History:
+    """The only state of a run in which nothing ever moves."""
+    history = History(2)
+    width = {name: len(names) for name, names in columns(2).items()}
+    history.extend({"bodies": [(0.0,) * width["bodies"]], "energy": [(0.0,) * width["energy"]]})
+    return history
+
+
+COARSE = ("--set", "contact.substeps=1", "--set", "time.end=0.03")
+
+
+def test_a_run_tells_that_it_kept_its_energy(tmp_path: Path) -> None:
+    text = rigidfluid_command("run", SCENE, "--set", "time.end=0.03", "--out", tmp_path).stdout
+    (line,) = [line for line in text.splitlines() if line.startswith("energy: ")]
+    assert line.endswith(" put in")
+    assert "warning" not in text
+
+
+@pytest.mark.parametrize(
+    ("step", "start", "colour"), [(1.6e-4, "warning: ", "\x1b[33m"), (3e-4, "serious warning: ", "\x1b[31m")]
+)
+def test_a_run_warns_of_energy_from_nowhere(
+    monkeypatch: pytest.MonkeyPatch, step: float, start: str, colour: str, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm-256color")
+    result = rigidfluid_command("run", SCENE, *COARSE, "--set", f"time.step={step}", "--out", tmp_path)
+    assert result.exit_code == 0, result.stderr
+    line = next(line for line in result.stdout.splitlines() if "came from nowhere" in line)
+    assert line.startswith(colour + start)
+    assert "probably at impacts" in line
+    assert "Shorten time.step" in line
+    energy = json.loads((tmp_path / "summary.json").read_text())["energy"]
+    assert f"energy: {100 * energy['created']:.2g} % created, {100 * energy['lost']:.2g} % lost" in result.stdout
+
+
+def test_a_run_that_stops_tells_of_its_energy_too(tmp_path: Path) -> None:
+    result = rigidfluid_command("run", SCENE, *COARSE, "--set", "time.step=1e-3", "--out", tmp_path)
+    assert result.exit_code == 2
+    assert_one_paragraph(result.stderr, "positive gap")
+    assert "% created" in result.stdout
+    assert "serious warning: " in result.stdout
 
 
 def test_third_party_law_is_listed_and_runs(install: Install, law: str, tmp_path: Path) -> None:

@@ -11,14 +11,24 @@ from rigidfluid.core.types import Pose, Twist
 def test_the_ledger_adds_up():
     ledger = (
         Ledger(1.0, 0.0, 1.0)
-        .after(0.1, Power(2.0, 3.0, 4.0), Work(0.05, 0.0, 0.1), 1.0, 0.0)
-        .after(0.2, Power(4.0, 5.0, 6.0), Work(0.4, 0.25, 0.2), 2.0, 0.5)
+        .after(0.1, Power(2.0, 3.0, 4.0, 2.0), Work(0.05, 0.0, 0.1, 0.3), 1.0, 0.0)
+        .after(0.2, Power(4.0, 5.0, 6.0, 5.0), Work(0.4, 0.25, 0.2, 0.4), 2.0, 0.5)
     )
     assert [ledger.gravity, ledger.boundary, ledger.control, ledger.dissipation] == pytest.approx([0.45, 0.7, 1.2, 1.2])
-    assert ledger.contact_loss == pytest.approx(0.3)
+    assert [ledger.contact_loss, ledger.path_friction] == pytest.approx([0.3, 0.7])
     lost = ledger.after_transfer(0.25)
     assert (lost.kinetic, lost.transfer_loss) == (1.75, 0.25)
     assert lost.residual == pytest.approx(ledger.residual) == pytest.approx(0.45 + 0.7 + 1.2 - 1.2 - 0.3 - (2.5 - 1.0))
+
+
+@pytest.mark.parametrize(("start", "end"), [(3.0, -3.0), (3.0, -2.0), (2.0, 5.0), (0.0, 1.0)])
+def test_dissipation_of_velocities_that_change_linearly_is_exact(start, end):
+    friction, step = 0.7, 0.1
+    mean = 0.5 * (start + end)
+    power = Power(dissipation=friction * end**2, dissipation_midway=friction * mean**2)
+    before = Ledger(0.0, 0.0, 0.0, power=Power(dissipation=friction * start**2))
+    exact = friction * step * (start**2 + start * end + end**2) / 3.0
+    assert before.after(step, power, Work(), 0.0, 0.0).dissipation == pytest.approx(exact)
 
 
 def test_a_turned_body_has_the_same_energy():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from falling import SCENES, falling_disk
 
 import rigidfluid
+from rigidfluid.core.energy_account import per_cent
 from rigidfluid.core.types import Fields
 from rigidfluid.core.vtu import read_pvd, read_vtu, write_vtu
 from rigidfluid.errors import OutputError
@@ -55,6 +57,10 @@ def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
     assert 'src="' not in page.replace('src="data:', "")
     for figure in (summary["reynolds"], summary["smallest_gap"], summary["energy"]["dissipation"]):
         assert f"{figure:.5g}" in page
+    for share in ("created", "lost", "unaccounted"):
+        assert per_cent(summary["energy"][share]) in page
+    assert f"{summary['energy']['put_in']:.5g}" in page
+    assert "friction of impacts between the fluid's solutions" in unescape(page)
     assert "size_body = 0.08" in page
     assert "of it: advance [s]" in page
     assert f"{summary['peak_memory'] / 1e6:.5g}" in page
@@ -67,7 +73,6 @@ def test_the_same_run_gives_the_same_files(fall: Path, written: list[Path]) -> N
 
 def test_the_scene_on_the_page_is_a_scene(fall: Path, written: list[Path]) -> None:
     import tomllib
-    from html import unescape
 
     page = written[-1].read_text(encoding="utf-8")
     text = unescape(page.partition("<pre>")[2].partition("</pre>")[0])

@@ -22,6 +22,7 @@ def run(
     resume: bool = False,
     progress: Callable[[Progress], None] | None = None,
     processes: int | None = None,
+    finished: Callable[[History], None] | None = None,
 ) -> History:
     """Run a scene to its end.
 
@@ -39,6 +40,8 @@ def run(
     processes : int or None
         How many processes were started to share the run, each calling this; a backend that cannot share it among so
         many is refused. None takes the backend's word.
+    finished : callable or None
+        Called with the results once they are summed up, also where the run then raises what stopped it.
 
     Returns
     -------
@@ -56,12 +59,15 @@ def run(
     """
     with one_openblas_thread():
         simulation = Simulation(scene, None if out is None else Path(out), resume, processes)
+        told = finished or (lambda _: None)
         try:
             simulation.go(progress)
         except (RigidfluidError, KeyboardInterrupt) as error:
             if simulation.alone or isinstance(error, RigidfluidError):  # an interrupt need not reach all ranks
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+                told(simulation.history)
             raise
         simulation.finish(status="complete")
+        told(simulation.history)
     return simulation.history

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rigidfluid.core.energy import Ledger
+from rigidfluid.core.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.history import History
 from rigidfluid.core.memory import peak_memory
 from rigidfluid.core.ranks import Ranks
@@ -30,7 +31,8 @@ FIGURES = (
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
-ENERGIES = (*LEDGER_COLUMNS, "relative_residual")
+ACCOUNT = ("put_in", "created", "lost", "unaccounted")
+ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 """Keys of its table ``energy``."""
 
 
@@ -56,7 +58,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, history),
         "smallest_gap": _finite(np.min(bodies["gap"])),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        "energy": energy_balance(state.ledger),
+        "energy": energy_balance(state.ledger, energy_account(history.energy)),
         "auto_epsilon": chosen_strengths(system),
     }
 
@@ -100,9 +102,10 @@ def _highest_speeds(system: System, history: History) -> FloatArray:
     return np.asarray(speed.max(axis=0))
 
 
-def energy_balance(ledger: Ledger) -> dict[str, float]:
-    """What is stored, what came in, what went out [energy], and the residual over the energy that passed through."""
-    return {name: getattr(ledger, name) for name in ENERGIES}
+def energy_balance(ledger: Ledger, account: EnergyAccount) -> dict[str, float]:
+    """What is stored, what came in, what went out [energy], and what of it came from nowhere or vanished (shares)."""
+    stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
+    return stored | {name: getattr(account, name) for name in ACCOUNT}
 
 
 def versions() -> dict[str, str]:

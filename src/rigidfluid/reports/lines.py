@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from rigidfluid.core.energy_account import energy_account, per_cent
 from rigidfluid.core.types import FloatArray
 from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
 from rigidfluid.reports.results import Results
@@ -95,9 +96,13 @@ def energy_plot(results: Results) -> Figure:
                    colors=[colour for _, colour in shares.values()], alpha=0.75, linewidth=0)  # fmt: skip
     axes.plot(energy["time"], supplied, color=BLACK, linestyle="--", label="supplied + initial")
     axes.set_ylabel("energy [energy]")
-    passed = max(float(np.abs(supplied - initial).max()), float(energy["kinetic"].max()), float(initial))
-    below.plot(energy["time"], 100.0 * energy["residual"] / (passed or 1.0), color=VERMILLION)
-    below.set_ylabel("residual\n[% of the energy supplied]")
+    account = energy_account(energy)
+    scale = 100.0 / (account.put_in or 1.0)
+    below.plot(energy["time"], scale * energy["residual"], color=VERMILLION, label="residual")
+    friction = scale * energy["path_friction"]
+    below.plot(energy["time"], friction, color=BLACK, linestyle=":", label="path friction")
+    below.set_ylabel("not accounted for\n[% of what was put in]")
+    below.set_title(f"created {per_cent(account.created)}, lost {per_cent(account.lost)}", fontsize=9)
     add_legend(figure)
     return figure
 

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.energy_account import per_cent
 from rigidfluid.core.scene_text import scene_text
 from rigidfluid.reports.html import document, picture, table
 
@@ -20,6 +21,13 @@ _ENERGIES = {
     "kinetic": "kinetic, at the end",
     "contact": "stored in contacts, at the end",
     "residual": "not accounted for",
+    "path_friction": "of it at most friction of impacts between the fluid's solutions",
+    "put_in": "put in: stored at the start, and the most that was supplied",
+}
+_SHARES = {
+    "created": "created from nowhere at most, by any time",
+    "lost": "lost at most, by any time, beyond friction of impacts",
+    "unaccounted": "not accounted for, at the end",
 }
 
 
@@ -73,7 +81,8 @@ def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
 def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:
     for key, meaning in _ENERGIES.items():
         yield f"{meaning} [energy]", energy[key]
-    yield "not accounted for, over what was supplied", f"{100 * energy['relative_residual']:.3g} %"
+    for key, meaning in _SHARES.items():
+        yield f"{meaning}, over what was put in", per_cent(energy[key])
 
 
 def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
