@@ -45,7 +45,7 @@ def updated_model(
         Of the velocities.
     """
     if len(velocities) == 0:
-        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), np.zeros(0), False)
     count, width = step.load.shape
     d0, now = float(step.derivative[0]), _tightness(contacts, count)[velocities // width]
     by_mass, by_step, before = _remembered(known, velocities, d0)

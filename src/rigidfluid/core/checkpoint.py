@@ -114,4 +114,4 @@ def _value(stored: Any, hint: Any, ranks: Ranks) -> Any:
         return stored.asstr()[()]
     if typing.get_origin(hint) is tuple:
         return tuple(stored[()].tolist())
-    return hint(stored[()]) if hint in (int, float) else np.asarray(stored[()])
+    return hint(stored[()]) if hint in (int, float, bool) else np.asarray(stored[()])

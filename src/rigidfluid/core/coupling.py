@@ -17,6 +17,9 @@ from rigidfluid.core.wrenches import flat, nothing
 SETTLED = 1e-3
 """A step is followed again until the bodies' velocities change by less than this part of them."""
 
+SETTLED_SHARED = 1e-2
+"""The same where bodies share questions, whose answers are no better."""
+
 
 def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
     """The coupling of a step from what was before it; None where nothing can touch.
@@ -98,7 +101,8 @@ def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -
     by_answer = gained - used.model.mobility @ impulse
     missed = model.answer(d0, found.correction - used.correction) / d0
     scale = max(map(np.linalg.norm, (before, after, gained)))
-    return bool(max(map(np.linalg.norm, (by_load, by_answer, missed))) <= SETTLED * scale)
+    enough = SETTLED_SHARED if model.shared else SETTLED
+    return bool(max(map(np.linalg.norm, (by_load, by_answer, missed))) <= enough * scale)
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:

@@ -16,13 +16,14 @@ class ReducedModel:
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
     ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``tightness`` (c,): Σ 1/gap of the
-    contacts of their body when it was asked [1/length].
+    contacts of their body when it was asked [1/length]. ``shared``: whether far bodies shared questions.
     """
 
     velocities: IntArray
     modes: FloatArray
     decay: FloatArray
     tightness: FloatArray
+    shared: bool
 
     @property
     def mobility(self) -> FloatArray:
@@ -76,7 +77,7 @@ def reduced_model(
     share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
     floor = _LEAST_SHARE * float(np.min(by_step.diagonal() / by_mass.diagonal())) if shared else _LEAST
     decay = d0 * np.maximum(1.0 / np.maximum(share, floor) - 1.0, 0.0)
-    return ReducedModel(velocities, mass_modes @ turn, decay, tightness)
+    return ReducedModel(velocities, mass_modes @ turn, decay, tightness, shared)
 
 
 def _root(matrix: FloatArray, shared: bool) -> FloatArray:
