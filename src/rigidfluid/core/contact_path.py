@@ -16,7 +16,7 @@ from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import FreeMovement, Movement
 from rigidfluid.core.proximity import arms, may_repel, refuse_overlap
 from rigidfluid.core.redetected import RedetectedContacts
-from rigidfluid.core.reduced_model import ReducedModel
+from rigidfluid.core.reduced_model import Coupling
 from rigidfluid.core.rigid import inverse_lab_inertia, rotation_matrices
 from rigidfluid.core.state import State
 from rigidfluid.core.substep import Plan, plan, relative_motion, relative_velocity
@@ -32,6 +32,9 @@ MOST_SUBSTEPS = 100_000
 IMPLICIT_PARTS = 8
 """Of a step in a fluid, each an implicit step of the bodies."""
 
+RESOLVED = 8.0
+"""A step of so many substeps, or less, resolves its contacts: all forces then vary within it."""
+
 MOST_ALIKE = 1_000
 """After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
 
@@ -40,20 +43,6 @@ ROUNDING = 1e-9
 
 
 M = TypeVar("M", bound=Movement)
-
-
-@dataclass(frozen=True, slots=True)
-class Coupling:
-    """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
-    ``load`` (c,), its Φ [force | force·length].
-
-    ``correction`` (c,): of a fluid without inertia, what takes its answer to the end of the path. It answers to the
-    force there, and the mean of the step is not that [force | force·length].
-    """
-
-    model: ReducedModel
-    load: FloatArray
-    correction: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +139,8 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
 
 def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodiesPath:
     movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
+    if size <= RESOLVED * plan(law, near, movement, arms(system), size, size).substep:
+        movement.vary_load(size)
     if system.implicit:
         path = _cross_coupled(system, law, movement, near, size)
     elif system.detector.needs_mesh:
@@ -242,7 +233,7 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledMovemen
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
     linear, angular = _mobility(system, state)
     rate = _accelerations(system, state)
-    return CoupledMovement(state.pose, state.twist, rate, linear, angular, coupling.model, coupling.load)
+    return CoupledMovement(state.pose, state.twist, rate, linear, angular, coupling)
 
 
 def _accelerations(system: System, state: State) -> FloatArray:

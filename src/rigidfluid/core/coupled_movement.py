@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.movement import block_diagonal
-from rigidfluid.core.reduced_model import ReducedModel
+from rigidfluid.core.reduced_model import Coupling
 from rigidfluid.core.rigid import rotate
 from rigidfluid.core.types import FloatArray, IntArray, Pose, Twist, Wrench
 from rigidfluid.core.wrenches import flat
@@ -26,10 +26,8 @@ class CoupledMovement:
         A, the acceleration without contacts; of velocities in the model it is not read [length/time² | rad/time²].
     linear, angular : (n, d, d) array, (n, k, k) array
         M⁻¹ of bodies outside the model in the lab frame, zero for driven ones [1/mass | 1/(mass·length²)].
-    model : ReducedModel
-        Of the bodies near contacts.
-    load : (c,) array
-        Φ, constant [force | force·length].
+    coupling : Coupling
+        The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
     """
 
     def __init__(
@@ -39,9 +37,9 @@ class CoupledMovement:
         rate: FloatArray,
         linear: FloatArray,
         angular: FloatArray,
-        model: ReducedModel,
-        load: FloatArray,
+        coupling: Coupling,
     ) -> None:
+        model, load = coupling.model, coupling.load
         self.pose = pose
         self._start = np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
         self._velocity = self._start
@@ -49,11 +47,17 @@ class CoupledMovement:
         self._own = linear, angular
         self._rate = rate.copy()
         self._rate.flat[model.velocities] = model.modes @ (model.modes.T @ load)
-        self._load = model.modes.T @ load
+        self._load, self._growth, self._time = model.modes.T @ load, np.zeros(len(load)), 0.0
+        self._lacking = np.where(np.isnan(coupling.load_before), 0.0, load - coupling.load_before)
         self._modal = np.zeros(len(load))
         self._inverse = np.linalg.inv(model.modes)
         self.mobility, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
+
+    def vary_load(self, time: float) -> None:
+        """From now on Φ grows linearly, from what it was before to what it is after so much ``time``."""
+        change = self._model.modes.T @ self._lacking
+        self._load, self._growth = self._load - change, change / time
 
     @property
     def twist(self) -> Twist:
@@ -90,10 +94,11 @@ class CoupledMovement:
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the velocities by all that acts for so long."""
         d, model = wrench.force.shape[1], self._model
+        load, self._time = self._load + (self._time + 0.5 * time) * self._growth, self._time + time
         velocity = self._velocity + time * self._rate
         velocity[:, :d] += time * np.einsum("nij,nj->ni", self._own[0], wrench.force)
         velocity[:, d:] += time * np.einsum("nij,nj->ni", self._own[1], wrench.torque)
-        force = self._load + model.modes.T @ flat(wrench).flat[model.velocities]
+        force = load + model.modes.T @ flat(wrench).flat[model.velocities]
         decay = model.decay * time
         self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal

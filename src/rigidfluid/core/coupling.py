@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.answers import updated_model
-from rigidfluid.core.contact_path import BodiesPath, Coupling, near_contacts
-from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_within
+from rigidfluid.core.contact_path import BodiesPath, near_contacts
+from rigidfluid.core.reduced_model import Coupling, ReducedModel, expected_load, load_within
 from rigidfluid.core.state import State
 from rigidfluid.core.step import step_to
 from rigidfluid.core.system import System
@@ -45,8 +45,10 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
         return None
     velocities = _velocities(system, near)
     step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
-    model = updated_model(system, state, step, state.contacts, velocities, state.model)
-    return Coupling(model, _expected_load(system, state, model), np.zeros(len(velocities)))
+    known = None if state.coupling is None else state.coupling.model
+    model = updated_model(system, state, step, state.contacts, velocities, known)
+    before = _load_before(state, model)
+    return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
 
 
 def shown_coupling(system: System, state: State, candidate: State, path: BodiesPath, step: Step) -> Coupling:
@@ -77,7 +79,7 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
     impulses = _of(model, step.impulse), _of(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
     missed = _of(model, _joined(path.twist)) - twists[0]
-    return Coupling(model, load, used.correction + _correction(system, model, step, missed))
+    return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
 
 def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
@@ -116,6 +118,19 @@ def _velocities(system: System, near: Contacts) -> IntArray:
     if system.law is not None and not system.law.dissipative:
         moves[np.array([body.radius is not None for body in system.bodies]), d:] = False
     return np.flatnonzero(moves)
+
+
+def _load_before(state: State, model: ReducedModel) -> FloatArray:
+    """Φ at the start of a step: at the end of the one before, less the friction that came up in that step."""
+    before = np.full(len(model.velocities), np.nan)
+    if state.coupling is None or state.past is None:
+        return before
+    latest = state.coupling.model.velocities
+    _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
+    change = _joined(state.twist) - _joined(state.past.twist)
+    slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
+    before[here] = (state.coupling.load - slowed)[there]
+    return before
 
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:

@@ -46,6 +46,21 @@ class ReducedModel:
         return np.asarray(inverse.T @ (self.decay * (inverse @ velocity)))
 
 
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
+    ``load`` (c,), its Φ at the end of the step [force | force·length].
+
+    ``load_before`` (c,) is Φ at its start, NaN where it is not known. ``correction`` (c,): of a fluid without inertia,
+    what takes its answer to the end of the path; it answers to the force there, and not to the mean of the step.
+    """
+
+    model: ReducedModel
+    load: FloatArray
+    load_before: FloatArray
+    correction: FloatArray
+
+
 def reduced_model(
     velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, tightness: FloatArray, shared: bool
 ) -> ReducedModel:

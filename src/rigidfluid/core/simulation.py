@@ -13,7 +13,7 @@ import numpy as np
 
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
-from rigidfluid.core.contact_path import BodiesPath, Coupling, first_step_again, follow
+from rigidfluid.core.contact_path import BodiesPath, first_step_again, follow
 from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
@@ -22,6 +22,7 @@ from rigidfluid.core.mesh_adaptation import Mover, reference_of
 from rigidfluid.core.proximity import least_gaps, surroundings, travel
 from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.records import records
+from rigidfluid.core.reduced_model import Coupling
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.size_field import Sizes
 from rigidfluid.core.state import State
@@ -173,7 +174,7 @@ class Simulation:
             path = self._path(level, found)
             if level < self.clock.levels and self._changes_gaps_too_fast(path.pose):
                 raise _too_fast()
-        return replace(candidate, model=found.model)
+        return replace(candidate, coupling=found)
 
     def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
@@ -181,8 +182,6 @@ class Simulation:
         if coupling is None:
             with self.watch("response"):
                 coupling = expected_coupling(self.system, self.state, time, size)
-            if coupling is not None:
-                self.state = replace(self.state, model=coupling.model)
         with self.watch("contact"):
             return follow(self.system, self.state, time, size, coupling)
 
@@ -290,7 +289,7 @@ def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
         reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
         fluid=fluid,
         contacts=contacts,
-        model=None,
+        coupling=None,
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rigidfluid.core.energy import Ledger
-from rigidfluid.core.reduced_model import ReducedModel
+from rigidfluid.core.reduced_model import Coupling
 from rigidfluid.core.types import Contacts, FloatArray, FluidState, Mesh, Pose, Twist, Wrench
 
 
@@ -35,7 +35,7 @@ class State:
     """An accepted state.
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
-    a fluid). ``model``: how bodies near contacts answer to impulses on the present mesh, None where none are. The
+    a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
     wrenches are those that led to the present twist.
     """
 
@@ -48,7 +48,7 @@ class State:
     mesh: Mesh | None
     reference: Reference | None
     fluid: FluidState
-    model: ReducedModel | None
+    coupling: Coupling | None
     contacts: Contacts
     gaps: FloatArray
     hydrodynamic_wrench: Wrench

@@ -57,7 +57,7 @@ def attempt(
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
-        model=None,
+        coupling=None,
         contacts=contacts,
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
