@@ -16,7 +16,7 @@ from scipy import sparse
 from rigidfluid.core.types import FloatArray
 from rigidfluid.errors import StepRejected
 
-_ANALYSE_AND_FACTORISE, _SOLVE = 12, 33
+_ANALYSE_AND_FACTORISE, _FACTORISE, _SOLVE = 12, 22, 33
 _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 
@@ -39,6 +39,10 @@ _WORTHLESS = 1e-6
 class Factors(Protocol):
     """Something that solves A x = b, of one right side or of many (N, c), for the matrix that it was made from."""
 
+    @property
+    def reusable(self) -> bool:
+        """Whether `factorise` can start from them."""
+
     def solve(self, right_side: FloatArray) -> FloatArray: ...
 
 
@@ -60,15 +64,41 @@ class _Pardiso:
 
     def __init__(self, matrix: sparse.csr_array) -> None:
         self._matrix = matrix
-        self._solver = _factorised(matrix, _EXACT)
+        self.reusable = True
+        self._analyse(_EXACT)
         if self._solver.iparm[_PERTURBED_PIVOTS] > 0 and self._residual() > _WORTHLESS:
-            self._solver.free_memory(everything=True)
-            self._solver = _factorised(matrix, _SAFE)
-        weakref.finalize(self, self._solver.free_memory, everything=True)
+            self.free()
+            self._analyse(_SAFE)
+            self.reusable = False  # the next matrix may do with the exact ones
+
+    def renewed(self, matrix: sparse.csr_array) -> bool:
+        """Factorise another matrix by the analysis at hand; False where it serves another pattern, or badly.
+
+        Scaling and matching are those of the matrix analysed, so that the factors are always tried.
+        """
+        if not self.reusable or not _same_pattern(matrix, self._matrix):
+            return False
+        self._matrix = matrix
+        try:
+            _run(self._solver, _FACTORISE, matrix)
+        except StepRejected:
+            return False
+        return self._residual() <= _WORTHLESS
+
+    def free(self) -> None:
+        """Give PARDISO's memory back, the analysis too."""
+        self._finalizer()
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         solution: FloatArray = self._solver._call_pardiso(self._matrix, np.asfortranarray(right_side))
         return solution
+
+    def _analyse(self, settings: NDArray[np.int32]) -> None:
+        self._solver = copy.copy(_library())
+        self._solver.pt = np.zeros_like(self._solver.pt)
+        self._solver.iparm = settings.copy()
+        self._finalizer = weakref.finalize(self, self._solver.free_memory, everything=True)
+        _run(self._solver, _ANALYSE_AND_FACTORISE, self._matrix)
 
     def _residual(self) -> float:
         right_side = self._matrix @ np.ones(self._matrix.shape[0])
@@ -76,22 +106,25 @@ class _Pardiso:
         return float(np.linalg.norm(left) / np.linalg.norm(right_side))
 
 
-def _factorised(matrix: sparse.csr_array, settings: NDArray[np.int32]) -> Any:
+def _run(solver: Any, phase: int, matrix: sparse.csr_array) -> None:
+    """Run a phase, and be ready to solve."""
     from pypardiso.pardiso_wrapper import PyPardisoError
 
-    solver = copy.copy(_library())
-    solver.pt = np.zeros_like(solver.pt)
-    solver.iparm = settings.copy()
-    solver.set_phase(_ANALYSE_AND_FACTORISE)
+    solver.set_phase(phase)
     try:
         solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
     except PyPardisoError as error:
         raise _singular(matrix, error) from error
     solver.set_phase(_SOLVE)
-    return solver
+
+
+def _same_pattern(one: sparse.csr_array, other: sparse.csr_array) -> bool:
+    return np.array_equal(one.indptr, other.indptr) and np.array_equal(one.indices, other.indices)
 
 
 class _SuperLU:
+    reusable = False
+
     def __init__(self, matrix: sparse.csr_array) -> None:
         from scipy.sparse.linalg import splu
 
@@ -113,9 +146,16 @@ def _singular(matrix: sparse.csr_array, error: Exception) -> StepRejected:
     )
 
 
-def factorise(matrix: sparse.csr_array) -> Factors:
-    """Factorise a regular matrix; raises StepRejected where it is singular."""
+def factorise(matrix: sparse.csr_array, before: Factors | None = None) -> Factors:
+    """Factorise a regular matrix; raises StepRejected where it is singular.
+
+    The factors ``before`` are used up: where they are of the same pattern, PARDISO does not analyse it again.
+    """
     matrix.sort_indices()
-    if importlib.util.find_spec("pypardiso"):
-        return _Pardiso(matrix)
-    return _SuperLU(matrix)
+    if not importlib.util.find_spec("pypardiso"):
+        return _SuperLU(matrix)
+    if isinstance(before, _Pardiso):
+        if before.renewed(matrix):
+            return before
+        before.free()
+    return _Pardiso(matrix)

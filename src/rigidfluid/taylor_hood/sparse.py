@@ -13,6 +13,7 @@ from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
 from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
@@ -25,7 +26,7 @@ class Assembly(Protocol):
     def matrix(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> sparse.csr_array:
         """K: inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
 
-        ``advection`` a (nodes, d) already holds the density.
+        ``advection`` a (nodes, d) already holds the density. All have one sparsity pattern, zeros kept.
         """
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
@@ -81,6 +82,7 @@ class SparseDiscretisation:
         self._solver = solver
         self._inviscid_solver = inviscid_solver
         self._latest: _Assembled | None = None
+        self._reduced: dict[bool, ReducedMatrix] = {}
 
     @property
     def unknowns(self) -> int:
@@ -151,12 +153,14 @@ class SparseDiscretisation:
             return result
 
         def build() -> sparse.csr_array:
-            entries = inertia.tocoo()
-            place = (entries.row + twists.start, entries.col + twists.start)
-            embedded = sparse.coo_array((entries.data, place), shape=(constraint.unknowns,) * 2)
-            return sparse.csr_array(constraint.transposed @ stiffness @ constraint.operator + embedded)
+            return self._reduced_matrix(stiffness, m.viscosity != 0.0).filled(stiffness, masses)
 
         return _Assembled(m, stiffness, apply, build, twists)
+
+    def _reduced_matrix(self, stiffness: sparse.csr_array, viscous: bool) -> ReducedMatrix:
+        if viscous not in self._reduced:
+            self._reduced[viscous] = ReducedMatrix(self._constraint, stiffness, viscous)
+        return self._reduced[viscous]
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
         constraint, pressure = self._constraint, system.pressure

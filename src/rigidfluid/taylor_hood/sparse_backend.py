@@ -22,7 +22,7 @@ class SparseBackend(TaylorHoodBackend):
         from rigidfluid.taylor_hood.stale_factors import StaleFactors
 
         super().__init__(options, problem)
-        self._solver, self._inviscid_solver = StaleFactors(), StaleFactors()
+        self._solver, self._inviscid_solver = (StaleFactors(self.problem.dimension) for _ in range(2))
         self._assembly: Assembly | None = None
 
     @abstractmethod

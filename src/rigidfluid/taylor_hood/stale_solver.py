@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import ClassVar, Generic, TypeVar, final
 
 import numpy as np
@@ -21,16 +21,17 @@ class StaleSolver(ABC, Generic[Matrix]):
     The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the price
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
-    ``price`` of a preconditioner in iterations, ``when_fresh``, those that a solve then takes, and the ``most`` that
-    may be spent on one.
+    ``price`` of a preconditioner in iterations by dimension, ``when_fresh``, those that a solve then takes, and the
+    ``most`` that may be spent on one.
     """
 
-    price: ClassVar[int]
+    price: ClassVar[Mapping[int, int]]
     when_fresh: ClassVar[int]
     most: ClassVar[int]
 
-    def __init__(self, ranks: Ranks) -> None:
+    def __init__(self, ranks: Ranks, dimension: int) -> None:
         self._ranks = ranks
+        self._price = self.price[dimension]
         self._solves = 0
         self._wasted = 0
         self._is_made = False
@@ -58,7 +59,7 @@ class StaleSolver(ABC, Generic[Matrix]):
             raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
         if start <= tolerance:
             return np.zeros_like(residual), 0
-        if not self._is_made or self._wasted > self.price:
+        if not self._is_made or self._wasted > self._price:
             self._renew(matrix)
         correction, iterations, converged = self.iterate(apply, residual, tolerance)
         if not converged and self._solves > 0:
@@ -119,6 +120,10 @@ class StaleSolver(ABC, Generic[Matrix]):
     def drop(self) -> None:
         """Free its memory."""
 
+    def make_room(self) -> None:
+        """Free what `make` will not use again, before its matrix needs memory."""
+        self.drop()
+
     @abstractmethod
     def iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
@@ -142,7 +147,8 @@ class StaleSolver(ABC, Generic[Matrix]):
         return found, wasted
 
     def _renew(self, matrix: Callable[[], Matrix]) -> None:
-        self.forget()  # frees the old one before the new one needs memory
+        self._is_made = False
+        self.make_room()
         self.make(matrix())
         self._is_made = True
         self._solves = self._wasted = 0

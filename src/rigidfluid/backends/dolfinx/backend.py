@@ -38,7 +38,9 @@ class Dolfinx(TaylorHoodBackend):
             self.ranks = MpiRanks(MPI.COMM_WORLD)
         by_schur = self.options.solver == "schur" or (self.options.solver == "auto" and self.problem.dimension == 3)
         kind = StaleSchur if by_schur else StaleLU
-        self._solver, self._inviscid_solver = (kind(self.ranks, self.options.petsc) for _ in range(2))
+        self._solver, self._inviscid_solver = (
+            kind(self.ranks, self.problem.dimension, self.options.petsc) for _ in range(2)
+        )
         self._topology: Topology | None = None
 
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:

@@ -28,6 +28,8 @@ class Krylov(StaleSolver[Reduced]):
     ----------
     ranks : Ranks
         The processes that share the vectors.
+    dimension : int
+        Of space.
     settings : mapping
         PETSc options from the scene; they have the last word.
     """
@@ -37,8 +39,8 @@ class Krylov(StaleSolver[Reduced]):
     sharper: ClassVar[float] = 1.0
     """What answers to impulses have for a residual, over what is asked of those by factors."""
 
-    def __init__(self, ranks: Ranks, settings: Settings) -> None:
-        super().__init__(ranks)
+    def __init__(self, ranks: Ranks, dimension: int, settings: Settings) -> None:
+        super().__init__(ranks, dimension)
         self._settings = dict(settings)
         self._ksp: Any = None
         self._operator = _Operator()
@@ -117,9 +119,13 @@ class Krylov(StaleSolver[Reduced]):
 
 @final
 class StaleLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `StaleFactors`, to agree to round-off."""
+    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `StaleFactors`, to agree to round-off.
 
-    price: ClassVar[int] = StaleFactors.price
+    Each renewal analyses the matrix again and costs about three times their price in 2D, which makes the sum of
+    renewals and of iterations beyond fresh ones' a seventh dearer than it could be.
+    """
+
+    price: ClassVar[Mapping[int, int]] = StaleFactors.price
     when_fresh: ClassVar[int] = StaleFactors.when_fresh
     most: ClassVar[int] = StaleFactors.most
     defaults: ClassVar[Settings] = {
@@ -141,7 +147,7 @@ class StaleLU(Krylov):
 class StaleSchur(Krylov):
     """Upper block triangle [[A, Bᵀ], [0, S]]: A, with the bodies' rows, by an inner iteration, S by Cahouet–Chabard."""
 
-    price: ClassVar[int] = 8
+    price: ClassVar[Mapping[int, int]] = {2: 8, 3: 8}
     when_fresh: ClassVar[int] = 20
     most: ClassVar[int] = 200
     sharper: ClassVar[float] = 1e-2  # factors leave far less than they are asked for, this leaves a slow error
