@@ -133,6 +133,13 @@ class HalfDissipated(Changed):
         return replace(advance, dissipation=0.5 * advance.dissipation)
 
 
+class Hasty(Changed):
+    """Tells of the end alone what is dissipated."""
+
+    def found(self, advance):
+        return replace(advance, dissipation_midway=advance.dissipation)
+
+
 class Closed(Changed):
     """Sees no power at the faces."""
 
@@ -291,6 +298,15 @@ class Behind(Answering):
         return super().response(fluid, mesh, replace(step, points=mesh.points), impulses)
 
 
+class Enlarged(Answering):
+    """Sees the present mesh through a lens."""
+
+    def asked(self, fluid, step, impulses):
+        if step.points is not None:
+            return fluid, step, impulses
+        return fluid, replace(step, points=1.1 * fluid["points_previous"]), impulses
+
+
 class Calm(Answering):
     """Answers without convection."""
 
@@ -353,6 +369,7 @@ def _turned_round(twists: FloatArray, dimension: int) -> FloatArray:
         (Overstated, "test_force_balances_the_pressures", (2,)),
         (Overstated, "test_fluid_and_bodies_accelerate_as_one", (2, True)),
         (HalfDissipated, "test_flow_between_a_plane_of_symmetry_and_a_wall", (2, False)),
+        (Hasty, "test_flow_between_a_plane_of_symmetry_and_a_wall", (2, False)),
         (HalfDissipated, "test_the_power_that_drives_bodies_is_dissipated", (2, 1)),
         (Closed, "test_energy_carried_through_the_faces", (2,)),
         (Counting, "test_going_on_from_a_checkpoint_is_bit_identical", (2,)),
@@ -389,6 +406,7 @@ def _turned_round(twists: FloatArray, dimension: int) -> FloatArray:
         (Calm, "test_a_step_answers_as_was_told", (2,)),
         (Inviscid, "test_without_inertia_of_the_fluid_it_only_drags", (2,)),
         (Forceful, "test_without_inertia_of_the_fluid_it_only_drags", (2,)),
+        (Enlarged, "test_without_new_points_the_present_mesh_answers", (2,)),
         (Released, "test_driven_bodies_do_not_answer", (2,)),
         (Scribbling, "test_asking_for_answers_changes_nothing", (2,)),
         (Single, "test_one_step_from_another_state_is_another_one", (2,)),

@@ -64,12 +64,12 @@ def printed(mpirun, tmp_path):
     return run
 
 
-def assert_all_as_alone(found, tolerance):
+def assert_all_as_alone(found, tolerance, **tolerances):
     for shared, _ in found["shared"]:
         assert shared == found["shared"][0][0]
         for name, expected in found["alone"].items():
-            scale = np.abs(expected).max()
-            np.testing.assert_allclose(shared[name], expected, rtol=0, atol=tolerance * scale, err_msg=name)
+            allowed = tolerances.get(name, tolerance) * np.abs(expected).max()
+            np.testing.assert_allclose(shared[name], expected, rtol=0, atol=allowed, err_msg=name)
 
 
 def assert_keeps_no_memory(found, times):
@@ -89,8 +89,9 @@ def test_three_processes_step_as_one_does(printed, scene):
 @pytest.mark.parametrize("scene", [CHANNEL, ROOM], ids=["channel", "room"])
 @pytest.mark.parametrize("count", [1, 2])
 def test_processes_answer_to_impulses_as_one_does(printed, count, scene):
-    """To the accuracy that is asked of answers."""
-    assert_all_as_alone(printed(count, ANSWERS, scene, []), 2e-5)
+    """Each to the accuracy that is asked of it."""
+    found = printed(count, ANSWERS, scene, [])
+    assert_all_as_alone(found, 1e-8, by_mass=1e-4, by_step=1e-4, jump=1e-2)
 
 
 def test_a_step_keeps_no_memory(printed):

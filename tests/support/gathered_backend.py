@@ -40,6 +40,7 @@ class Gathered(FluidBackend):
         self.ranks = getattr(CURRENT, "ranks", None) or world()
         self._inner = ScikitFem(options, problem)
         self._meshes = {}
+        self._latest = None
 
     def extension(self, mesh, stiffness, held):
         return OnTheRoot(mesh, stiffness, held) if mesh.part else FactorisedExtension(stiffness, held)
@@ -90,14 +91,21 @@ class Gathered(FluidBackend):
         slices = rest = None
         with self.ranks.together():
             if self.ranks.is_root:
-                joined = [] if fluid is None else [{name: np.concatenate([s[name] for s in states]) for name in fluid}]
-                state, rest = work(mesh, *joined)
+                state, rest = work(mesh, *([] if fluid is None else [self._joined(fluid, states)]))
                 cut = {name: np.array_split(values, self.ranks.size) for name, values in state.items()}
                 slices = [{name: cut[name][rank] for name in cut} for rank in range(self.ranks.size)]
         return self.ranks.scattered(slices), self.ranks.shared(rest)
 
+    def _joined(self, fluid, states):
+        """The state of all: the same where the root's slice is the same, as a backend knows it by what it is."""
+        if self._latest is None or self._latest[0] is not fluid:
+            self._latest = fluid, {name: np.concatenate([state[name] for state in states]) for name in fluid}
+        return self._latest[1]
+
     def _of_the_whole(self, mesh, step):
         """The step with all points on the root, of use there alone."""
+        if step.points is None:
+            return step
         moved = self._whole(replace(mesh, points=step.points))
         return replace(step, points=moved.points) if self.ranks.is_root else step
 

@@ -9,8 +9,12 @@ from rigidfluid.core.state import State
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Step
 
-CHANGED = 0.05
-"""A body is asked again when the tightness of its contacts has changed by this part."""
+CHANGED, CHANGED_SHARED = 0.01, 0.05
+"""A body is asked again when the tightness of its contacts has changed by this part; among many that share questions,
+by the other."""
+
+_FILM = 0.1
+"""Of the radius: films thinner than that are heavy beside the body."""
 
 ALONE = 12
 """Up to so many bodies are asked one by one; more share questions with others far away."""
@@ -46,25 +50,29 @@ def updated_model(
     """
     if len(velocities) == 0:
         return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), np.zeros(0), False)
-    count, width = step.load.shape
-    d0, now = float(step.derivative[0]), _tightness(contacts, count)[velocities // width]
+    width = step.load.shape[1]
+    d0, now = float(step.derivative[0]), _tightness(system, contacts)[velocities // width]
     by_mass, by_step, before = _remembered(known, velocities, d0)
-    fresh = ~(np.abs(now - before) <= CHANGED * before)
+    shared = len(np.unique(velocities // width)) > ALONE
+    fresh = ~(np.abs(now - before) <= (CHANGED_SHARED if shared else CHANGED) * before)
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
     if fresh.any():
         for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
             _take_over(matrix, answers, fresh)
-    shared = len(np.unique(velocities // width)) > ALONE
     return reduced_model(velocities, by_mass, by_step, d0, np.where(fresh, now, before), shared)
 
 
-def _tightness(contacts: Contacts, count: int) -> FloatArray:
-    """Σ 1/gap over the contacts of each of ``count`` bodies, (n,): films are as heavy as they are thin [1/length]."""
-    total, each = np.zeros(count), 1.0 / contacts.gap
-    np.add.at(total, contacts.body_a, each)
-    on_body = contacts.body_b < count
-    np.add.at(total, contacts.body_b[on_body], each[on_body])
+def _tightness(system: System, contacts: Contacts) -> FloatArray:
+    """1 + Σ R/(10 gap) over the contacts of each body of radius R, (n,) [1].
+
+    Films are as heavy as they are thin; those thicker than a tenth of the body weigh little beside it.
+    """
+    reach = np.array([body.bounding_radius for body in system.bodies])
+    total = np.ones(len(reach))
+    for body in (contacts.body_a, contacts.body_b):
+        on_body = body < len(reach)
+        np.add.at(total, body[on_body], _FILM * reach[body[on_body]] / contacts.gap[on_body])
     return total
 
 

@@ -15,8 +15,8 @@ class ReducedModel:
 
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
-    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``tightness`` (c,): Σ 1/gap of the
-    contacts of their body when it was asked [1/length]. ``shared``: whether far bodies shared questions.
+    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``tightness`` (c,): of the contacts
+    of their body when it was asked [1]. ``shared``: whether far bodies shared questions.
     """
 
     velocities: IntArray
@@ -78,7 +78,7 @@ def reduced_model(
     d0 : float
         Weight of the newest velocity in the step's time derivative [1/time].
     tightness : (c,) array
-        Of the contacts of each velocity's body [1/length].
+        Of the contacts of each velocity's body [1].
     shared : bool
         Whether far bodies shared questions: then their errors may leave modes no answer at all, or a negative one.
 

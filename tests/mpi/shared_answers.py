@@ -1,0 +1,62 @@
+"""Under mpirun: answers to impulses by DOLFINx' backend on all processes beside those of scikit-fem's on each alone.
+
+    mpirun -n 2 python shared_answers.py SCENE MORE
+
+SCENE is a file with a scene in JSON. Prints what both answer after some steps with a new mesh among them, how fluid and
+bodies answer to impulses in a step, and how many bytes each process holds after it was asked again, so many times each
+time as MORE lists.
+"""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+from shared_steps import go_on, resident, started
+
+from rigidfluid.core.step import step_to
+from rigidfluid.core.wrenches import nothing
+
+STEPS = 3
+
+
+def answers(simulation):
+    """On the present mesh, to each component of an impulse by itself, and of a step to all of them."""
+    system, state = simulation.system, simulation.state
+    step = step_to(system, state, 1.0, simulation.scene.time.step, state.pose, nothing(state.pose), state.mesh)
+    units = np.eye(step.load.size).reshape(-1, *step.load.shape)
+    response = system.backend.response(state.fluid, state.mesh, step, units)
+    impulse = 0.01 * (1.0 + np.arange(step.load.size)).reshape(step.load.shape)
+    pushed = replace(step, load=step.load + step.derivative[0] * impulse, impulse=impulse)
+    advance = system.backend.advance(state.fluid, state.mesh, pushed)
+    jump = {**advance.fluid, "velocity": advance.fluid["jump"]}
+    radius = np.array([body.bounding_radius for body in system.bodies])[:, None]
+    near = [state.pose.position + way * radius * axis for way in (-1.2, 1.2) for axis in np.eye(system.dimension)]
+    return {
+        "by_mass": response.by_mass.tolist(),
+        "by_step": response.by_step.tolist(),
+        "twist": advance.twist.velocity.tolist(),
+        "jump": system.backend.probe(jump, state.mesh, np.concatenate(near))[0].tolist(),
+    }
+
+
+def main():
+    scene = json.loads(Path(sys.argv[1]).read_text())
+    shared, alone = (started(scene, backend=name) for name in ("dolfinx", "scikit-fem"))
+    for simulation in (shared, alone):
+        go_on(simulation, STEPS)
+    found, expected = answers(shared), answers(alone)
+    held = []
+    for times in json.loads(sys.argv[2]):
+        for _ in range(times):
+            answers(shared)
+        held.append(resident())
+    everyones = MPI.COMM_WORLD.gather((found, held))
+    if everyones is not None:
+        print(json.dumps({"alone": expected, "shared": everyones}))
+
+
+if __name__ == "__main__":
+    main()
