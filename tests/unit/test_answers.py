@@ -98,6 +98,13 @@ def test_small_changes_add_up(few):
     assert asked == [1, 2, 2]
 
 
+def test_small_changes_add_up_while_others_are_asked(few):
+    first = few.model(GAPS, None)
+    second = few.model(GAPS * [1.03, 1.5, 1.0], first)
+    few.model(GAPS * [1.06, 1.5, 1.0], second)
+    assert [asked.tolist() for asked in few.asked] == [[0, 1, 2], [1], [0]]
+
+
 def test_only_those_in_changed_places_are_asked_again(few):
     first = few.model(GAPS, None)
     few.by_mass, few.by_step = 1.2 * few.by_mass, 1.1 * few.by_step
