@@ -1,0 +1,177 @@
+"""Which bodies the backend is asked for, with one that knows all answers."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rigidfluid.core.answers import ALONE, updated_model
+from rigidfluid.core.reduced_model import ReducedModel
+from rigidfluid.core.types import Contacts, FloatArray, IntArray, Pose, Response
+
+WIDTH, D0, RADIUS = 3, 500.0, 0.1
+
+
+class Bodies:
+    """Bodies in the plane whose answers to each other fall with distance, in place of a system, and its backend."""
+
+    def __init__(self, position: FloatArray) -> None:
+        self.position, count = position, len(position)
+        apart = np.linalg.norm(position[:, None] - position[None, :], axis=2)
+        between = np.where(apart > 0.0, 0.1 * (RADIUS / np.where(apart > 0.0, apart, 1.0)) ** 2, 1.0)
+        one = np.array([[2.0, 0.1, 0.0], [0.1, 1.5, 0.05], [0.0, 0.05, 1.0]])
+        self.by_mass = np.kron(between, one)
+        self.friction = np.diag(np.linspace(50.0, 200.0, count * WIDTH))
+        self.by_step = self.step_answer(D0)
+        self.asked: list[IntArray] = []
+        self.backend = self
+        self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
+
+    def step_answer(self, d0: float) -> FloatArray:
+        return np.asarray(d0 * np.linalg.inv(d0 * np.linalg.inv(self.by_mass) + self.friction))
+
+    def response(self, fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
+        flat = impulses.reshape(len(impulses), -1)
+        self.asked.append(np.unique(np.nonzero(flat)[1] // WIDTH))
+        shape = impulses.shape
+        return Response((flat @ self.by_mass).reshape(shape), (flat @ self.by_step).reshape(shape))
+
+    def model(self, gaps: FloatArray, known: ReducedModel | None, velocities: IntArray | None = None) -> ReducedModel:
+        """The model of bodies with so wide gaps to a wall each."""
+        which = np.arange(len(gaps) * WIDTH) if velocities is None else velocities
+        return self.touching(at_walls(gaps), which, known)
+
+    def touching(
+        self, contacts: Contacts, velocities: IntArray, known: ReducedModel | None, d0: float = D0
+    ) -> ReducedModel:
+        """The model of bodies with these contacts."""
+        count = len(self.position)
+        pose = Pose(self.position, np.zeros((count, 1)))
+        system: Any = self
+        state: Any = SimpleNamespace(fluid=None, mesh=object())
+        step: Any = SimpleNamespace(derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose)
+        return updated_model(system, state, step, contacts, velocities, known)
+
+
+def at_walls(gaps: FloatArray) -> Contacts:
+    count = len(gaps)
+    normal = np.tile([0.0, 1.0], (count, 1))
+    none, flat = np.full(count, RADIUS), np.full(count, np.inf)
+    point = gaps[:, None] * normal
+    return Contacts(np.arange(count), np.full(count, count), point, 0.0 * point, normal, gaps, none, flat)
+
+
+def row(count: int, apart: float) -> FloatArray:
+    return np.stack([apart * np.arange(count), np.zeros(count)], axis=1)
+
+
+GAPS = np.array([0.01, 0.02, 0.03])
+
+
+@pytest.fixture
+def few() -> Bodies:
+    return Bodies(row(3, 0.3))
+
+
+def test_the_answers_are_the_backend_s(few):
+    model = few.model(GAPS, None)
+    np.testing.assert_allclose(model.mobility, few.by_mass, atol=1e-12)
+    np.testing.assert_allclose(model.answer(D0, np.eye(9)), few.by_step, atol=1e-12)
+    assert not model.shared
+    np.testing.assert_allclose(model.tightness, np.repeat(1.0 / GAPS, WIDTH))
+
+
+def test_nothing_is_asked_where_little_has_changed(few):
+    first = few.model(GAPS, None)
+    assert few.model(GAPS * [1.04, 0.97, 1.0], first) is first
+    assert len(few.asked) == 1
+
+
+def test_small_changes_add_up(few):
+    model, asked = few.model(GAPS, None), []
+    for factor in (1.03, 1.06, 1.09):
+        model = few.model(GAPS * [factor, 1.0, 1.0], model)
+        asked.append(len(few.asked))
+    assert asked == [1, 2, 2]
+
+
+def test_small_changes_add_up_while_others_are_asked(few):
+    first = few.model(GAPS, None)
+    second = few.model(GAPS * [1.03, 1.5, 1.0], first)
+    few.model(GAPS * [1.06, 1.5, 1.0], second)
+    assert [asked.tolist() for asked in few.asked] == [[0, 1, 2], [1], [0]]
+
+
+def test_only_those_in_changed_places_are_asked_again(few):
+    first = few.model(GAPS, None)
+    few.by_mass, few.by_step = 1.2 * few.by_mass, 1.1 * few.by_step
+    later = few.model(GAPS * [1.0, 1.1, 1.0], first)
+    np.testing.assert_array_equal(few.asked[1], [1])
+    changed = np.zeros((9, 9), dtype=bool)
+    changed[3:6], changed[:, 3:6] = True, True
+    np.testing.assert_allclose(later.mobility, np.where(changed, few.by_mass, few.by_mass / 1.2), atol=1e-12)
+    np.testing.assert_allclose(later.tightness, 1.0 / np.repeat(GAPS * [1.0, 1.1, 1.0], WIDTH))
+
+
+def test_a_contact_of_two_bodies_tightens_both(few):
+    first = few.model(GAPS, None)
+    pair = at_walls(GAPS)
+    pair.body_b[0] = 1
+    later = few.touching(pair, first.velocities, first)
+    np.testing.assert_array_equal(few.asked[1], [1])
+    assert later.tightness[3] == pytest.approx(1.0 / 0.01 + 1.0 / 0.02)
+
+
+def test_fewer_velocities_ask_nothing(few):
+    first, some = few.model(GAPS, None), np.array([0, 1, 6, 7, 8])
+    fewer = few.model(GAPS, first, some)
+    assert len(few.asked) == 1
+    np.testing.assert_array_equal(fewer.velocities, some)
+    np.testing.assert_allclose(fewer.mobility, few.by_mass[np.ix_(some, some)], atol=1e-12)
+    np.testing.assert_allclose(fewer.answer(D0, np.eye(5)), few.by_step[np.ix_(some, some)], atol=1e-12)
+
+
+def test_another_body_is_asked_alone(few):
+    first = few.model(GAPS, None, np.arange(6))
+    more = few.model(GAPS, first)
+    assert [asked.tolist() for asked in few.asked] == [[0, 1], [2]]
+    np.testing.assert_allclose(more.mobility, few.by_mass, atol=1e-12)
+
+
+def test_without_velocities_nothing_is_asked(few):
+    assert len(few.model(GAPS, None, np.arange(0)).velocities) == 0
+    assert few.asked == []
+
+
+def test_a_step_of_another_length_remembers_mass_and_friction(few):
+    first = few.model(GAPS, None)
+    few.by_step = few.step_answer(2.0 * D0)
+    later = few.touching(at_walls(GAPS * [1.0, 1.1, 1.0]), first.velocities, first, 2.0 * D0)
+    np.testing.assert_array_equal(few.asked[1], [1])
+    np.testing.assert_allclose(later.answer(2.0 * D0, np.eye(9)), few.by_step, atol=1e-12)
+
+
+def test_many_share_questions():
+    """The nearest of those pushed is the one that a body is taken to answer to; the rest is small."""
+    count = 4 * ALONE
+    many, questions = Bodies(row(count, 0.25)), []
+    answer = many.response
+
+    def counted(fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
+        questions.append(len(impulses))
+        return answer(fluid, mesh, step, impulses)
+
+    many.response = counted  # type: ignore[method-assign]
+    model = many.model(np.full(count, 0.01), None)
+    assert model.shared
+    assert questions[0] < 0.2 * count * WIDTH
+    size = np.linalg.norm(many.by_mass, ord=2)
+    assert np.linalg.norm(model.mobility - many.by_mass, ord=2) < 0.02 * size
+    assert np.linalg.norm(model.answer(D0, np.eye(count * WIDTH)) - many.by_step, ord=2) < 0.02 * size
+    own = np.arange(count * WIDTH).reshape(count, WIDTH)
+    for body in own:
+        block = np.ix_(body, body)
+        np.testing.assert_allclose(model.mobility[block], many.by_mass[block], atol=0.02)

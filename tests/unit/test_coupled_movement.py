@@ -1,0 +1,184 @@
+"""Bodies between two solutions of the fluid: mass and friction exactly, whatever the substeps."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from rigidfluid.core.coupled_movement import CoupledMovement
+from rigidfluid.core.reduced_model import ReducedModel, reduced_model
+from rigidfluid.core.types import FloatArray, IntArray, Pose, Twist, Wrench
+
+BODIES, WIDTH = 3, 3
+INSIDE = np.array([0, 1, 2, 6, 7])
+"""All of the first body's velocities, the last one's but its turning; the second is not in the model."""
+
+RNG = np.random.default_rng(6)
+START = Pose(RNG.normal(size=(BODIES, 2)), RNG.normal(size=(BODIES, 1)))
+TWIST = Twist(RNG.normal(size=(BODIES, 2)), RNG.normal(size=(BODIES, 1)))
+RATE = RNG.normal(size=(BODIES, WIDTH))
+LOAD = RNG.normal(size=len(INSIDE))
+WRENCH = Wrench(RNG.normal(size=(BODIES, 2)), RNG.normal(size=(BODIES, 1)))
+LINEAR, ANGULAR = np.array([0.5, 0.25, 2.0])[:, None, None] * np.eye(2), np.array([[[3.0]], [[4.0]], [[5.0]]])
+
+
+def positive(seed: int, count: int = len(INSIDE)) -> FloatArray:
+    root = np.random.default_rng(seed).normal(size=(count, count))
+    return root @ root.T + 0.5 * np.eye(count)
+
+
+MASS, FRICTION = positive(11), 30.0 * positive(12)
+
+
+def model_of(mass: FloatArray, friction: FloatArray, velocities: IntArray = INSIDE) -> ReducedModel:
+    by_mass, by_step = np.linalg.inv(mass), np.linalg.inv(mass + friction)
+    return reduced_model(velocities, by_mass, by_step, 1.0, np.ones(len(mass)), False)
+
+
+def movement(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledMovement:
+    return CoupledMovement(START, twist, RATE, LINEAR, ANGULAR, model_of(MASS, friction), load)
+
+
+def joined(twist: Twist) -> FloatArray:
+    return np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
+
+
+def flat_wrench() -> FloatArray:
+    return np.concatenate([WRENCH.force, WRENCH.torque], axis=1).ravel()
+
+
+def moved(bodies: CoupledMovement, time: float, substeps: int) -> CoupledMovement:
+    """By constant forces for so long, in so many kicks before and after a drift."""
+    part = time / substeps
+    for _ in range(substeps):
+        bodies.kick(WRENCH, 0.5 * part)
+        bodies.drift(part)
+        bodies.kick(WRENCH, 0.5 * part)
+    return bodies
+
+
+@pytest.mark.parametrize("substeps", [1, 7])
+def test_without_friction_newton(substeps):
+    bodies, time = moved(movement(np.zeros_like(MASS)), 0.3, substeps), 0.3
+    gained = np.linalg.solve(MASS, LOAD + flat_wrench()[INSIDE]) * time
+    start, end = joined(TWIST).ravel()[INSIDE], joined(bodies.twist).ravel()[INSIDE]
+    np.testing.assert_allclose(end, start + gained, rtol=1e-9)
+    shift = time * (start + 0.5 * gained)
+    np.testing.assert_allclose(bodies.pose.position[0], START.position[0] + shift[:2], rtol=1e-9)
+    np.testing.assert_allclose(bodies.pose.position[2], START.position[2] + shift[3:], rtol=1e-9)
+    np.testing.assert_allclose(bodies.pose.orientation[0], START.orientation[0] + shift[2], rtol=1e-9)
+
+
+@pytest.mark.parametrize("time", [1e-3, 0.05, 10.0])
+@pytest.mark.parametrize("substeps", [1, 13])
+def test_with_friction_as_the_exponential_says(time, substeps):
+    """U(t) = U₀ + (1 - e^(-M⁻¹R t)) R⁻¹ (Φ + F)."""
+    end = joined(moved(movement(), time, substeps).twist).ravel()[INSIDE]
+    limit = np.linalg.solve(FRICTION, LOAD + flat_wrench()[INSIDE])
+    gained = limit - expm(-time * np.linalg.solve(MASS, FRICTION)) @ limit
+    np.testing.assert_allclose(end - joined(TWIST).ravel()[INSIDE], gained, rtol=1e-8, atol=1e-11)
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0, 1e12])
+def test_rest_is_kept_to_rounding(factor):
+    load = -flat_wrench()[INSIDE]
+    bodies = moved(movement(factor * FRICTION, load, Twist(np.zeros((3, 2)), np.zeros((3, 1)))), 1.0, 50)
+    np.testing.assert_allclose(joined(bodies.twist).ravel()[INSIDE], 0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("time", [1e-4, 0.02, 5.0])
+def test_the_mean_answer_is_what_a_kick_adds(time):
+    with_wrench, without = movement(), movement()
+    with_wrench.kick(WRENCH, time)
+    without.kick(Wrench(np.zeros((BODIES, 2)), np.zeros((BODIES, 1))), time)
+    added = (joined(with_wrench.twist) - joined(without.twist)).ravel()
+    np.testing.assert_allclose(movement().inverse_masses(time) @ flat_wrench() * time, added, rtol=1e-9, atol=1e-12)
+
+
+def test_outside_the_model_bodies_have_their_own_mass_and_rate():
+    end = joined(moved(movement(), 0.2, 5).twist)
+    own = np.concatenate([LINEAR[1] @ WRENCH.force[1], ANGULAR[1] @ WRENCH.torque[1]])
+    np.testing.assert_allclose(end[1], joined(TWIST)[1] + 0.2 * (RATE[1] + own), rtol=1e-12)
+    turning = joined(TWIST)[2, 2] + 0.2 * (RATE[2, 2] + 5.0 * WRENCH.torque[2, 0])
+    assert end[2, 2] == pytest.approx(turning, rel=1e-12)
+
+
+def test_the_mobility_of_one_body_is_its_block():
+    bodies, inverse = movement(), np.linalg.inv(MASS)
+    np.testing.assert_allclose(bodies.mobility[0], inverse[:2, :2], rtol=1e-10)
+    np.testing.assert_allclose(bodies.mobility[1], LINEAR[1])
+    np.testing.assert_allclose(bodies.mobility[2], inverse[3:, 3:], rtol=1e-10)
+    np.testing.assert_allclose(bodies.inverse_inertia[:, 0, 0], [inverse[2, 2], 4.0, 5.0], rtol=1e-10)
+    along = np.array([[0.6, 0.8]])
+    expected = along[0] @ inverse[:2, :2] @ along[0]
+    assert bodies.inverse_mass(np.array([0]), along)[0] == pytest.approx(expected, rel=1e-10)
+
+
+def test_forces_do_not_move_driven_bodies():
+    none = np.zeros_like(RATE)
+    model = model_of(MASS[3:, 3:], FRICTION[3:, 3:], INSIDE[3:])
+    linear, angular = LINEAR.copy(), ANGULAR.copy()
+    linear[0], angular[0] = 0.0, 0.0
+    bodies = CoupledMovement(START, TWIST, none, linear, angular, model, LOAD[3:])
+    moved(bodies, 0.4, 6)
+    np.testing.assert_array_equal(joined(bodies.twist)[0], joined(TWIST)[0])
+    np.testing.assert_allclose(bodies.pose.position[0], START.position[0] + 0.4 * TWIST.velocity[0], rtol=1e-12)
+    assert bodies.inverse_masses(0.1)[:3].count_nonzero() == 0
+    assert np.any(joined(bodies.twist)[1] != joined(TWIST)[1])
+
+
+def test_a_copy_goes_its_own_way():
+    bodies = moved(movement(), 0.1, 3)
+    before = bodies.friction_loss, joined(bodies.twist), bodies.pose.position
+    moved(bodies.copied(), 0.2, 4)
+    assert bodies.friction_loss == before[0]
+    np.testing.assert_array_equal(joined(bodies.twist), before[1])
+    np.testing.assert_array_equal(bodies.pose.position, before[2])
+
+
+ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), np.ones(1), False)
+"""Of mass 4, friction 32."""
+
+
+def one_body() -> CoupledMovement:
+    still = Twist(np.zeros((1, 2)), np.zeros((1, 1)))
+    pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
+    zero = np.zeros((1, 3))
+    return CoupledMovement(pose, still, zero, np.zeros((1, 2, 2)), np.zeros((1, 1, 1)), ONE, np.zeros(1))
+
+
+def pushed(bodies: CoupledMovement, forces: FloatArray, part: float) -> FloatArray:
+    """Kick and drift by each of the forces along x; the velocities while drifting."""
+    speeds = []
+    for force in forces:
+        wrench = Wrench(np.array([[force, 0.0]]), np.zeros((1, 1)))
+        bodies.kick(wrench, 0.5 * part)
+        bodies.drift(part)
+        speeds.append(bodies.twist.velocity[0, 0])
+        bodies.kick(wrench, 0.5 * part)
+    return np.array(speeds)
+
+
+def test_what_is_linear_in_time_the_solutions_see():
+    """F = 4a + 32a t makes U = a t, whose friction 32 ∫ U² dt the fluid's own solutions see."""
+    count, total, speedup = 1000, 0.5, 3.0
+    middle = (np.arange(count) + 0.5) * total / count
+    bodies = one_body()
+    speeds = pushed(bodies, speedup * (4.0 + 32.0 * middle), total / count)
+    np.testing.assert_allclose(speeds, speedup * middle, rtol=1e-4, atol=1e-5)
+    all_friction = 32.0 * (speedup * total) ** 2 * total / 3.0
+    assert abs(bodies.friction_loss) < 1e-6 * all_friction
+
+
+def test_friction_of_a_jump_beyond_a_linear_velocity():
+    """A blow in the middle: U is zero, then decays; against 32 ∫ (U - U_end t/T)² dt."""
+    count, total, blow = 2000, 0.5, 6.0
+    part = total / count
+    forces = np.zeros(count)
+    forces[count // 2] = blow / part
+    bodies = one_body()
+    pushed(bodies, forces, part)
+    times = (np.arange(200_000) + 0.5) * total / 200_000
+    speed = np.where(times > 0.5 * total, blow / 4.0 * np.exp(-8.0 * (times - 0.5 * total)), 0.0)
+    end = blow / 4.0 * np.exp(-4.0 * total)
+    expected = 32.0 * np.mean((speed - end * times / total) ** 2) * total
+    assert bodies.friction_loss == pytest.approx(expected, rel=2e-3)
