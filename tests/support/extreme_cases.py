@@ -148,6 +148,10 @@ def _created(system: System, history: History) -> float:
     return max(-float(_after_the_first(history.energy["residual"]).min()), 0.0) / put_in(history)
 
 
+def _created_at_first(system: System, history: History) -> float:
+    return max(-float(history.energy["residual"][1]), 0.0) / put_in(history)
+
+
 def _lost(system: System, history: History) -> float:
     unexplained = history.energy["residual"] - history.energy["path_friction"]
     return max(float(_after_the_first(unexplained).max()), 0.0) / put_in(history)
@@ -197,6 +201,7 @@ FIGURES: dict[str, Callable[[System, History], float]] = {
     ),
     "energy unaccounted for": _unaccounted,
     "energy created": _created,
+    "energy created by the first step": _created_at_first,
     "energy lost": _lost,
     "kinetic energy left": _still_moving,
     "momentum off": _momentum,
@@ -209,6 +214,8 @@ APART = Demand("smallest gap over the radius", above=0.0)
 SMOOTH = Demand("rejected steps", at_most=0.0)
 TOUCHED = Demand("steps with contact", above=0.0)
 STEADY = (APART, SMOOTH, TOUCHED)
+FOLLOWING = (APART, TOUCHED, Demand("rejected steps", at_most=10.0))
+"""Where films of fluid open: steps follow them, and some are taken again."""
 
 
 def keeps(energy: float) -> tuple[Demand, ...]:
@@ -223,11 +230,12 @@ LOST = {0.5e-3: 0.04, 1e-3: 0.07, 2e-3: 0.15}
 MOST_LOST = 0.3
 
 
-def balanced(step: float) -> tuple[Demand, Demand]:
-    """In a fluid: energy that comes from nowhere, and that vanishes, with this step."""
+def balanced(step: float) -> tuple[Demand, ...]:
+    """In a fluid: energy that comes from nowhere, also in the first step, and that vanishes, with this step."""
     created = CREATED if step <= 1e-3 else MOST_CREATED
     lost = next((share for longest, share in LOST.items() if step <= longest), MOST_LOST)
-    return Demand("energy created", at_most=created), Demand("energy lost", at_most=lost)
+    at_first = Demand("energy created by the first step", at_most=MOST_CREATED)
+    return Demand("energy created", at_most=created), at_first, Demand("energy lost", at_most=lost)
 
 
 SOFTEST = {"centre": 1e-6, "normal": 1e-5, "barrier": 1e-2}
@@ -377,32 +385,36 @@ def _wet_blows() -> Iterator[Case]:
 def _wet_films() -> Iterator[Case]:
     """Gaps much smaller than the range, between a disk let go and the floor."""
     sub, imp = partial(_by, "substeps"), partial(_by, "implicit")
-    film = partial(_in_fluid, demands=(APART, TOUCHED))
+    film = partial(_in_fluid, demands=FOLLOWING)
     known = dict.fromkeys(sub(1) + imp(1), "energy lost")
     scene = partial(let_go, gap=1e-3, refinements=5)
     yield from film("gap of 1e-3 radius", scene, (4, 2, 1), (4, 2, 1), sub(4, 1), known)
     yield from film("gap of 1e-5 radius", partial(let_go, gap=1e-5, refinements=12), (4, 2, 1), (4,))
-    both = sub(4) + imp(4)
-    yield from film("gap of 1e-6 radius", partial(let_go, gap=1e-6, refinements=14), (4,), (4,), both, dict.fromkeys(both, ENDS))
+    both, scene = sub(4) + imp(4), partial(let_go, gap=1e-6, refinements=14)
+    yield from film("gap of 1e-6 radius", scene, (4,), (4,), both, dict.fromkeys(both, ENDS))
     yield from _in_fluid("range wider than the free gaps", squeezed, (4, 2, 1), (4, 2, 1), sub(4, 2))
 
 
 def _wet_crowds() -> Iterator[Case]:
-    steps = (4, 2, 1)
+    steps, crowd = (4, 2, 1), partial(_in_fluid, demands=FOLLOWING)
     yield from _in_fluid("cradle of three", contacts.cradle, steps, (2,), _by("substeps", 4))
     scene = partial(contacts.cradle, density=0.2)
-    yield from _in_fluid("cradle of three, density .2", scene, steps, (2,), _by("substeps", 4))
-    yield from _in_fluid("stack of two", contacts.stacked, steps, (2,), _by("substeps", 4))
-    yield from _in_fluid("stack of three", contacts.three_stacked, steps, (2,))
-    yield from _in_fluid("stack of ten", contacts.column, steps, (2,))
-    yield from _in_fluid("heap of seven", contacts.heap, steps, (2,))
-    yield from _in_fluid("heap of six radii", contacts.unlike_heap, steps, (2,))
+    known = {_by("substeps", 1)[0]: "energy created"}
+    yield from _in_fluid("cradle of three, density .2", scene, steps, (2,), _by("substeps", 4), known)
+    yield from crowd("stack of two", contacts.stacked, steps, (2,), _by("substeps", 4))
+    yield from crowd("stack of three", contacts.three_stacked, steps, (2,), fails=known)
+    yield from crowd("stack of ten", contacts.column, steps, (2,))
+    yield from crowd("heap of seven", contacts.heap, steps, (2,))
+    yield from crowd("heap of six radii", contacts.unlike_heap, steps, (2,))
 
 
 def _wet_shapes() -> Iterator[Case]:
     steps = (4, 2, 1)
-    yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 2))
-    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4))
+    long = _by("substeps", 4, 2) + _by("implicit", 4, 2)
+    known = dict.fromkeys(long, "energy created by the first step")
+    yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 1), known)
+    known = dict.fromkeys(_by("substeps", 1) + _by("implicit", 1), "energy created")
+    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4), known)
     yield from _in_fluid("ellipse that spins, into a corner", contacts.in_a_corner, steps, steps, _by("substeps", 4))
 
 
