@@ -3,17 +3,50 @@
 from __future__ import annotations
 
 import pytest
-from extreme_cases import CASES, Case, findings
+from extreme_cases import CASES, ENDS, Case, Finding, findings, surprises
+from extreme_scenes import three_disks
+from fluid_contacts import created_and_lost
+
+from rigidfluid.core.history import History
+from rigidfluid.core.records import LEDGER_COLUMNS
 
 LIGHT_AND_HEAVY = [
     pytest.param(case, id=case.name, marks=[pytest.mark.validation] if case.heavy else []) for case in CASES
 ]
+GAINED = "energy created"
+HOLDS, FAILS = (Finding(GAINED, "energy created at most 0.01", "0.02", passed) for passed in (True, False))
 
 
 @pytest.mark.parametrize("case", LIGHT_AND_HEAVY)
-def test_what_is_demanded_holds(case: Case) -> None:
-    assert [finding for finding in findings(case) if not finding.passed] == []
+def test_what_is_demanded_holds_but_where_it_is_known_to_fail(case: Case) -> None:
+    assert surprises(case, findings(case)) == []
 
 
 def test_cases_have_names_of_their_own() -> None:
     assert len({case.name for case in CASES}) == len(CASES)
+
+
+def test_a_mark_of_failure_is_for_what_fails() -> None:
+    marked, unmarked = _case(GAINED), _case()
+    assert surprises(marked, [FAILS]) == surprises(unmarked, [HOLDS]) == []
+    assert surprises(marked, [HOLDS]) == ["energy created: holds now, take it out of `fails`"]
+    assert surprises(unmarked, [FAILS]) == ["energy created at most 0.01; found: 0.02"]
+
+
+def test_a_case_that_stops_does_not_fail_in_another_way() -> None:
+    stopped = Finding(ENDS, ENDS, "stops: too much", False)
+    assert surprises(_case(GAINED), [stopped]) != []
+    assert surprises(_case(ENDS), [stopped]) == []
+
+
+def test_what_viscosity_took_hides_nothing() -> None:
+    history = History(2)
+    for step, created in enumerate((0.0, 0.0, 0.2)):
+        ledger = {"kinetic": 1.0 + created - 0.5 * step, "dissipation": 0.5 * step, "residual": -created}
+        history.extend({"energy": [(float(step), step, *(ledger.get(name, 0.0) for name in LEDGER_COLUMNS))]})
+    created, lost, _ = created_and_lost(history)
+    assert (created, lost) == pytest.approx((0.2, 0.0))
+
+
+def _case(*fails: str) -> Case:
+    return Case("three disks", lambda: three_disks({}), (), fails=fails)

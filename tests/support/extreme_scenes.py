@@ -118,8 +118,8 @@ def wet(
     )
 
 
-def wet_hit(contact: Table, density: float = 3.0, dimension: int = 2, **keys: Any) -> Scene:
+def wet_hit(contact: Table, density: float = 3.0, dimension: int = 2, step: float = 0.004, **keys: Any) -> Scene:
     """A ball thrown onto the floor of a box of fluid."""
     position, velocity = [0.5] * (dimension - 1) + [0.22], [0.0] * (dimension - 1) + [-5.0]
     body = ball(position, velocity, density=density, radius=0.125) | keys
-    return wet(contact, body, end=0.06, step=0.004)
+    return wet(contact, body, end=0.06, step=step)
