@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from rigidfluid.core.coupled_movement import CoupledMovement
-from rigidfluid.core.reduced_model import ReducedModel, reduced_model
+from rigidfluid.core.reduced_model import Coupling, ReducedModel, reduced_model
 from rigidfluid.core.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 BODIES, WIDTH = 3, 3
@@ -34,8 +34,13 @@ def model_of(mass: FloatArray, friction: FloatArray, velocities: IntArray = INSI
     return reduced_model(velocities, by_mass, by_step, 1.0, np.ones(len(mass)), False)
 
 
+def coupling_of(model: ReducedModel, load: FloatArray, before: FloatArray | None = None) -> Coupling:
+    unknown = np.full(len(load), np.nan)
+    return Coupling(model, load, unknown if before is None else before, np.zeros(len(load)))
+
+
 def movement(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledMovement:
-    return CoupledMovement(START, twist, RATE, LINEAR, ANGULAR, model_of(MASS, friction), load)
+    return CoupledMovement(START, twist, RATE, LINEAR, ANGULAR, coupling_of(model_of(MASS, friction), load))
 
 
 def joined(twist: Twist) -> FloatArray:
@@ -118,7 +123,7 @@ def test_forces_do_not_move_driven_bodies():
     model = model_of(MASS[3:, 3:], FRICTION[3:, 3:], INSIDE[3:])
     linear, angular = LINEAR.copy(), ANGULAR.copy()
     linear[0], angular[0] = 0.0, 0.0
-    bodies = CoupledMovement(START, TWIST, none, linear, angular, model, LOAD[3:])
+    bodies = CoupledMovement(START, TWIST, none, linear, angular, coupling_of(model, LOAD[3:]))
     moved(bodies, 0.4, 6)
     np.testing.assert_array_equal(joined(bodies.twist)[0], joined(TWIST)[0])
     np.testing.assert_allclose(bodies.pose.position[0], START.position[0] + 0.4 * TWIST.velocity[0], rtol=1e-12)
@@ -143,7 +148,7 @@ def one_body() -> CoupledMovement:
     still = Twist(np.zeros((1, 2)), np.zeros((1, 1)))
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
     zero = np.zeros((1, 3))
-    return CoupledMovement(pose, still, zero, np.zeros((1, 2, 2)), np.zeros((1, 1, 1)), ONE, np.zeros(1))
+    return CoupledMovement(pose, still, zero, np.zeros((1, 2, 2)), np.zeros((1, 1, 1)), coupling_of(ONE, np.zeros(1)))
 
 
 def pushed(bodies: CoupledMovement, forces: FloatArray, part: float) -> FloatArray:
@@ -182,3 +187,15 @@ def test_friction_of_a_jump_beyond_a_linear_velocity():
     end = blow / 4.0 * np.exp(-4.0 * total)
     expected = 32.0 * np.mean((speed - end * times / total) ** 2) * total
     assert bodies.friction_loss == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_known_stays():
+    before = np.where(np.arange(len(LOAD)) == 1, np.nan, -LOAD)
+    coupling = coupling_of(model_of(MASS, 0.0 * FRICTION), LOAD, before)
+    bodies = CoupledMovement(START, TWIST, RATE, LINEAR, ANGULAR, coupling)
+    bodies.vary_load(0.2)
+    for _ in range(4):
+        bodies.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.05)
+    gained = (joined(bodies.twist) - joined(TWIST)).ravel()[INSIDE]
+    mean = np.where(np.isnan(before), LOAD, 0.5 * (LOAD + before))
+    np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)

@@ -8,7 +8,7 @@ from rigidfluid.core.coupled_movement import CoupledMovement
 from rigidfluid.core.delassus import delassus
 from rigidfluid.core.interfaces import PartOptions
 from rigidfluid.core.movement import FreeMovement
-from rigidfluid.core.reduced_model import reduced_model
+from rigidfluid.core.reduced_model import Coupling, reduced_model
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.core.wrenches import contact_wrench, flat
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
@@ -66,7 +66,9 @@ def test_bodies_in_a_fluid_answer_to_each_other(dimension):
     )
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     blocks = np.zeros((count, dimension, dimension)), np.zeros((count, k, k))
-    movement = CoupledMovement(pose, twist, np.zeros((count, dimension + k)), *blocks, model, np.zeros(size))
+    movement = CoupledMovement(
+        pose, twist, np.zeros((count, dimension + k)), *blocks, Coupling(model, *np.zeros((3, size)))
+    )
     rates, time = gap_rates(contacts, pose), 0.02
     found = delassus(contacts, movement, time).toarray()
     np.testing.assert_allclose(found, found.T, atol=1e-10)

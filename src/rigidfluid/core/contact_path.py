@@ -162,9 +162,7 @@ def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: flo
     return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
 
 
-def _cross_coupled(
-    system: System, law: ForceLaw, movement: CoupledMovement, near: Contacts, size: float
-) -> BodiesPath:
+def _cross_coupled(system: System, law: ForceLaw, movement: CoupledMovement, near: Contacts, size: float) -> BodiesPath:
     """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
 
     In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse

@@ -137,9 +137,7 @@ def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
 def _power(system: System, advance: Advance) -> Power:
     """What enters by the faces, what drives bodies through the fluid, and what the fluid dissipates."""
     driven = power(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
-    return Power(
-        advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway
-    )
+    return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 
 
 def _work(system: System, state: State, path: BodiesPath) -> Work:

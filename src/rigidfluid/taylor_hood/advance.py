@@ -32,9 +32,7 @@ def advance(
     on_faces = pressure_load(surfaces, matrix.node_points, step.time)
     system = _system(discretisation, matrix, on_faces, fluid, step)
     if attempt is not None:
-        system = replace(
-            system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=attempt["twist"]
-        )
+        system = replace(system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=attempt["twist"])
     solution = discretisation.solve(system, tolerance)
     velocity, twist = solution.velocity, solution.twist
     state = {
