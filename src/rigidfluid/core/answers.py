@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.reduced_model import ReducedModel, reduced_model
+from rigidfluid.core.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.state import State
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Step
 
 CHANGED, CHANGED_SHARED = 0.01, 0.05
-"""A body is asked again when the tightness of its contacts has changed by this part; among many that share questions,
-by the other."""
+"""A body is asked again when the tightness of its contacts, or its way in a step over its radius, has changed by so
+much; among many that share questions, by the other."""
 
 _FILM = 0.1
 """Of the radius: films thinner than that are heavy beside the body."""
@@ -24,9 +24,15 @@ FAR = 3.0
 
 
 def updated_model(
-    system: System, state: State, step: Step, contacts: Contacts, velocities: IntArray, known: ReducedModel | None
+    system: System,
+    state: State,
+    step: Step,
+    contacts: Contacts,
+    twist: FloatArray,
+    velocities: IntArray,
+    known: ReducedModel | None,
 ) -> ReducedModel:
-    """The model of some velocities; the backend is asked for bodies alone whose contacts have changed.
+    """The model of some velocities; the backend is asked for bodies alone whose contacts or motion have changed.
 
     Parameters
     ----------
@@ -38,6 +44,8 @@ def updated_model(
         Whose matrix and mesh the answers are of.
     contacts : Contacts
         Where the bodies are in the step.
+    twist : (n, d+k) array
+        How they move there: friction depends on the flow that it meets.
     velocities : (c,) array
         Numbers among the components (n, d+k) of all twists.
     known : ReducedModel or None
@@ -49,18 +57,32 @@ def updated_model(
         Of the velocities.
     """
     if len(velocities) == 0:
-        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), np.zeros(0), False)
-    width = step.load.shape[1]
-    d0, now = float(step.derivative[0]), _tightness(system, contacts)[velocities // width]
+        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Asked(np.zeros(0), np.zeros(0)), False)
+    bodies, d0 = velocities // step.load.shape[1], float(step.derivative[0])
+    now = Asked(_tightness(system, contacts)[bodies], twist.ravel()[velocities])
     by_mass, by_step, before = _remembered(known, velocities, d0)
-    shared = len(np.unique(velocities // width)) > ALONE
-    fresh = ~(np.abs(now - before) <= (CHANGED_SHARED if shared else CHANGED) * before)
+    shared = len(np.unique(bodies)) > ALONE
+    changed = _changes(system, now, before, bodies, velocities % step.load.shape[1], d0)
+    fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
     if fresh.any():
         for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
             _take_over(matrix, answers, fresh)
-    return reduced_model(velocities, by_mass, by_step, d0, np.where(fresh, now, before), shared)
+    asked = Asked(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
+    return reduced_model(velocities, by_mass, by_step, d0, asked, shared)
+
+
+def _changes(
+    system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
+) -> FloatArray:
+    """Of each velocity's body the change of tightness, or of its way in a step over its radius, (c,) [1]."""
+    reach = np.array([body.bounding_radius for body in system.bodies])
+    arm = np.where(components < system.dimension, 1.0, reach[bodies])
+    way = np.zeros(len(reach))
+    turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
+    np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))
+    return np.maximum(np.abs(now.tightness - before.tightness) / before.tightness, way[bodies])
 
 
 def _tightness(system: System, contacts: Contacts) -> FloatArray:
@@ -76,17 +98,16 @@ def _tightness(system: System, contacts: Contacts) -> FloatArray:
     return total
 
 
-def _remembered(
-    known: ReducedModel | None, velocities: IntArray, d0: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """W_i and W_s (c, c) as far as they are known, zero elsewhere, and the tightness then (c,), elsewhere NaN."""
+def _remembered(known: ReducedModel | None, velocities: IntArray, d0: float) -> tuple[FloatArray, FloatArray, Asked]:
+    """W_i and W_s (c, c) as far as they are known, zero elsewhere, and how it was then, elsewhere NaN."""
     by_mass, by_step = np.zeros((2, len(velocities), len(velocities)))
-    before = np.full(len(velocities), np.nan)
+    before = Asked(*np.full((2, len(velocities)), np.nan))
     if known is not None:
         _, here, there = np.intersect1d(velocities, known.velocities, return_indices=True)
         by_mass[np.ix_(here, here)] = known.mobility[np.ix_(there, there)]
         by_step[np.ix_(here, here)] = known.answer(d0, np.eye(len(known.velocities)))[np.ix_(there, there)]
-        before[here] = known.tightness[there]
+        for old, then in zip(before.arrays, known.asked.arrays, strict=True):
+            old[here] = then[there]
     return by_mass, by_step, before
 
 

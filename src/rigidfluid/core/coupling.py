@@ -46,7 +46,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     velocities = _velocities(system, near)
     step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
     known = None if state.coupling is None else state.coupling.model
-    model = updated_model(system, state, step, state.contacts, velocities, known)
+    model = updated_model(system, state, step, state.contacts, _joined(state.twist), velocities, known)
     before = _load_before(state, model)
     return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
 
@@ -72,7 +72,8 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
     """
     assert path.coupling is not None
     used = path.coupling
-    model = updated_model(system, state, step, candidate.contacts, used.model.velocities, used.model)
+    twist, velocities = _joined(candidate.twist), used.model.velocities
+    model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
     past = state.past_twist or state.twist
     twists = tuple(_of(model, _joined(twist)) for twist in (candidate.twist, state.twist, past))
     before = flat(state.contact_wrench) * (state.past_step or 0.0)
@@ -80,6 +81,19 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
     missed = _of(model, _joined(path.twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
+
+
+def unforeseen(system: System, state: State, candidate: State) -> bool:
+    """Whether a contact is in range at the end of a step that was out of the detector's sight at its start.
+
+    A detector that needs no mesh is asked on the way, and misses none.
+    """
+    if system.law is None or not system.detector.needs_mesh:
+        return False
+    found, count = candidate.contacts, len(system.surfaces)
+    seen = state.contacts.body_a * count + state.contacts.body_b
+    new = np.isin(found.body_a * count + found.body_b, seen, invert=True)
+    return bool(np.any(new & (found.gap < system.law.range)))
 
 
 def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:

@@ -10,19 +10,33 @@ from rigidfluid.core.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
+class Asked:
+    """When the bodies of some velocities were asked for their answers: ``tightness`` (c,) of their contacts [1], and
+    the ``velocity`` (c,) itself."""
+
+    tightness: FloatArray
+    velocity: FloatArray
+
+    @property
+    def arrays(self) -> tuple[FloatArray, FloatArray]:
+        """Both."""
+        return self.tightness, self.velocity
+
+
+@dataclass(frozen=True, slots=True)
 class ReducedModel:
     """M dU/dt + R (U - Uⁿ) = Φ + F of some velocities U among those of all bodies.
 
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
-    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``tightness`` (c,): of the contacts
-    of their body when it was asked [1]. ``shared``: whether far bodies shared questions.
+    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``asked``: how it was when their
+    bodies were asked. ``shared``: whether far bodies shared questions.
     """
 
     velocities: IntArray
     modes: FloatArray
     decay: FloatArray
-    tightness: FloatArray
+    asked: Asked
     shared: bool
 
     @property
@@ -62,7 +76,7 @@ class Coupling:
 
 
 def reduced_model(
-    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, tightness: FloatArray, shared: bool
+    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, asked: Asked, shared: bool
 ) -> ReducedModel:
     """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
 
@@ -77,8 +91,8 @@ def reduced_model(
         W_i and W_s, twists by unit impulses [1/mass].
     d0 : float
         Weight of the newest velocity in the step's time derivative [1/time].
-    tightness : (c,) array
-        Of the contacts of each velocity's body [1].
+    asked : Asked
+        How it was when the bodies were asked.
     shared : bool
         Whether far bodies shared questions: then their errors may leave modes no answer at all, or a negative one.
 
@@ -92,7 +106,7 @@ def reduced_model(
     share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
     floor = _LEAST_SHARE * float(np.min(by_step.diagonal() / by_mass.diagonal())) if shared else _LEAST
     decay = d0 * np.maximum(1.0 / np.maximum(share, floor) - 1.0, 0.0)
-    return ReducedModel(velocities, mass_modes @ turn, decay, tightness, shared)
+    return ReducedModel(velocities, mass_modes @ turn, decay, asked, shared)
 
 
 def _root(matrix: FloatArray, shared: bool) -> FloatArray:

@@ -14,7 +14,7 @@ import numpy as np
 from rigidfluid.core.checkpoint import Checkpoint
 from rigidfluid.core.clock import Clock
 from rigidfluid.core.contact_path import BodiesPath, first_step_again, follow
-from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling
+from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling, unforeseen
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.history import History
 from rigidfluid.core.interfaces import FluidBackend
@@ -162,6 +162,8 @@ class Simulation:
             self.state = state
         for number in range(MOST_ATTEMPTS):
             candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
+            if level < self.clock.levels and unforeseen(self.system, self.state, candidate):
+                raise _too_fast()
             if path.coupling is None:
                 if number > 0 or self.state.past is not None or self.state.mesh is None:
                     return candidate
@@ -267,7 +269,10 @@ class Simulation:
 
 
 def _too_fast() -> StepRejected:
-    found = f"a gap that closes to less than {CLOSEST_APPROACH} of it or a film that opens {WIDEST_OPENING}-fold"
+    found = (
+        f"a gap that closes to less than {CLOSEST_APPROACH} of it, a film that opens more than {WIDEST_OPENING}-fold"
+    )
+    found += " or a contact that was out of sight"
     return StepRejected("the step", found, "slower changes", "Shorten time.step.")
 
 
