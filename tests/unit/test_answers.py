@@ -29,6 +29,8 @@ class Bodies:
         self.asked: list[IntArray] = []
         self.backend = self
         self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
+        self.dimension = 2
+        self.twist = np.zeros((count, WIDTH))
 
     def step_answer(self, d0: float) -> FloatArray:
         return np.asarray(d0 * np.linalg.inv(d0 * np.linalg.inv(self.by_mass) + self.friction))
@@ -53,7 +55,7 @@ class Bodies:
         system: Any = self
         state: Any = SimpleNamespace(fluid=None, mesh=object())
         step: Any = SimpleNamespace(derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose)
-        return updated_model(system, state, step, contacts, velocities, known)
+        return updated_model(system, state, step, contacts, self.twist, velocities, known)
 
 
 def at_walls(gaps: FloatArray) -> Contacts:
@@ -86,7 +88,7 @@ def test_the_answers_are_the_backend_s(few):
     np.testing.assert_allclose(model.mobility, few.by_mass, atol=1e-12)
     np.testing.assert_allclose(model.answer(D0, np.eye(9)), few.by_step, atol=1e-12)
     assert not model.shared
-    np.testing.assert_allclose(model.tightness, np.repeat(tightness(GAPS), WIDTH))
+    np.testing.assert_allclose(model.asked.tightness, np.repeat(tightness(GAPS), WIDTH))
 
 
 def test_nothing_is_asked_where_little_has_changed(few):
@@ -118,7 +120,15 @@ def test_only_those_in_changed_places_are_asked_again(few):
     changed = np.zeros((9, 9), dtype=bool)
     changed[3:6], changed[:, 3:6] = True, True
     np.testing.assert_allclose(later.mobility, np.where(changed, few.by_mass, few.by_mass / 1.2), atol=1e-12)
-    np.testing.assert_allclose(later.tightness, np.repeat(tightness(GAPS * [1.0, 1.1, 1.0]), WIDTH))
+    np.testing.assert_allclose(later.asked.tightness, np.repeat(tightness(GAPS * [1.0, 1.1, 1.0]), WIDTH))
+
+
+def test_bodies_that_move_otherwise_are_asked_again(few):
+    first = few.model(GAPS, None)
+    few.twist = np.zeros((3, WIDTH))
+    few.twist[1, 0], few.twist[2, 2] = 0.005 * RADIUS * D0, 0.02 * D0
+    few.model(GAPS, first)
+    assert [asked.tolist() for asked in few.asked] == [[0, 1, 2], [2]]
 
 
 def test_a_contact_of_two_bodies_tightens_both(few):
@@ -127,7 +137,7 @@ def test_a_contact_of_two_bodies_tightens_both(few):
     pair.body_b[0] = 1
     later = few.touching(pair, first.velocities, first)
     np.testing.assert_array_equal(few.asked[1], [1])
-    assert later.tightness[3] == pytest.approx(1.0 + 0.1 * RADIUS * (1.0 / 0.01 + 1.0 / 0.02))
+    assert later.asked.tightness[3] == pytest.approx(1.0 + 0.1 * RADIUS * (1.0 / 0.01 + 1.0 / 0.02))
 
 
 def test_fewer_velocities_ask_nothing(few):

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from rigidfluid.core.coupled_movement import CoupledMovement
-from rigidfluid.core.reduced_model import Coupling, ReducedModel, reduced_model
+from rigidfluid.core.reduced_model import Asked, Coupling, ReducedModel, reduced_model
 from rigidfluid.core.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 BODIES, WIDTH = 3, 3
@@ -31,7 +31,7 @@ MASS, FRICTION = positive(11), 30.0 * positive(12)
 
 def model_of(mass: FloatArray, friction: FloatArray, velocities: IntArray = INSIDE) -> ReducedModel:
     by_mass, by_step = np.linalg.inv(mass), np.linalg.inv(mass + friction)
-    return reduced_model(velocities, by_mass, by_step, 1.0, np.ones(len(mass)), False)
+    return reduced_model(velocities, by_mass, by_step, 1.0, Asked(*np.ones((2, len(mass)))), False)
 
 
 def coupling_of(model: ReducedModel, load: FloatArray, before: FloatArray | None = None) -> Coupling:
@@ -140,7 +140,7 @@ def test_a_copy_goes_its_own_way():
     np.testing.assert_array_equal(bodies.pose.position, before[2])
 
 
-ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), np.ones(1), False)
+ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), Asked(np.ones(1), np.ones(1)), False)
 """Of mass 4, friction 32."""
 
 

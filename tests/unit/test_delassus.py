@@ -8,7 +8,7 @@ from rigidfluid.core.coupled_movement import CoupledMovement
 from rigidfluid.core.delassus import delassus
 from rigidfluid.core.interfaces import PartOptions
 from rigidfluid.core.movement import FreeMovement
-from rigidfluid.core.reduced_model import Coupling, reduced_model
+from rigidfluid.core.reduced_model import Asked, Coupling, reduced_model
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.core.wrenches import contact_wrench, flat
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
@@ -62,7 +62,12 @@ def test_bodies_in_a_fluid_answer_to_each_other(dimension):
     root = np.random.default_rng(8).normal(size=(2, size, size))
     by_mass, friction = (r @ r.T + np.eye(size) for r in root)
     model = reduced_model(
-        np.arange(size), by_mass, np.linalg.inv(np.linalg.inv(by_mass) + friction), 1.0, np.ones(size), False
+        np.arange(size),
+        by_mass,
+        np.linalg.inv(np.linalg.inv(by_mass) + friction),
+        1.0,
+        Asked(*np.ones((2, size))),
+        False,
     )
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     blocks = np.zeros((count, dimension, dimension)), np.zeros((count, k, k))

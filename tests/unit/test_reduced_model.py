@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.reduced_model import ReducedModel, expected_load, load_within, reduced_model
+from rigidfluid.core.reduced_model import Asked, ReducedModel, expected_load, load_within, reduced_model
 from rigidfluid.core.types import FloatArray
 
 D0, COUNT = 750.0, 5
@@ -16,7 +16,7 @@ def positive(seed: int) -> FloatArray:
 
 
 def made(by_mass: FloatArray, by_step: FloatArray, shared: bool = False) -> ReducedModel:
-    return reduced_model(np.arange(COUNT), by_mass, by_step, D0, np.ones(COUNT), shared)
+    return reduced_model(np.arange(COUNT), by_mass, by_step, D0, Asked(*np.ones((2, COUNT))), shared)
 
 
 MASS, FRICTION = positive(1), 400.0 * positive(2)
