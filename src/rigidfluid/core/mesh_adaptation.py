@@ -22,6 +22,9 @@ from rigidfluid.errors import MeshError, StepRejected
 TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
 
+NEARLY_TANGLED = 2.0 * TANGLED
+"""A moved mesh is made anew before a cell tangles, however low a quality is asked for."""
+
 
 class Mover:
     """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
@@ -33,7 +36,8 @@ class Mover:
     sizes : Sizes or None
         Wanted cell sizes; None without a fluid, and then there is no mesh.
     quality : float
-        A moved mesh whose worst cell falls below this, and below half of what it was when made, is re-made.
+        A moved mesh whose worst cell falls below this, or is nearly tangled, and below half of what it was when made,
+        is re-made.
     """
 
     def __init__(self, system: System, sizes: Sizes | None, quality: float) -> None:
@@ -99,7 +103,7 @@ class Mover:
             return True
         points = self._map(state.reference).move(pose)
         worst = worst_quality(state.reference.mesh, points)
-        return worst < min(self._quality, 0.5 * state.reference.quality)
+        return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
 
     def _map(self, reference: Reference) -> MeshMotion:
         if self._motion is None or self._reference is not reference:
