@@ -80,19 +80,10 @@ def test_a_dropped_disk_bounces_as_high_as_at_fine_steps(step, off, lost, steppi
     assert first_rebound(history) == pytest.approx(0.0512, rel=off)
 
 
-TOO_MUCH = pytest.mark.xfail(reason="at 2 ms the impact lies so in its step that .07 to .11 are created")
-
-
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize("step", [4.0, pytest.param(2.0, marks=TOO_MUCH), 1.0])
-def test_a_dropped_disk_gains_nothing(step, stepping):
-    assert created_and_lost(dropped(step, stepping))[0] <= 0.03
-
-
-@pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize("step", [4.0, 2.0, 1.0])
-def test_a_dropped_disk_gains_no_more_than_at_worst(step, stepping):
-    assert created_and_lost(dropped(step, stepping))[0] <= 0.127
+@pytest.mark.parametrize(("step", "created"), [(4.0, 0.03), (2.0, 0.03), (1.0, 0.01)])
+def test_a_dropped_disk_gains_nothing(step, created, stepping):
+    assert created_and_lost(dropped(step, stepping))[0] <= created
 
 
 @pytest.mark.parametrize(
@@ -145,7 +136,7 @@ def test_a_disk_that_two_walls_squeeze_gains_nothing():
 def test_a_film_opens_without_gaining_energy():
     history = rigidfluid.run(scenes.film(4.0 * MILLISECOND))
     refuse_imbalance(history, 0.03)
-    assert history.bodies["y"][-1] == pytest.approx(0.2376, abs=0.012)
+    assert history.bodies["y"][-1] == pytest.approx(0.238, abs=0.016)
 
 
 # What each part is for: tests that fail when it is left out.

@@ -1,7 +1,8 @@
 """The dry backend with the time scheme: free bodies, springs, and a ball that bounces on a wall."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -59,6 +60,8 @@ def uncontrolled(step: float, previous: float | None, pose: Pose, matrix: FloatA
         load=load,
         controlled=np.zeros(len(load), dtype=bool),
         controlled_twist=np.zeros_like(load),
+        impulse=np.zeros_like(load),
+        load_scale=0.0,
     )
 
 
@@ -234,9 +237,24 @@ def test_controlled_bodies_take_the_given_twist() -> None:
         load=np.array([[9.0, 9.0, 9.0], [2.0, 4.0, 6.0]]),
         controlled=np.array([True, False]),
         controlled_twist=np.array([[7.0, 8.0, 9.0], [0.0, 0.0, 0.0]]),
+        impulse=np.zeros((2, 3)),
+        load_scale=0.0,
     )
     advance = Dry(PartOptions(), None).advance({}, None, step)
     np.testing.assert_allclose(advance.twist.velocity, [[7.0, 8.0], [1.0, 2.0]])
     np.testing.assert_allclose(advance.twist.angular_velocity, [[9.0], [3.0]])
     assert not advance.hydrodynamic_wrench.force.any()
     assert advance.hydrodynamic_wrench.torque.shape == (2, 1)
+
+
+def test_bodies_answer_to_impulses_with_their_own_mass():
+    matrix = np.stack([3.0 * np.diag([2.0, 2.0, 0.5]), np.eye(3)])
+    pose = Pose(np.zeros((2, 2)), np.zeros((2, 1)))
+    step = replace(uncontrolled(1.0, None, pose, matrix, np.zeros((2, 3))), controlled=np.array([False, True]))
+    impulses = np.array([[[6.0, 0.0, 1.5], [1.0, 1.0, 1.0]]])
+    mesh: Any = None
+    response = Dry(PartOptions(), None).response(
+        {}, mesh, replace(step, derivative=np.array([3.0, -3.0, 0.0])), impulses
+    )
+    np.testing.assert_allclose(response.by_mass, [[[3.0, 0.0, 3.0], [0.0, 0.0, 0.0]]])
+    np.testing.assert_array_equal(response.by_step, response.by_mass)

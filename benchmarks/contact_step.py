@@ -1,0 +1,135 @@
+"""What a step with contacts costs beside a free one, in CPU seconds of one thread: one disk, heaps, a ball.
+
+python benchmarks/contact_step.py [--page docs/validation/contact_step.md]
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+for threads in ("OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[threads] = "1"
+ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests" / "support"))
+
+import fluid_contacts  # noqa: E402
+import numpy as np  # noqa: E402
+
+from rigidfluid.core.scene import Scene, load_scene  # noqa: E402
+from rigidfluid.core.simulation import Simulation  # noqa: E402
+from rigidfluid.core.threads import one_openblas_thread  # noqa: E402
+
+HEAD = ("scene", "unknowns", "contacts", "free step [s]", "contact step [s]", "ratio", "steps", "re-meshes")
+PITCH = 0.066
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, for how many steps, and whether all of them have contacts, so that a scene without stands beside it."""
+
+    name: str
+    scene: Callable[[], Scene]
+    steps: int
+    free: Callable[[], Scene] | None = None
+
+
+def dropped(size_body: float) -> Scene:
+    """The dropped disk with cells of this size on it [cm], until after its first rebound."""
+    return changed(fluid_contacts.dropped(1e-3), mesh={"size": 2.0 * size_body, "size_body": size_body})
+
+
+def hundred(pitch: float, step: float) -> Scene:
+    """The shipped hundred disks, so far apart, let go on the floor [cm, s]."""
+    data = load_scene(ROOT / "scenes" / "hundred_disks.toml").to_dict()
+    random = np.random.default_rng(0)
+    for number, body in enumerate(data["body"]):
+        row, column = divmod(number, 10)
+        place = 0.5 + (column - 4.5 + 0.25 * (row % 2)) * pitch, 0.05 + row * pitch
+        body["position"] = (np.array(place) + random.uniform(-0.001, 0.001, 2)).tolist()
+    return changed(Scene.from_dict(data), time={"step": step}, domain={"upper": [1.0, 1.2]})
+
+
+def changed(scene: Scene, **tables: dict[str, Any]) -> Scene:
+    """The scene with other values in some tables, without outputs."""
+    data = scene.to_dict()
+    for name, values in ({"output": {"every": 100.0}, "time": {}} | tables).items():
+        data[name] |= values
+    return Scene.from_dict(data)
+
+
+CASES = (
+    *(Case(f"one disk, cells of {size:g}", lambda size=size: dropped(size), 46) for size in (0.03, 0.012, 0.006)),
+    Case("heap of seven", lambda: changed(fluid_contacts.heap(2e-3), mesh={"size_body": 0.015}), 60),
+    Case("a ball", lambda: changed(fluid_contacts.ball_dropped(2e-3)), 24),
+    Case("100 disks, falling apart", lambda: hundred(PITCH, 2e-3), 60, lambda: without_law(hundred(0.09, 2e-3))),
+)
+
+
+def without_law(scene: Scene) -> Scene:
+    """Without contact forces; it must end before anything touches."""
+    data = scene.to_dict()
+    return Scene.from_dict(data | {"contact": {}})
+
+
+def seconds(scene: Scene, steps: int) -> tuple[Simulation, list[tuple[int, float]]]:
+    """Of each step after the graded start the contacts in range and the CPU seconds."""
+    run, found = Simulation(scene, None, False), []
+    for _ in range(steps):
+        start = time.process_time()
+        run._advance()
+        spent = time.process_time() - start
+        law, coupling = run.system.law, run.state.coupling
+        near = 0 if law is None or coupling is None else max(1, int(np.sum(run.state.contacts.gap < law.range)))
+        if (run.state.level or 0) == 0:
+            found.append((near, spent))
+    return run, found
+
+
+def rows() -> Iterator[tuple[str, ...]]:
+    """One for each case."""
+    for case in CASES:
+        run, found = seconds(case.scene(), case.steps)
+        free = [spent for near, spent in found if near == 0]
+        if case.free is not None:
+            free = [spent for _, spent in seconds(case.free(), 12)[1]]
+        touching = [(near, spent) for near, spent in found if near > 0]
+        contact, contacts = (np.mean(column) for column in zip(*((s, n) for n, s in touching), strict=True))
+        unknowns = run.system.backend.unknowns(run.state.mesh, run.system.controlled)
+        figures = f"{np.mean(free):.3f}", f"{contact:.3f}", f"{contact / np.mean(free):.1f}"
+        yield case.name, f"{unknowns:,}", f"{contacts:.0f}", *figures, f"{len(touching)}", f"{run.remeshes}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--page", type=Path, help="where to write the table as well")
+    page, lines = parser.parse_args().page, [HEAD, ("---",) * len(HEAD)]
+    with one_openblas_thread():
+        for line in rows():
+            lines.append(line)
+            print(*line, sep=" | ", flush=True)
+    table = "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    if page is not None:
+        page.write_text(PAGE.format(date=datetime.date.today(), table=table), encoding="utf-8")
+
+
+PAGE = """# Steps with contacts
+
+Made on {date} by `python benchmarks/contact_step.py --page docs/validation/contact_step.md`. CPU seconds of one thread,
+means over the steps of full length; re-meshing is in them. A contact step is one with a contact in range, or one that
+may come into it. It solves for the fluid about twice, and asks for the answers of the bodies where those have changed
+([numerics](../numerics.md#contacts)). What is free of contacts is the same run before, for the hundred disks the same
+disks further apart.
+
+{table}
+"""
+
+if __name__ == "__main__":
+    main()
