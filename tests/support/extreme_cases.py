@@ -402,7 +402,7 @@ def _wet_crowds() -> Iterator[Case]:
     known = {_by("substeps", 1)[0]: "energy created"}
     yield from _in_fluid("cradle of three, density .2", scene, steps, (2,), _by("substeps", 4), known)
     yield from crowd("stack of two", contacts.stacked, steps, (2,), _by("substeps", 4))
-    yield from crowd("stack of three", contacts.three_stacked, steps, (2,), fails=known)
+    yield from crowd("stack of three", contacts.three_stacked, steps, (2,))
     yield from crowd("stack of ten", contacts.column, steps, (2,))
     yield from crowd("heap of seven", contacts.heap, steps, (2,))
     yield from crowd("heap of six radii", contacts.unlike_heap, steps, (2,))
@@ -413,8 +413,7 @@ def _wet_shapes() -> Iterator[Case]:
     long = _by("substeps", 4, 2) + _by("implicit", 4, 2)
     known = dict.fromkeys(long, "energy created by the first step")
     yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 1), known)
-    known = dict.fromkeys(_by("substeps", 1) + _by("implicit", 1), "energy created")
-    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4), known)
+    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4))
     yield from _in_fluid("ellipse that spins, into a corner", contacts.in_a_corner, steps, steps, _by("substeps", 4))
 
 
