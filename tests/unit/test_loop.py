@@ -42,6 +42,17 @@ def test_a_driven_body_has_the_velocity_of_its_time():
     np.testing.assert_allclose(b["vx"], 0.4 * np.pi * np.cos(4 * np.pi * b["time"]))
 
 
+def test_a_dry_scene_that_names_a_fluid_is_no_wetter():
+    law = {"detector": "sphere", "law": "centre", "range": 0.04, "epsilon": 1e-4}
+    scene = dry({"velocity": [1.0, -5.0], "position": [5.0, 0.6]}, gravity=(0.0, 0.0), contact=law)
+    named = scene.to_dict()
+    named["fluid"] |= {"density": 1.0, "viscosity": 0.1}
+    wetter, drier = rigidfluid.run(Scene.from_dict(named)).bodies, rigidfluid.run(scene).bodies
+    assert drier["vy"][-1] > 0.0
+    for column in ("x", "y", "vx", "vy"):
+        np.testing.assert_array_equal(wetter[column], drier[column])
+
+
 def test_without_a_law_nothing_passes_through_a_wall():
     with pytest.raises(StepError):
         rigidfluid.run(dry({"velocity": [0.0, -5.0], "position": [5.0, 0.5]}))
