@@ -43,7 +43,7 @@ def test_a_driven_body_has_the_velocity_of_its_time():
 
 
 def test_a_dry_scene_that_names_a_fluid_is_no_wetter():
-    law = {"detector": "sphere", "law": "centre", "range": 0.04, "epsilon": 1e-4}
+    law = {"detector": "sphere", "law": "centre", "range": 0.04, "epsilon": 1e-6}
     scene = dry({"velocity": [1.0, -5.0], "position": [5.0, 0.6]}, gravity=(0.0, 0.0), contact=law)
     named = scene.to_dict()
     named["fluid"] |= {"density": 1.0, "viscosity": 0.1}

@@ -36,7 +36,7 @@ def features(system: System) -> Iterator[Feature]:
         One for each thing that a scene may have.
     """
     problem, backend = system.backend.problem, type(system.backend)
-    if problem is None:
+    if problem is None or not backend.needs_mesh:
         yield Feature("fluid", False, f"backend {backend.name!r} has no viscosity to work with")
     else:
         yield Feature("fluid", True, f"backend {backend.name!r}")
