@@ -234,9 +234,24 @@ def contacts_in_fluid() -> None:
     ]
     resting = [found for case in AT_REST for found in tries(case, "substeps", (10.0, 4.0, 1.0))]
     head = ("case", "stepping", "step [ms]", "created [%]", "lost [%]", "friction [%]", "first step [%]", "figures")
-    text = CONTACTS_IN_FLUID.format(energies=table(head, energies), resting=table(head, resting))
+    over = [" ".join(found[:3]) for found in energies + resting if exceeds(found)]
+    text = CONTACTS_IN_FLUID.format(
+        over=", ".join(over) or "none", energies=table(head, energies), resting=table(head, resting)
+    )
     command = "python docs/make_validation.py contacts_in_fluid"
     write_page("contacts_in_fluid", "Stiff contacts in a fluid", command, text, plot=False)
+
+
+MOST_LOST = {4.0: 30.0, 2.0: 15.0, 1.0: 7.0, 0.5: 4.0}
+
+
+def exceeds(found: tuple[str, ...]) -> bool:
+    """Whether a row is above what is aimed at: created 3 %, from 1 ms down 1 %; lost as in MOST_LOST."""
+    _, _, step, created, lost, *_ = found
+    if not created:
+        return True
+    most = 3.0 if float(step) > 1.0 else 1.0
+    return float(created) > most or float(lost) > MOST_LOST.get(float(step), np.inf)
 
 
 def tries(case: str, stepping: str, steps: tuple[float, ...]) -> Iterable[tuple[str, ...]]:
@@ -402,6 +417,9 @@ water, with contacts that are ten to a thousand times shorter than a step; what 
 * friction: `path_friction`, what the bodies' friction took between the fluid's solutions, over the same. It explains up
   to so much of what was lost; it is no part of the residual.
 * first step: what it created.
+
+Aimed at are at most 3 % created, and 1 % with steps of 1 ms and less, and at most 30, 15, 7 and 4 % lost with steps of
+4, 2, 1 and .5 ms. Above that are: {over}.
 
 Losses fall with the step as the error of an unresolved impact does. In the squeezed channel both walls push the disk
 all the time, its oscillation between them is far shorter than a step, and friction damps it.
