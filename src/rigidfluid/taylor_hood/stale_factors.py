@@ -28,7 +28,7 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
 
     price: ClassVar[Mapping[int, int]] = {2: 10, 3: 60}
     when_fresh: ClassVar[int] = 3
-    most: ClassVar[int] = 24
+    most: ClassVar[int] = 40
 
     most_sweeps: ClassVar[int] = 6
     """Of all columns together; factors that need more are worth renewing."""
