@@ -150,7 +150,7 @@ class ContactTable(_OpenTable):
     )
     stepping: Literal["substeps", "implicit"] = Field(
         default="substeps",
-        description="How bodies go through contacts: in `substeps`, or in one `implicit` step that keeps the energy",
+        description="How bodies go through contacts: in `substeps`, or in `implicit` steps that keep the energy",
     )
     substeps: int | None = Field(
         default=None,
