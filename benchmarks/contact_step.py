@@ -108,6 +108,7 @@ def rows() -> Iterator[tuple[str, ...]]:
 
 
 def main() -> None:
+    """Run all cases, print a line for each, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--page", type=Path, help="where to write the table as well")
     page, lines = parser.parse_args().page, [HEAD, ("---",) * len(HEAD)]
