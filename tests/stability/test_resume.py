@@ -9,6 +9,10 @@ import time
 import pytest
 from falling import SCENES
 
+import rigidfluid
+from rigidfluid.core.checkpoint import read_checkpoint
+from rigidfluid.core.scene import load_scene
+
 COMMAND = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml")]
 SETTINGS = ["mesh.size_body=0.04", "mesh.size=0.3", "time.step=0.004", "time.end=0.2", "body.0.position=[1.0, 0.6]"]
 FIGURES = ["steps", "rejected_steps", "remeshes", "smallest_gap", "energy", "reynolds", "rest_position"]
@@ -57,3 +61,17 @@ def test_killed_twice_and_resumed_twice(uninterrupted, tmp_path):
     subprocess.run(command(out, "--resume"), check=True, stdout=subprocess.DEVNULL)
     assert killed[0], "the first run ended before it could be killed"
     assert contents(out) == expected
+
+
+def test_a_run_taken_up_between_the_impacts_of_a_disk_in_a_fluid(tmp_path):
+    """Outputs every two steps, so that some lie within contacts: the model of the bodies near them goes on."""
+    settings = ["output.every=0.002", "time.step=0.001"]
+    whole, first = (
+        load_scene(SCENES / "bounce_in_fluid.toml", [*settings, f"time.end={end}"]) for end in (0.016, 0.006)
+    )
+    rigidfluid.run(whole, tmp_path / "whole")
+    rigidfluid.run(first, tmp_path / "parts")
+    assert read_checkpoint(tmp_path / "parts" / "state.h5").state.coupling is not None
+    rigidfluid.run(whole, tmp_path / "parts", resume=True)
+    for name in ("bodies.csv", "contacts.csv", "energy.csv"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
