@@ -23,7 +23,7 @@ from rigidfluid.core.substep import Plan, plan, relative_motion, relative_veloci
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import predict_pose, start_pose
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
-from rigidfluid.core.wrenches import contact_wrench, nothing, power
+from rigidfluid.core.wrenches import contact_wrench, flat, nothing, power
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
@@ -143,12 +143,14 @@ def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, co
         movement.vary_load(size)
     if system.implicit:
         path = _cross_coupled(system, law, movement, near, size)
-    elif system.detector.needs_mesh:
-        path = _resolve(system, law, movement, FollowedContacts(near, state.pose).at, size, size)
-        path = replace(path, friction=movement.friction_loss)
     else:
-        reach, span = _horizon(system, movement, size)
-        path = _resolve(system, law, movement, _detected(system, reach), size, span)
+        contacts_at: Callable[[Pose], Contacts]
+        if system.detector.needs_mesh:
+            contacts_at, span = FollowedContacts(near, state.pose).at, size
+        else:
+            reach, span = _horizon(system, movement, size)
+            contacts_at = _detected(system, reach)
+        path = _resolve(system, law, movement, contacts_at, size, span)
         path = replace(path, friction=movement.friction_loss)
     return replace(path, coupling=coupling)
 
@@ -242,7 +244,7 @@ def _accelerations(system: System, state: State) -> FloatArray:
         return np.concatenate([fall, np.zeros(angular.shape[:2])], axis=1)
     wrench = state.contact_wrench
     by_contact = Twist(np.einsum("nij,nj->ni", linear, wrench.force), np.einsum("nij,nj->ni", angular, wrench.torque))
-    return (_flat(state.twist) - _flat(state.past.twist)) / state.past.step - _flat(by_contact)
+    return (flat(state.twist) - flat(state.past.twist)) / state.past.step - flat(by_contact)
 
 
 def _mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
@@ -356,7 +358,3 @@ def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:
     total.force[:] += factor * wrench.force
     total.torque[:] += factor * wrench.torque
     return total
-
-
-def _flat(twist: Twist) -> FloatArray:
-    return np.concatenate([twist.velocity, twist.angular_velocity], axis=1)

@@ -41,7 +41,7 @@ class CoupledMovement:
     ) -> None:
         model, load = coupling.model, coupling.load
         self.pose = pose
-        self._start = np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
+        self._start = flat(twist)
         self._velocity = self._start
         self._model = model
         self._own = linear, angular
@@ -50,7 +50,6 @@ class CoupledMovement:
         self._load, self._growth, self._time = model.modes.T @ load, np.zeros(len(load)), 0.0
         self._lacking = np.where(np.isnan(coupling.load_before), 0.0, load - coupling.load_before)
         self._modal = np.zeros(len(load))
-        self._inverse = np.linalg.inv(model.modes)
         self.mobility, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
 

@@ -11,7 +11,7 @@ from rigidfluid.core.state import State
 from rigidfluid.core.step import step_to
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import derivative_weights
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Step, Twist
+from rigidfluid.core.types import Contacts, FloatArray, IntArray, Step
 from rigidfluid.core.wrenches import flat, nothing
 
 SETTLED = 1e-3
@@ -46,7 +46,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     velocities = _velocities(system, near)
     step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
     known = None if state.coupling is None else state.coupling.model
-    model = updated_model(system, state, step, state.contacts, _joined(state.twist), velocities, known)
+    model = updated_model(system, state, step, state.contacts, flat(state.twist), velocities, known)
     before = _load_before(state, model)
     return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
 
@@ -72,14 +72,14 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
     """
     assert path.coupling is not None
     used = path.coupling
-    twist, velocities = _joined(candidate.twist), used.model.velocities
+    twist, velocities = flat(candidate.twist), used.model.velocities
     model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
     past = state.past_twist or state.twist
-    twists = tuple(_of(model, _joined(twist)) for twist in (candidate.twist, state.twist, past))
+    twists = tuple(_of(model, flat(twist)) for twist in (candidate.twist, state.twist, past))
     before = flat(state.contact_wrench) * (state.past_step or 0.0)
     impulses = _of(model, step.impulse), _of(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
-    missed = _of(model, _joined(path.twist)) - twists[0]
+    missed = _of(model, flat(path.twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
 
@@ -112,7 +112,7 @@ def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -
         return True
     impulse = _of(model, flat(path.impulse))
     gained, d0 = model.mobility @ impulse, derivative_weights(size, state.past_step)[0]
-    before, after = (_of(model, _joined(twist)) for twist in (state.twist, candidate.twist))
+    before, after = (_of(model, flat(twist)) for twist in (state.twist, candidate.twist))
     by_load = size * (model.mobility @ found.load - used.model.mobility @ used.load)
     by_answer = gained - used.model.mobility @ impulse
     missed = model.answer(d0, found.correction - used.correction) / d0
@@ -141,7 +141,7 @@ def _load_before(state: State, model: ReducedModel) -> FloatArray:
         return before
     latest = state.coupling.model.velocities
     _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
-    change = _joined(state.twist) - _joined(state.past.twist)
+    change = flat(state.twist) - flat(state.past.twist)
     slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
     before[here] = (state.coupling.load - slowed)[there]
     return before
@@ -151,7 +151,7 @@ def _expected_load(system: System, state: State, model: ReducedModel) -> FloatAr
     if state.past is None:
         weight = np.concatenate([system.weight, np.zeros_like(state.twist.angular_velocity)], axis=1)
         return _of(model, weight)
-    change = _of(model, _joined(state.twist) - _joined(state.past.twist))
+    change = _of(model, flat(state.twist) - flat(state.past.twist))
     impulse = _of(model, flat(state.contact_wrench)) * state.past.step
     return expected_load(model, change, impulse, state.past.step)
 
@@ -159,7 +159,3 @@ def _expected_load(system: System, state: State, model: ReducedModel) -> FloatAr
 def _of(model: ReducedModel, field: FloatArray) -> FloatArray:
     """The model's components (c,) of a field (n, d+k)."""
     return np.asarray(field.ravel()[model.velocities])
-
-
-def _joined(twist: Twist) -> FloatArray:
-    return np.concatenate([twist.velocity, twist.angular_velocity], axis=1)

@@ -43,9 +43,10 @@ def nothing(pose: Pose) -> Wrench:
     return Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
 
 
-def flat(wrench: Wrench) -> FloatArray:
-    """Force and torque side by side, (n, d+k)."""
-    return np.concatenate([wrench.force, wrench.torque], axis=1)
+def flat(record: Wrench | Twist) -> FloatArray:
+    """Force and torque, or velocity and angular velocity, side by side, (n, d+k)."""
+    pair = (record.force, record.torque) if isinstance(record, Wrench) else (record.velocity, record.angular_velocity)
+    return np.concatenate(pair, axis=1)
 
 
 def power(wrench: Wrench, twist: Twist) -> FloatArray:

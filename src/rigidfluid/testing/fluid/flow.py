@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.interfaces import FluidBackend
 from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.wrenches import flat
 
 
 @dataclass(frozen=True)
@@ -172,8 +173,7 @@ def as_twist(components: FloatArray, pose: Pose) -> Twist:
 
 def components(record: Twist | Wrench) -> FloatArray:
     """Twists or wrenches as rows, (n, d+k)."""
-    rows = (record.velocity, record.angular_velocity) if isinstance(record, Twist) else (record.force, record.torque)
-    return np.concatenate(rows, axis=1)
+    return flat(record)
 
 
 def figures(advance: Advance) -> Mapping[str, FloatArray]:
