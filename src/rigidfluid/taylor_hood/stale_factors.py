@@ -49,7 +49,7 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
         self._factors = None
 
     def iterate(
-        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
         """Preconditioned on the right, so that the norm that stops the iteration is the true residual's.
 
@@ -71,11 +71,12 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
             rtol=0.0,
             atol=tolerance,
             M=LinearOperator(shape, matvec=precondition, dtype=np.float64),
-            m=self.most // 2,
+            m=most // 2,
             k=1,
-            maxiter=3,  # the third is there only to let the second be judged
+            maxiter=2,
         )
-        return correction, solves, failed == 0
+        reached = failed == 0 or self.norm(residual - apply(correction)) <= tolerance  # it does not judge its last cycle
+        return correction, solves, reached
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float

@@ -22,7 +22,7 @@ class StaleSolver(ABC, Generic[Matrix]):
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
     ``price`` of a preconditioner in iterations by dimension, ``when_fresh``, those that a solve then takes, and the
-    ``most`` that may be spent on one.
+    ``most`` that may be spent on one. A stale one is given up when it has wasted its price twice.
     """
 
     price: ClassVar[Mapping[int, int]]
@@ -61,10 +61,11 @@ class StaleSolver(ABC, Generic[Matrix]):
             return np.zeros_like(residual), 0
         if not self._is_made or self._wasted > self._price:
             self._renew(matrix)
-        correction, iterations, converged = self.iterate(apply, residual, tolerance)
+        most = self.most if self._solves == 0 else min(self.most, self.when_fresh + 2 * self._price)
+        correction, iterations, converged = self.iterate(apply, residual, tolerance, most)
         if not converged and self._solves > 0:
             self._renew(matrix)
-            correction, iterations, converged = self.iterate(apply, residual, tolerance)
+            correction, iterations, converged = self.iterate(apply, residual, tolerance, self.most)
         if not converged:
             self.forget()  # the next step tried is another one
             raise StepRejected(
@@ -126,9 +127,9 @@ class StaleSolver(ABC, Generic[Matrix]):
 
     @abstractmethod
     def iterate(
-        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
-        """The correction, the iterations spent, and whether ‖residual - A x‖ ≤ tolerance was reached."""
+        """The correction, the iterations spent, and whether ‖residual - A x‖ ≤ tolerance was reached within ``most``."""
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
@@ -140,7 +141,7 @@ class StaleSolver(ABC, Generic[Matrix]):
             enough = tolerance * self.norm(right_side)
             if enough == 0.0:
                 continue
-            found[:, column], iterations, converged = self.iterate(apply, right_side, enough)
+            found[:, column], iterations, converged = self.iterate(apply, right_side, enough, self.most)
             wasted += max(0, iterations - self.when_fresh)
             if not converged:
                 return None, wasted

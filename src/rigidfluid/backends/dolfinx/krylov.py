@@ -80,10 +80,10 @@ class Krylov(StaleSolver[Reduced]):
 
     @final
     def iterate(
-        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
         self._operator.apply = apply
-        self._ksp.setTolerances(rtol=0.0, atol=tolerance, max_it=self.most)
+        self._ksp.setTolerances(rtol=0.0, atol=tolerance, max_it=most)
         _, pmat = self._ksp.getOperators()
         correction, right_side = pmat.createVecs()
         right_side.array[:] = residual
