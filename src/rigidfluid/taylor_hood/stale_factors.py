@@ -75,8 +75,9 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
             k=1,
             maxiter=2,
         )
-        reached = failed == 0 or self.norm(residual - apply(correction)) <= tolerance  # it does not judge its last cycle
-        return correction, solves, reached
+        if failed:  # or not judged: the last cycle
+            failed = self.norm(residual - apply(correction)) > tolerance
+        return correction, solves, not failed
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
