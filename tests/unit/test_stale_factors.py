@@ -30,6 +30,19 @@ def test_stale_factors_that_fail_are_renewed_once(made):
     assert len(made) == 2
 
 
+def test_stale_factors_are_given_up_when_they_have_wasted_their_price_twice(made):
+    solver, applied = StaleFactors(2), []
+    solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
+
+    def shift(x):
+        applied.append(1)
+        return SHIFT @ x
+
+    assert solver.solve(shift, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
+    assert len(applied) <= StaleFactors.when_fresh + 2 * StaleFactors.price[2] + 5  # and what judges both solutions
+    assert len(made) == 2
+
+
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
         StaleFactors(2).solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)

@@ -58,6 +58,7 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
         """
         assert self._factors is not None
         factors, solves = self._factors, 0
+        cycles = 2 if most == self.most else 1
 
         def precondition(vector: FloatArray) -> FloatArray:
             nonlocal solves
@@ -71,9 +72,9 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
             rtol=0.0,
             atol=tolerance,
             M=LinearOperator(shape, matvec=precondition, dtype=np.float64),
-            m=most // 2,
+            m=most // cycles,
             k=1,
-            maxiter=2,
+            maxiter=cycles,
         )
         if failed:  # or not judged: the last cycle
             failed = self.norm(residual - apply(correction)) > tolerance

@@ -129,7 +129,7 @@ class StaleSolver(ABC, Generic[Matrix]):
     def iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
-        """The correction, the iterations spent, at ``most`` so many, and if ‖residual - A x‖ ≤ tolerance was reached."""
+        """The correction, the iterations spent, at ``most``, and whether ‖residual - A x‖ ≤ tolerance was reached."""
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
