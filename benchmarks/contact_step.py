@@ -46,6 +46,11 @@ def dropped(size_body: float) -> Scene:
     return changed(fluid_contacts.dropped(1e-3), mesh={"size": 2.0 * size_body, "size_body": size_body})
 
 
+def ball(size_body: float) -> Scene:
+    """The dropped ball with cells of this size on it [cm], until after its first rebound."""
+    return changed(fluid_contacts.ball_dropped(2e-3), mesh={"size": 2.5 * size_body, "size_body": size_body})
+
+
 def hundred(pitch: float, step: float) -> Scene:
     """The shipped hundred disks, so far apart, let go on the floor [cm, s]."""
     data = load_scene(ROOT / "scenes" / "hundred_disks.toml").to_dict()
@@ -66,9 +71,11 @@ def changed(scene: Scene, **tables: dict[str, Any]) -> Scene:
 
 
 CASES = (
-    *(Case(f"one disk, cells of {size:g}", lambda size=size: dropped(size), 46) for size in (0.03, 0.012, 0.006)),
+    *(Case(f"one disk, cells of {size:g}", lambda size=size: dropped(size), 46) for size in (0.03, 0.012, 0.006, 0.0033)),
     Case("heap of seven", lambda: changed(fluid_contacts.heap(2e-3), mesh={"size_body": 0.015}), 60),
-    Case("a ball", lambda: changed(fluid_contacts.ball_dropped(2e-3)), 24),
+    Case("column of ten", lambda: changed(fluid_contacts.column(2e-3), mesh={"size_body": 0.01}), 50),
+    *(Case(f"a ball, cells of {size:g}", lambda size=size: ball(size), 24) for size in (0.1, 0.06)),
+    Case("100 disks, as shipped, .5 s", lambda: changed(load_scene(ROOT / "scenes" / "hundred_disks.toml")), 250),
     Case("100 disks, falling apart", lambda: hundred(PITCH, 2e-3), 60, lambda: without_law(hundred(0.09, 2e-3))),
 )
 
