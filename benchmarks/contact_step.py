@@ -71,7 +71,10 @@ def changed(scene: Scene, **tables: dict[str, Any]) -> Scene:
 
 
 CASES = (
-    *(Case(f"one disk, cells of {size:g}", lambda size=size: dropped(size), 46) for size in (0.03, 0.012, 0.006, 0.0033)),
+    *(
+        Case(f"one disk, cells of {size:g}", lambda size=size: dropped(size), 46)
+        for size in (0.03, 0.012, 0.006, 0.0033)
+    ),
     Case("heap of seven", lambda: changed(fluid_contacts.heap(2e-3), mesh={"size_body": 0.015}), 60),
     Case("column of ten", lambda: changed(fluid_contacts.column(2e-3), mesh={"size_body": 0.01}), 50),
     *(Case(f"a ball, cells of {size:g}", lambda size=size: ball(size), 24) for size in (0.1, 0.06)),
