@@ -31,14 +31,12 @@ def answers(simulation):
     impulse = 0.01 * (1.0 + np.arange(step.load.size)).reshape(step.load.shape)
     pushed = replace(step, load=step.load + step.derivative[0] * impulse, impulse=impulse)
     advance = system.backend.advance(state.fluid, state.mesh, pushed)
-    jump = {**advance.fluid, "velocity": advance.fluid["jump"]}
-    radius = np.array([body.bounding_radius for body in system.bodies])[:, None]
-    near = [state.pose.position + way * radius * axis for way in (-1.2, 1.2) for axis in np.eye(system.dimension)]
+    turned = system.backend.advance(state.fluid, state.mesh, replace(pushed, turning=impulse))
     return {
         "by_mass": response.by_mass.tolist(),
         "by_step": response.by_step.tolist(),
         "twist": advance.twist.velocity.tolist(),
-        "jump": system.backend.probe(jump, state.mesh, np.concatenate(near))[0].tolist(),
+        "turned": turned.twist.velocity.tolist(),
     }
 
 

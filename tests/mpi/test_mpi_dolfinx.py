@@ -91,7 +91,7 @@ def test_three_processes_step_as_one_does(printed, scene):
 def test_processes_answer_to_impulses_as_one_does(printed, count, scene):
     """Each to the accuracy that is asked of it."""
     found = printed(count, ANSWERS, scene, [])
-    assert_all_as_alone(found, 1e-8, by_mass=1e-4, by_step=1e-4, jump=1e-2)
+    assert_all_as_alone(found, 1e-8, by_mass=1e-4, by_step=1e-4, turned=1e-3)
 
 
 def test_a_step_keeps_no_memory(printed):

@@ -15,6 +15,7 @@ from fluid_contacts import (
     REST,
     Stepping,
     created_and_lost,
+    heavy,
     in_fluid,
     put_in,
     repulsion,
@@ -73,7 +74,7 @@ def dropped(step: float, stepping: Stepping) -> History:
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "off", "lost"), [(4.0, 0.2, 0.33), (2.0, 0.15, 0.18), (1.0, 0.04, 0.06)])
+@pytest.mark.parametrize(("step", "off", "lost"), [(4.0, 0.1, 0.3), (2.0, 0.05, 0.15), (1.0, 0.02, 0.055)])
 def test_a_dropped_disk_bounces_as_high_as_at_fine_steps(step, off, lost, stepping):
     history = dropped(step, stepping)
     assert created_and_lost(history)[1] <= lost
@@ -89,7 +90,7 @@ def test_a_dropped_disk_gains_nothing(step, created, stepping):
 @pytest.mark.parametrize(
     ("step", "stepping", "created", "off"),
     [
-        (4.0, "substeps", 0.03, 0.7),
+        (4.0, "substeps", 0.03, 0.85),
         (1.0, "substeps", 0.01, 0.15),
         (4.0, "implicit", 0.03, 0.94),
         (1.0, "implicit", 0.01, 0.19),
@@ -102,11 +103,28 @@ def test_a_bounce(step, stepping, created, off):
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.03, 0.06, 0.45), (1.0, 0.01, 0.02, 0.06)])
+@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.03, 0.04, 0.1), (1.0, 0.01, 0.01, 0.04)])
 def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
     history = rigidfluid.run(scenes.cradle(step * MILLISECOND, stepping))
     refuse_imbalance(history, created, lost)
     assert track(history, "vx")[-1, 2] == pytest.approx(7.38, abs=off)
+
+
+@pytest.mark.parametrize("stepping", BOTH)
+@pytest.mark.parametrize(("step", "lost", "off"), [(4.0, 0.13, 0.35), (1.0, 0.05, 0.35)])
+def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, off, stepping):
+    """Fluid that seems to flow through the disks' surfaces, as they turn back, would take 1.3 at the longer step."""
+    history = rigidfluid.run(scenes.head_on(step * MILLISECOND, stepping))
+    refuse_imbalance(history, 0.01, lost)
+    np.testing.assert_allclose(track(history, "vx")[-1], [-6.49, 6.49], atol=off)
+
+
+@pytest.mark.parametrize("height", [0.19, 0.198, 0.206])
+def test_rebounds_depend_little_on_when_in_its_step_the_impact_is(height):
+    """Against those at .125 ms, of the fall."""
+    fine = {0.19: 0.4974, 0.198: 0.5094, 0.206: 0.5258}
+    scene = in_fluid(repulsion("substeps", 1e-9), heavy(0.4, height), end=0.07, step=4.0 * MILLISECOND)
+    assert first_rebound(rigidfluid.run(scene)) / (height - RADIUS) == pytest.approx(fine[height], rel=0.08)
 
 
 def test_disks_that_fall_onto_each_other_gain_nothing():
@@ -186,7 +204,7 @@ def test_an_ellipse_that_only_turns_is_stopped_by_the_wall():
 def test_what_drives_a_body_works_against_its_contacts():
     """Without that work most of what the free disk gains would come from nowhere."""
     history = run_until(scenes.driven_hit(4.0 * MILLISECOND), 0.06)
-    refuse_imbalance(history, 0.01, 0.075)
+    refuse_imbalance(history, 0.03, 0.05)
     assert history.bodies["vx"].max() > 5.0
 
 

@@ -62,6 +62,7 @@ def uncontrolled(step: float, previous: float | None, pose: Pose, matrix: FloatA
         controlled_twist=np.zeros_like(load),
         impulse=np.zeros_like(load),
         load_scale=0.0,
+        turning=np.zeros_like(load),
     )
 
 
@@ -239,6 +240,7 @@ def test_controlled_bodies_take_the_given_twist() -> None:
         controlled_twist=np.array([[7.0, 8.0, 9.0], [0.0, 0.0, 0.0]]),
         impulse=np.zeros((2, 3)),
         load_scale=0.0,
+        turning=np.zeros((2, 3)),
     )
     advance = Dry(PartOptions(), None).advance({}, None, step)
     np.testing.assert_allclose(advance.twist.velocity, [[7.0, 8.0], [1.0, 2.0]])

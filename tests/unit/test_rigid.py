@@ -2,7 +2,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.rigid import angle_between, cross, lab_inertia, moment, rotate, rotation_matrices
+from rigidfluid.core.rigid import (
+    angle_between,
+    cross,
+    lab_inertia,
+    moment,
+    rotate,
+    rotation_between,
+    rotation_matrices,
+)
 
 RANDOM = np.random.default_rng(0)
 QUATERNIONS = Rotation.random(20, rng=RANDOM).as_quat(scalar_first=True)
@@ -86,6 +94,15 @@ def test_no_bodies_at_all(components: int) -> None:
     assert rotation_matrices(nothing).shape == (0, dimension, dimension)
     assert rotate(nothing, np.zeros((0, freedoms))).shape == (0, components)
     assert lab_inertia(np.zeros((0, freedoms, freedoms)), nothing).shape == (0, freedoms, freedoms)
+
+
+def test_rotation_between_is_what_was_turned_by() -> None:
+    """By less than half a turn, and from a quaternion of either sign."""
+    vectors = 0.5 * VECTORS / np.linalg.norm(VECTORS, axis=1, keepdims=True)
+    for start in (QUATERNIONS, -QUATERNIONS):
+        np.testing.assert_allclose(rotation_between(start, rotate(QUATERNIONS, vectors)), vectors, atol=1e-14)
+    np.testing.assert_array_equal(rotation_between(QUATERNIONS, QUATERNIONS), np.zeros_like(vectors))
+    np.testing.assert_array_equal(rotation_between(np.array([[3.0]]), np.array([[13.0]])), [[10.0]])
 
 
 def test_angle_between_is_that_of_the_rotation() -> None:

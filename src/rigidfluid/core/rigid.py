@@ -71,6 +71,29 @@ def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
     return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * opposite, 1.0)))
 
 
+def rotation_between(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Rotation vector of the rotation of the lab frame that leads from one orientation to another, the inverse of
+    `rotate`.
+
+    Parameters
+    ----------
+    start, end : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n, k) array
+        Axis times angle, in 2D whole turns included, in 3D at most half a turn [rad].
+    """
+    if start.shape[-1] == 1:
+        return end - start
+    turn = _quaternion_product(end, start * [1.0, -1.0, -1.0, -1.0])
+    turn = np.where(turn[:, :1] < 0.0, -turn, turn)
+    sine = np.linalg.norm(turn[:, 1:], axis=1, keepdims=True)
+    half = np.arctan2(sine, turn[:, :1])
+    return np.asarray(2.0 * turn[:, 1:] / np.sinc(half / np.pi))
+
+
 def cross(angular_velocity: FloatArray, arm: FloatArray) -> FloatArray:
     """Velocity that a rotation gives to a point, ω × r.
 

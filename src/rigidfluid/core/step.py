@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigidfluid.core.clock import Clock
 from rigidfluid.core.contact_path import BodiesPath
+from rigidfluid.core.convection import turning
 from rigidfluid.core.energy import Power, Work, kinetic_energy
 from rigidfluid.core.mesh_adaptation import Mover
 from rigidfluid.core.proximity import refuse_overlap, surroundings
@@ -46,6 +49,7 @@ def attempt(
         step = step_to(system, state, time, size, pose, path.impulse, mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
+            step = replace(step, turning=turning(system, state, path, step))
         advance = system.backend.advance(state.fluid, state.mesh, step)
     candidate = State(
         tick=state.tick + clock.ticks(level),
@@ -108,6 +112,7 @@ def step_to(
         controlled_twist=system.controlled_twist(time),
         impulse=flat(impulse),
         load_scale=_load_scale(system, impulse, derivative),
+        turning=np.zeros_like(load),
     )
 
 

@@ -193,6 +193,8 @@ class Step:
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
+    What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
+    convects; it is zero but for steps in which contacts turn bodies around.
     """
 
     time: float
@@ -206,6 +208,7 @@ class Step:
     controlled_twist: FloatArray
     impulse: FloatArray
     load_scale: float
+    turning: FloatArray
 
 
 @dataclass(frozen=True, slots=True)

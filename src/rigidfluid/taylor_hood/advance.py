@@ -8,11 +8,11 @@ import numpy as np
 
 from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, inviscid
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
 
-_JUMP_TOLERANCE = 1e-3
-"""Of the jump of the velocity by impulses, which goes into what convects alone."""
+_TURNING_TOLERANCE = 1e-3
+"""Of the velocity by which what convects follows the bodies."""
 
 
 def advance(
@@ -46,9 +46,6 @@ def advance(
         "position": step.pose.position,
         "position_previous": fluid["position"],
     }
-    if problem.inertia and step.impulse.any():
-        load = step.derivative[0] * step.impulse
-        state["jump"] = discretisation.velocity_by(matrix, load, _JUMP_TOLERANCE)
     d, at = problem.dimension, matrix.node_points
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
@@ -76,7 +73,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     expected = e0 * mesh.points + e1 * before if step.points is None else points
     node_points = numbering.node_points(points)
     mesh_velocity = numbering.node_points(d0 * expected + d1 * mesh.points + d2 * before)
-    return CoupledMatrix(
+    matrix = CoupledMatrix(
         points=points,
         node_points=node_points,
         inertia=density * d0,
@@ -86,6 +83,10 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
     )
+    if density == 0.0 or not step.turning.any():
+        return matrix
+    turned = discretisation.velocity_by(inviscid(matrix, d0), step.turning, _TURNING_TOLERANCE)
+    return replace(matrix, advection=matrix.advection + density * turned)
 
 
 def _system(
@@ -112,13 +113,9 @@ def _system(
 
 
 def _extrapolated(fluid: FluidState, step: Step) -> FloatArray:
-    """u* = e₀uⁿ + e₁(uⁿ⁻¹ + δ), where δ is what the impulses of the latest step changed at once: what moves on
-    smoothly is extrapolated, and not the jump."""
+    """u* = e₀uⁿ + e₁uⁿ⁻¹."""
     e0, e1 = step.extrapolation
-    before = fluid["velocity_previous"]
-    if "jump" in fluid:
-        before = before + fluid["jump"]
-    return np.asarray(e0 * fluid["velocity"] + e1 * before)
+    return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
 
 
 def _centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:

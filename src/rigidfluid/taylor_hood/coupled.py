@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from rigidfluid.core.types import BoolArray, FloatArray
 
@@ -27,6 +29,15 @@ class CoupledMatrix:
     position: FloatArray
     mass_matrix: FloatArray
     controlled: BoolArray
+
+
+def inviscid(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
+    """The masses alone of a step's ``matrix`` with the BDF weight ``d0`` [1/time]: 𝓜, which answers to impulses at
+    once."""
+    still = np.zeros_like(matrix.advection)
+    return replace(
+        matrix, inertia=matrix.inertia / d0, viscosity=0.0, advection=still, mass_matrix=matrix.mass_matrix / d0
+    )
 
 
 @dataclass(frozen=True)

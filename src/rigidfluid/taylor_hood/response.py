@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from rigidfluid.core.types import FloatArray, Response, Step
-from rigidfluid.taylor_hood.coupled import CoupledMatrix
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, inviscid
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
 _TOLERANCE = 1e-4
@@ -29,11 +27,7 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
     if matrix.inertia == 0.0:
         by_mass = _of_bodies_alone(matrix, d0 * loads)
     else:
-        still = np.zeros_like(matrix.advection)
-        inviscid = replace(
-            matrix, inertia=matrix.inertia / d0, viscosity=0.0, advection=still, mass_matrix=matrix.mass_matrix / d0
-        )
-        by_mass = discretisation.twists_by(inviscid, loads, _INVISCID_TOLERANCE)
+        by_mass = discretisation.twists_by(inviscid(matrix, d0), loads, _INVISCID_TOLERANCE)
     return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
 
 

@@ -45,8 +45,6 @@ def transfer(
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
         forget()
         moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
-    if "jump" in fluid:
-        moved["jump"] = on_nodes.quadratic(fluid["jump"])
     forget()
     return moved
 

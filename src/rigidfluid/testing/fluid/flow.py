@@ -153,6 +153,7 @@ class Flow:
             controlled_twist=nothing if twist is None else twist,
             impulse=given,
             load_scale=0.0,
+            turning=nothing,
         )
 
     def probe(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -20,6 +20,9 @@ from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 STEP = 0.01
 """Of what is asked with the mass alone, where none counts [time]."""
 
+BLOW = 1e-3
+"""A step so short that viscosity does little in it [time]."""
+
 SHORT = 10.0 ** -np.arange(2.0, 6.0)
 """Steps in which viscosity does less and less [time]."""
 
@@ -105,6 +108,19 @@ class ResponsesContract(FluidContract):
         twists = [components(flow.taken(taken, None).twist) for taken in (step, pushed)]
         self._assert_answers(told, twists[1] - twists[0])
         assert np.abs(told).max() > 1e-3
+
+    def test_what_turns_convects_as_the_flow_of_a_blow(self, dimension: int) -> None:
+        """In fluid at rest a step with impulses that turn answers much as one in the flow that these have just made."""
+        flow, units = self._free_balls(dimension), _units(self._free_balls(dimension))
+        twist = 5.0 * np.random.default_rng(6).normal(size=len(units))
+        turning = (_mass(flow) @ twist).reshape(units[0].shape)
+        blown = replace(flow.after(BLOW, impulse=turning), past=None)
+        still, turned, expected = (
+            at.backend.response(at.fluid, at.mesh, replace(at.step_after(STEP), turning=given), units).by_step
+            for at, given in ((flow, np.zeros_like(turning)), (flow, turning), (blown, np.zeros_like(turning)))
+        )
+        assert np.abs(turned - still).max() > 10.0 * self.answer_tolerance * np.abs(still).max()
+        assert np.linalg.norm(turned - expected) < 0.5 * np.linalg.norm(still - expected)
 
     def test_without_new_points_the_present_mesh_answers(self, dimension: int) -> None:
         """The same where it is at rest, in fluid that is not."""

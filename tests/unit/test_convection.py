@@ -1,0 +1,55 @@
+"""What convects is given the bodies' velocity on the mesh, where contacts turn them around."""
+
+from dataclasses import replace
+
+import fluid_contacts as scenes
+import numpy as np
+import pytest
+
+from rigidfluid.core.contact_path import BodiesPath
+from rigidfluid.core.convection import turning
+from rigidfluid.core.reduced_model import Asked, Coupling, ReducedModel
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.step import step_to
+from rigidfluid.core.types import FloatArray, Pose, Twist
+from rigidfluid.core.wrenches import nothing
+
+STEP, SPEED, MASS = 1e-3, 7.0, 0.14
+
+
+def path_to(simulation: Simulation, moved: float) -> BodiesPath:
+    """A disk's way that ends so far above its start, with a coupling that knows its velocity in x and y."""
+    state, count = simulation.state, np.array([0, 1])
+    pose = Pose(state.pose.position + [[0.0, moved]], state.pose.orientation)
+    zero = np.zeros(2)
+    model = ReducedModel(count, np.eye(2) / np.sqrt(MASS), zero, Asked(zero, zero), False)
+    return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1, coupling=Coupling(model, zero, zero, zero))
+
+
+def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArray:
+    """For a disk that falls at first."""
+    simulation = Simulation(scene(STEP), None, False)
+    falls = Twist(np.array([[0.0, -SPEED]]), np.zeros((1, 1)))
+    simulation.state = state = replace(simulation.state, twist=falls)
+    path = path_to(simulation, moved)
+    path = path if coupled else replace(path, coupling=None)
+    step = step_to(simulation.system, state, STEP, STEP, path.pose, path.impulse, None)
+    return turning(simulation.system, state, path, step)
+
+
+def test_impulses_make_up_for_what_was_extrapolated():
+    """From -7 to what the mesh does, +5, by the mass that the model knows."""
+    np.testing.assert_allclose(turned(5.0 * STEP), [[0.0, MASS * (SPEED + 5.0), 0.0]], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("moved", "coupled", "scene"),
+    [
+        (-SPEED * STEP, True, scenes.dropped),
+        (5.0 * STEP, False, scenes.dropped),
+        (5.0 * STEP, True, scenes.stokes_pressed),
+    ],
+    ids=["as extrapolated", "no contacts", "no inertia"],
+)
+def test_else_nothing_is_turned(moved, coupled, scene):
+    assert not turned(moved, coupled, scene).any()
