@@ -26,9 +26,14 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
     if matrix.inertia == 0.0:
         by_mass = _of_bodies_alone(matrix, d0 * loads)
     else:
-        still = np.zeros_like(matrix.advection)
+        still = np.zeros_like(matrix.flow)
         inviscid = replace(
-            matrix, inertia=matrix.inertia / d0, viscosity=0.0, advection=still, mass_matrix=matrix.mass_matrix / d0
+            matrix,
+            inertia=matrix.inertia / d0,
+            viscosity=0.0,
+            advection=still,
+            flow=still,
+            mass_matrix=matrix.mass_matrix / d0,
         )
         by_mass = discretisation.twists_by(inviscid, loads, _TOLERANCE)
     return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
