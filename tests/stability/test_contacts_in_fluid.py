@@ -102,12 +102,19 @@ def test_a_bounce(step, stepping, created, off):
     assert history.bodies["vy"][-1] == pytest.approx(1.69, abs=off)
 
 
+@pytest.mark.parametrize("density", [3.0, 0.2])
+@pytest.mark.parametrize("step", [1.0, 0.25])
+def test_a_cradle_gains_nothing_at_fine_steps(step, density):
+    """The flow, which the mesh does not resolve, may not add energy, however long it goes on."""
+    refuse_imbalance(rigidfluid.run(scenes.cradle(step * MILLISECOND, density=density)), created=5e-4)
+
+
 @pytest.mark.parametrize("stepping", BOTH)
 @pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.03, 0.04, 0.1), (1.0, 0.01, 0.01, 0.04)])
 def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
     history = rigidfluid.run(scenes.cradle(step * MILLISECOND, stepping))
     refuse_imbalance(history, created, lost)
-    assert track(history, "vx")[-1, 2] == pytest.approx(7.38, abs=off)
+    assert track(history, "vx")[-1, 2] == pytest.approx(7.31, abs=off)
 
 
 @pytest.mark.parametrize("stepping", BOTH)

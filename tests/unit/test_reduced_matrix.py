@@ -112,7 +112,8 @@ def test_without_viscosity_components_share_no_entry(steps):
     """Those entries are zero; factors would fill up for nothing."""
     discretisation, made = steps
     matrix, _, masses, operator, built = made[-1]
-    stiffness = discretisation._assembly.matrix(matrix.points, matrix.inertia, 0.0, np.zeros_like(matrix.advection))
+    still = np.zeros_like(matrix.flow)
+    stiffness = discretisation._assembly.matrix(matrix.points, matrix.inertia, 0.0, still, still)
     discretisation._constraint.place(matrix.node_points, matrix.position)
     inviscid = discretisation._reduced_matrix(stiffness, False).filled(stiffness, masses)
     wanted = expected(discretisation, stiffness, masses, operator)

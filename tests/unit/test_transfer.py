@@ -31,7 +31,8 @@ def on(simulation, mesh):
 
 
 def divergence(discretisation, points, velocity):
-    matrix = CompiledAssembly(discretisation.numbering).matrix(points, 0.0, 0.0, np.zeros_like(velocity))
+    still = np.zeros_like(velocity)
+    matrix = CompiledAssembly(discretisation.numbering).matrix(points, 0.0, 0.0, still, still)
     return (matrix @ np.concatenate([velocity.ravel(), np.zeros(len(points))]))[velocity.size :]
 
 

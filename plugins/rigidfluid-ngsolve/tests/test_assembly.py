@@ -33,8 +33,8 @@ def test_the_integrals_are_those_of_scikit_fem_wherever_the_mesh_moves(dimension
     random = np.random.default_rng(4)
     for inertia, viscosity in ((2.0, 0.3), (0.0, 1.0), (1.0, 0.0)):
         points = points + 0.05 * SIZE * random.uniform(-1, 1, size=points.shape)
-        field = random.normal(size=(numbering.nodes, dimension))
-        matrix, theirs = (a.matrix(points, inertia, viscosity, field) for a in (found, expected))
+        field, flow = random.normal(size=(2, numbering.nodes, dimension))
+        matrix, theirs = (a.matrix(points, inertia, viscosity, field, flow) for a in (found, expected))
         assert abs(matrix - theirs).max() < 1e-13 * abs(theirs).max()
         load, theirs = (a.mass_times(points, field) for a in (found, expected))
         np.testing.assert_allclose(load, theirs, rtol=0, atol=1e-13 * np.abs(theirs).max())
@@ -46,9 +46,9 @@ def test_what_is_returned_stays_as_it_is() -> None:
     numbering, points = scattered(2)
     made = FormAssembly(numbering, convection=True)
     field = np.ones((numbering.nodes, 2))
-    matrix, load = made.matrix(points, 1.0, 1.0, field), made.mass_times(points, field)
+    matrix, load = made.matrix(points, 1.0, 1.0, field, field), made.mass_times(points, field)
     before = matrix.copy(), load.copy()
-    made.matrix(2.0 * points, 3.0, 1.0, -field)
+    made.matrix(2.0 * points, 3.0, 1.0, -field, -field)
     made.mass_times(2.0 * points, -field)
     assert abs(matrix - before[0]).max() == 0.0
     np.testing.assert_array_equal(load, before[1])
@@ -58,8 +58,8 @@ def test_what_is_returned_stays_as_it_is() -> None:
 def test_without_convection_the_rest_is_the_same(dimension: int) -> None:
     numbering, points = scattered(dimension)
     still = np.zeros((numbering.nodes, dimension))
-    theirs = CompiledAssembly(numbering).matrix(points, 1.0, 0.5, still)
-    assert abs(FormAssembly(numbering, convection=False).matrix(points, 1.0, 0.5, still) - theirs).max() < 1e-14
+    theirs = CompiledAssembly(numbering).matrix(points, 1.0, 0.5, still, still)
+    assert abs(FormAssembly(numbering, convection=False).matrix(points, 1.0, 0.5, still, still) - theirs).max() < 1e-14
 
 
 def test_memory_does_not_grow_with_the_number_of_meshes() -> None:
@@ -68,6 +68,6 @@ def test_memory_does_not_grow_with_the_number_of_meshes() -> None:
     field = np.ones((numbering.nodes, 2))
     most = []
     for _ in range(200):
-        FormAssembly(numbering, convection=True).matrix(points, 1.0, 1.0, field)
+        FormAssembly(numbering, convection=True).matrix(points, 1.0, 1.0, field, field)
         most.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert most[-1] < most[20] + 20_000  # KiB

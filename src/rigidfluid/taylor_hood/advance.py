@@ -62,7 +62,7 @@ def advance(
 
 
 def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
-    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, both extrapolated or differenced.
+    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, u* extrapolated and w differenced.
 
     Without new points it is that of the present mesh, which moves on as it did.
     """
@@ -71,22 +71,23 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     before = fluid["points_previous"]
     points = mesh.points if step.points is None else step.points
     expected = e0 * mesh.points + e1 * before if step.points is None else points
-    node_points = numbering.node_points(points)
+    node_points, flow = numbering.node_points(points), density * _extrapolated(fluid, step)
     mesh_velocity = numbering.node_points(d0 * expected + d1 * mesh.points + d2 * before)
     matrix = CoupledMatrix(
         points=points,
         node_points=node_points,
         inertia=density * d0,
         viscosity=problem.dynamic_viscosity,
-        advection=density * (_extrapolated(fluid, step) - mesh_velocity),
+        advection=flow - density * mesh_velocity,
+        flow=flow,
         position=step.pose.position,
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
     )
     if density == 0.0 or not step.turning.any():
         return matrix
-    turned = discretisation.velocity_by(inviscid(matrix, d0), step.turning, _TURNING_TOLERANCE)
-    return replace(matrix, advection=matrix.advection + density * turned)
+    turned = density * discretisation.velocity_by(inviscid(matrix, d0), step.turning, _TURNING_TOLERANCE)
+    return replace(matrix, advection=matrix.advection + turned, flow=flow + turned)
 
 
 def _system(

@@ -13,11 +13,12 @@ from rigidfluid.core.types import BoolArray, FloatArray
 class CoupledMatrix:
     """Of u and p on the nodes and vertices of one process' part, and of the twists of the bodies that are free:
 
-    inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q)
+    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q)
 
     for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies.
 
-    ``points`` (vertices, d), ``node_points`` (nodes, d); ``advection`` a (nodes, d) already holds the density.
+    ``points`` (vertices, d), ``node_points`` (nodes, d). ``advection`` a and ``flow`` c, (nodes, d), already hold the
+    density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all bodies, as in `Step`.
     """
 
@@ -26,6 +27,7 @@ class CoupledMatrix:
     inertia: float
     viscosity: float
     advection: FloatArray
+    flow: FloatArray
     position: FloatArray
     mass_matrix: FloatArray
     controlled: BoolArray
@@ -36,7 +38,12 @@ def inviscid(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
     once."""
     still = np.zeros_like(matrix.advection)
     return replace(
-        matrix, inertia=matrix.inertia / d0, viscosity=0.0, advection=still, mass_matrix=matrix.mass_matrix / d0
+        matrix,
+        inertia=matrix.inertia / d0,
+        viscosity=0.0,
+        advection=still,
+        flow=still,
+        mass_matrix=matrix.mass_matrix / d0,
     )
 
 

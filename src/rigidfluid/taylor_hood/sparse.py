@@ -23,10 +23,12 @@ class Assembly(Protocol):
 
     numbering: Numbering
 
-    def matrix(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> sparse.csr_array:
-        """K: inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+    def matrix(
+        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+    ) -> sparse.csr_array:
+        """K: inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
 
-        ``advection`` a (nodes, d) already holds the density. All have one sparsity pattern, zeros kept.
+        ``advection`` a and ``flow`` c, (nodes, d), already hold the density. All have one sparsity pattern, zeros kept.
         """
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
@@ -141,7 +143,7 @@ class SparseDiscretisation:
         return self._latest
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
-        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection)
+        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow)
         constraint, masses = self._constraint, m.mass_matrix[~m.controlled]
         constraint.place(m.node_points, m.position)
         twists = slice(constraint.twist_start, constraint.twist_start + masses.shape[0] * masses.shape[1])

@@ -69,13 +69,14 @@ def project(
     ``target`` takes all bodies as controlled.
     """
     numbering, bodies = target.numbering, len(target.surfaces.body_nodes)
-    width = numbering.dimension + (1 if numbering.dimension == 2 else 3)
+    width, still = numbering.dimension + (1 if numbering.dimension == 2 else 3), np.zeros_like(velocity)
     matrix = CoupledMatrix(
         points=points,
         node_points=numbering.node_points(points),
         inertia=1.0,
         viscosity=0.0,
-        advection=np.zeros_like(velocity),
+        advection=still,
+        flow=still,
         position=position,
         mass_matrix=np.zeros((bodies, width, width)),
         controlled=np.ones(bodies, dtype=bool),

@@ -23,7 +23,7 @@ class FormAssembly:
     numbering : Numbering
         The topology.
     convection : bool
-        Whether there is any; without it ``advection`` is not read.
+        Whether there is any; without it ``advection`` and ``flow`` are not read.
     """
 
     def __init__(self, numbering: Numbering, convection: bool) -> None:
@@ -33,7 +33,7 @@ class FormAssembly:
         self._mesh = NodeMesh(numbering)
         velocities = ngs.VectorNodalFESpace(self._mesh.ngsolve, order=2)
         space = velocities * ngs.H1(self._mesh.ngsolve, order=1)
-        self._field = ngs.GridFunction(velocities)
+        self._field, self._flow = ngs.GridFunction(velocities), ngs.GridFunction(velocities)
         self._inertia, self._viscosity = ngs.Parameter(0.0), ngs.Parameter(0.0)
         (u, p), (v, q) = space.TnT()
         # One integral each: NGSolve multiplies all functions of an integral with each other.
@@ -42,13 +42,17 @@ class FormAssembly:
         self._form += self._viscosity * ngs.InnerProduct(_twice_strain(u), ngs.grad(v)) * ngs.dx
         self._form += (-p * ngs.div(v) - q * ngs.div(u)) * ngs.dx
         if convection:
-            self._form += ngs.grad(u) * self._field * v * ngs.dx(bonus_intorder=_ORDER_OF_FIELD)
+            convected = ngs.grad(u) * self._field + 0.5 * ngs.div(self._flow) * u
+            self._form += convected * v * ngs.dx(bonus_intorder=_ORDER_OF_FIELD)
         self._load = ngs.LinearForm(self._field * velocities.TestFunction() * ngs.dx)
         self._strain_square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
         self._order: IntArray | None = None
 
-    def matrix(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> sparse.csr_array:
+    def matrix(
+        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+    ) -> sparse.csr_array:
         self._take(points, advection)
+        _nodal(self._flow.vec, flow.shape[1])[:] = flow
         self._inertia.Set(inertia)
         self._viscosity.Set(viscosity)
         self._form.Assemble()

@@ -131,7 +131,7 @@ class PetscDiscretisation:
         m, topology, constraint = matrix, self._topology, self._constraint
         topology.clean()
         topology.space.move(m.points)
-        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection)
+        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection, m.flow)
         operator = constraint.operator(m.node_points, m.position)
         inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
         schur = partial(schur_data, topology.space, topology.forms, self.surfaces, m.points, m.inertia, m.viscosity)

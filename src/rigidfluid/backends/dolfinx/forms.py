@@ -21,10 +21,11 @@ class Forms:
         self._space = space
         u, v = ufl.TrialFunction(space.velocity), ufl.TestFunction(space.velocity)
         p, q = ufl.TrialFunction(space.pressure), ufl.TestFunction(space.pressure)
-        self._field = fem.Function(space.velocity)
+        self._field, self._flow = fem.Function(space.velocity), fem.Function(space.velocity)
         self._inertia, self._viscosity = (fem.Constant(space.mesh, default_scalar_type(0.0)) for _ in range(2))
         dx = ufl.dx
-        convection = ufl.inner(ufl.dot(ufl.grad(u), self._field), v) * dx(degree=5)
+        convected = ufl.dot(ufl.grad(u), self._field) + 0.5 * ufl.div(self._flow) * u
+        convection = ufl.inner(convected, v) * dx(degree=5)
         inertia = self._inertia * ufl.inner(u, v) * dx(degree=4)
         stress = self._viscosity * ufl.inner(ufl.grad(u) + ufl.grad(u).T, ufl.grad(v)) * dx(degree=2)
         pressure, divergence = -p * ufl.div(v) * dx(degree=2), -q * ufl.div(u) * dx(degree=2)
@@ -40,11 +41,16 @@ class Forms:
         """A PETSc matrix for `assemble`: the rows of each process' velocities, then of its pressures."""
         return compat.create_block_matrix(self._matrix)
 
-    def assemble(self, matrix: Any, inertia: float, viscosity: float, advection: FloatArray) -> None:
-        """Overwrite it by inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q)."""
+    def assemble(self, matrix: Any, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray) -> None:
+        """Overwrite it by inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+
+        ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
+        """
         self._inertia.value, self._viscosity.value = inertia, viscosity
         self._space.set(self._field, advection)
-        compat.assemble_block_matrix(matrix, self._matrix if advection.any() else self._without_convection)
+        self._space.set(self._flow, flow)
+        moving = advection.any() or flow.any()
+        compat.assemble_block_matrix(matrix, self._matrix if moving else self._without_convection)
 
     def mass_times(self, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""

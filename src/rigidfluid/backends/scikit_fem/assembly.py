@@ -62,10 +62,12 @@ class CompiledAssembly:
         self._tables = reference_tables(numbering.dimension)
         self._build_sparsity()
 
-    def matrix(self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray) -> sparse.csr_array:
+    def matrix(
+        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+    ) -> sparse.csr_array:
         n, t = self.numbering, self._tables
         data = kernels.assemble(
-            points, n.cells, n.cell_nodes, self._slots, len(self._indices), inertia, viscosity, advection,
+            points, n.cells, n.cell_nodes, self._slots, len(self._indices), inertia, viscosity, advection, flow,
             t.value, t.gradient, t.weight, t.flat_gradient, t.flat_linear, t.flat_weight, t.mass,
         )  # fmt: skip
         return sparse.csr_array((data, self._indices, self._indptr), shape=(n.unknowns,) * 2)

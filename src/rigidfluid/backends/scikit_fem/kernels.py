@@ -63,11 +63,13 @@ def physical_gradients(reference, inverse, gradient):
 
 
 @njit(cache=True)
-def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity, advection,
+def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity, advection, flow,
              value, reference_gradient, weight, flat_gradient, flat_linear, flat_weight, mass):  # fmt: skip
-    """Entries (size,) of the matrix of: inertia (u, v) + (a·∇u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+    """Entries (size,) of the matrix of
 
-    ``advection`` a (nodes, d) already holds the density.
+    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+
+    ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
     """
     cells, b = cell_nodes.shape
     d = points.shape[1]
@@ -77,15 +79,19 @@ def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity,
     scalar = np.empty((b, b))
     stress = np.empty((b, b, d, d))
     divergence = np.empty((b, d, d + 1))
-    moving = np.any(advection)
+    moving = np.any(advection) or np.any(flow)
     for cell in range(cells):
         det = inverse_jacobian(points, cell_vertices[cell], inverse)
         scalar[:] = inertia * det * mass
         if moving:
             for q in range(len(weight)):
                 physical_gradients(reference_gradient[q], inverse, gradient)
+                spread = 0.0
+                for i in range(b):
+                    for a in range(d):
+                        spread += gradient[i, a] * flow[cell_nodes[cell, i], a]
                 for j in range(b):
-                    along = 0.0
+                    along = 0.5 * spread * value[q, j]
                     for a in range(d):
                         speed = 0.0
                         for i in range(b):

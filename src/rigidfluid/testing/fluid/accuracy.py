@@ -9,7 +9,7 @@ import pytest
 
 from rigidfluid.core.types import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
-from rigidfluid.testing.fluid.boxes import box, quadrature, renumbered, samples, swayed
+from rigidfluid.testing.fluid.boxes import box, quadrature, renumbered, samples, swayed, swayed_across
 from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Waves, enclosed, problem
 from rigidfluid.testing.fluid.flow import Flow
 
@@ -42,7 +42,8 @@ class AccuracyContract(FluidContract):
         kinetic = 0.5 * DENSITY * float(weights @ np.sum(exact.velocity(0.0, points) ** 2, axis=1))
         strain = exact.gradient + exact.gradient.T
         for length in 0.1 * UNEVEN:
-            flow = flow.after(length, points=swayed(flow.reference.points, _sway(flow.time + length, dimension)))
+            sway = _sway(flow.time + length, dimension)
+            flow = flow.after(length, points=swayed_across(flow.reference.points, sway))
             self._check(flow, exact)
             self.assert_close(flow.advance.kinetic_energy, kinetic, scale=10.0)
             dissipated = [flow.advance.dissipation, flow.advance.dissipation_midway]

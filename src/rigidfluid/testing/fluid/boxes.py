@@ -59,6 +59,16 @@ def swayed(points: FloatArray, shift: FloatArray) -> FloatArray:
     return np.asarray(points + np.prod(np.sin(np.pi * points), axis=1)[:, None] * shift)
 
 
+def swayed_across(points: FloatArray, shift: FloatArray) -> FloatArray:
+    """The ``points`` (N, d) of an empty box, displaced by up to ``shift`` (d,), but not along the first axis.
+
+    It is the same all along that axis, so that points on the faces across it slide in them.
+    """
+    moved = points.copy()
+    moved[:, 1:] += np.prod(np.sin(np.pi * points[:, 1:]), axis=1)[:, None] * shift[1:]
+    return moved
+
+
 def carried(points: FloatArray, shift: FloatArray) -> FloatArray:
     """The ``points`` (N, d) of a box with the two balls, these displaced by ``shift`` (2, d)."""
     return np.asarray(points + sum(_near(points, ball)[:, None] * shift[ball] for ball in range(2)))

@@ -69,8 +69,9 @@ class LinearFlow:
 
     @classmethod
     def shear(cls, dimension: int) -> LinearFlow:
-        """All in one direction, so that (v·∇)u = 0 for any advecting v that is along it, extrapolated ones too."""
-        along, across = np.array([0.8, -0.5, 0.6])[:dimension], np.array([0.5, 0.8, 0.0])[:dimension]
+        """All along the first axis, and the same all along it: what of it is extrapolated has no divergence either,
+        and (v·∇)u = 0 for any such v."""
+        along, across = np.array([1.0, 0.0, 0.0])[:dimension], np.array([0.0, 0.9, 0.6])[:dimension]
         return replace(cls.steady(dimension), gradient=np.outer(along, across), drift=0.3 * along)
 
     def velocity(self, time: float, points: FloatArray) -> FloatArray:
