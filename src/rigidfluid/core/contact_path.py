@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contacts import select
 from rigidfluid.core.coupled_movement import CoupledMovement
+from rigidfluid.core.detection import detect
 from rigidfluid.core.followed import FollowedContacts
 from rigidfluid.core.implicit_contacts import cross_contacts
 from rigidfluid.core.interfaces import ForceLaw
@@ -222,7 +223,7 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
     """The contacts of any pose, as a detector finds them that needs no mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:
-        near = system.detector.detect(pose, None, reach)
+        near = detect(system, pose, None, reach)
         chosen = may_repel(system, near)
         return near if chosen.all() else select(near, chosen)
 

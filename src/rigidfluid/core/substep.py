@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.contacts import select
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import Movement
+from rigidfluid.core.part_results import refuse_no_number
 from rigidfluid.core.rigid import cross
 from rigidfluid.core.stiffness import greatest_stiffness, on_the_way
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
@@ -138,6 +139,7 @@ def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _
     stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
     inverse = approach.inverse
     rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
+    refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
 
 
