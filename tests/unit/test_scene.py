@@ -95,6 +95,10 @@ BAD = {
     "a truth value is no number": ({"time.end": True}, "time.end: found True", "a valid number", "ends"),
     "text is no number": ({"time.end": "1.0"}, "time.end: found '1.0'", "a valid number", "ends"),
     "infinite": ({"time.end": float("inf")}, "time.end: found inf", "finite", "ends"),
+    "out of proportion": ({"domain.upper": [1e308, 1.0]}, "domain.upper.0: found 1e+308", "1e+30", "units"),
+    "next to nothing": ({"body.0.density": 1e-310}, "body.0.density: found 1e-310", "1e-30", "units"),
+    "an option out of proportion": ({"contact.epsilon": 1e-310}, "contact.epsilon: found 1e-310", "1e-30", "units"),
+    "more cells than any": ({"domain.upper": [1e6, 1e6]}, "mesh.size: found 0.15", "at least", "Coarsen"),
     "negative density": ({"body.0.density": -1.0}, "body.0.density: found -1", "greater than 0", "Density of the body"),
     "negative radius": ({"body.0.radius": -1.0}, "body.0.radius: found -1", "greater than 0", "Correct"),
     "not a choice": (
@@ -172,6 +176,11 @@ def test_bad_value_is_refused(changes: dict[str, Any], field: str, allowed: str,
 
 
 BAD_GEOMETRY = {
+    "lost in the box": (
+        {"domain.lower": [-1e12, -1e12], "domain.upper": [1e12, 1e12], "mesh.size": 1e11},
+        "body.0",
+        "at least 1e-08",
+    ),
     "outside": ({"body.0.position": [1.0, 7.0]}, "body.0.position", "overlaps face 'top' of the domain by 1.125"),
     "through a wall": (
         {"body.0.position": [0.1, 3.0]},
@@ -299,6 +308,13 @@ def test_defaults() -> None:
 
 def test_detector_for_other_shapes() -> None:
     assert build_system(Scene.from_dict(changed({"body.1": ELLIPSE, "contact": {}}))).detector.name == "ellipsoid"
+
+
+def test_an_endless_box_is_refused_without_a_mesher() -> None:
+    """Netgen ends the whole process where the difference of two corners overflows."""
+    box = {"lower": [-1e308, -1e308], "upper": [1e308, 1e308]}
+    with pytest.raises(SceneError, match=r"domain.lower.0: found -1e\+308"):
+        Scene.from_dict(changed({"domain": box}))
 
 
 def test_a_law_for_balls_refuses_other_shapes() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -12,6 +12,9 @@ from pydantic_core import ErrorDetails
 
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
+
+LARGEST, SMALLEST = 1e30, 1e-30
+"""Numbers of a scene lie between these, or are zero: powers and products of them then stay finite."""
 
 M = TypeVar("M", bound=BaseModel)
 Location = tuple[int | str, ...]
@@ -42,10 +45,13 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     # Through JSON: its arrays may become tuples in strict mode, while a string never becomes a number.
     text = json.dumps(data, default=_plain)
     try:
-        return model.model_validate_json(text)
+        table = model.model_validate_json(text)
     except ValidationError as error:
         complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
         raise _scene_error(model, complaints[0], at) from None
+    for field, number in _numbers(json.loads(text), at):
+        _refuse_out_of_proportion(field, number)
+    return table
 
 
 def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
@@ -74,6 +80,21 @@ def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
 def _plain(value: Any) -> Any:
     """NumPy values as lists and numbers; TOML's dates, which no key takes, as they are written."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+def _numbers(value: Any, at: str) -> Iterator[tuple[str, float]]:
+    """Every number in tables and lists, with its field."""
+    if isinstance(value, dict | list):
+        for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _numbers(inner, f"{at}.{key}" if at else str(key))
+    elif isinstance(value, int | float):
+        yield at, value
+
+
+def _refuse_out_of_proportion(field: str, number: float) -> None:
+    if number != 0 and not SMALLEST <= abs(number) <= LARGEST:
+        allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size"
+        raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
 
 
 def _scene_error(model: type[BaseModel], complaint: ErrorDetails, at: str) -> SceneError:
