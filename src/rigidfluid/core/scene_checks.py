@@ -198,8 +198,6 @@ def _check_sizes(scene: Scene) -> None:
         raise SceneError("time.step", time.step, f"at least {time.end / MOST_STEPS:g} for this end", "Lengthen it.")
     if scene.output.every < time.step:
         raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
-    if time.step > time.end:
-        raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten the step.")
     if time.shortest > time.step:
         raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
     if mesh and mesh.size_body > mesh.size:
