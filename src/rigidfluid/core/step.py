@@ -1,4 +1,4 @@
-"""One attempted step: predict, move the mesh, find contacts, push, advance. State in, candidate out."""
+"""One attempted step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
 
 from __future__ import annotations
 
