@@ -160,6 +160,8 @@ BAD = {
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
     "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),
     "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
+    "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "match pattern", "Name in"),
+    "escape in a name": ({"body.0.name": "a\x1b[31m"}, "body.0.name: found 'a\\x1b", "match pattern", "Name in"),
     "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "match pattern", "Name of the scene"),
 }
 

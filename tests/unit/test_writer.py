@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
@@ -16,6 +17,10 @@ from rigidfluid.core.tables import Table, read_rows
 from rigidfluid.errors import MeshError, OutputError
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
+
+
+def one_ball():
+    return dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.1, step=0.01)
 
 
 @pytest.fixture
@@ -57,6 +62,14 @@ def test_numbers_and_names_survive_a_table(tmp_path):
     table.extend(rows)
     Table(tmp_path / "t.csv", names, kept)
     assert read_rows(tmp_path / "t.csv") == rows
+
+
+def test_a_table_that_cannot_be_read_is_reported_by_file(tmp_path):
+    rigidfluid.run(one_ball(), tmp_path)
+    path = tmp_path / "bodies.csv"
+    path.write_text(path.read_text().replace("\n0.0,", "\nzero,"))
+    with pytest.raises(OutputError, match=r"bodies.csv: found a value that is no number in column time"):
+        rigidfluid.run(one_ball(), tmp_path, resume=True)
 
 
 @pytest.mark.parametrize("name", ["bodies.csv", "energy.csv"])

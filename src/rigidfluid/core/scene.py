@@ -113,7 +113,11 @@ class PrescribedTable(_Table):
 class BodyTable(_OpenTable):
     """One rigid body."""
 
-    name: str = Field(default="", description="Name in the results; `body0`, `body1`, … if not given")
+    name: str = Field(
+        default="",
+        pattern=r"^[^\x00-\x1f\x7f]*$",  # a control character would break the tables and plots that names stand in
+        description="Name in the results, without control characters; `body0`, `body1`, … if not given",
+    )
     type: str = Field(description="Name of a body type")
     density: Positive = Field(description="Density of the body [mass/length^d]")
     position: Vector = Field(description="Initial position of the centre of mass [length]")

@@ -15,7 +15,7 @@ from typing import Any
 
 from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, read_staged, stage_checkpoint
 from rigidfluid.core.ranks import ROOT, Ranks
-from rigidfluid.core.records import Records, columns
+from rigidfluid.core.records import Records, Row, columns
 from rigidfluid.core.tables import Table, read_rows
 from rigidfluid.core.types import Fields
 from rigidfluid.core.vtu import write_pvd, write_pvtu, write_vtu
@@ -65,7 +65,9 @@ class Writer:
 
     def records(self) -> Records:
         """The rows that are on disk."""
-        return self._ranks.shared({name: read_rows(self.out / f"{name}.csv") for name in self._tables})
+        with self._ranks.together():
+            rows = {name: _rows(self.out / f"{name}.csv") for name in self._tables}
+        return self._ranks.shared(rows)
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
@@ -165,6 +167,15 @@ def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
             f"a run of {now}, as many as there are now",
             f"Resume it with {found}, or run without --resume.",
         )
+
+
+def _rows(path: Path) -> list[Row]:
+    try:
+        return read_rows(path)
+    except ValueError as error:
+        raise OutputError(
+            str(path), error, "a table as it was written", "Restore it, or run without --resume."
+        ) from error
 
 
 @contextmanager
