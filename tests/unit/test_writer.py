@@ -42,6 +42,7 @@ def same(left, right):
 def test_a_checkpoint_comes_back_to_the_last_bit(scene, tmp_path):
     simulation = Simulation(scene, tmp_path, False)
     simulation.go(None)
+    simulation.close()
     assert same(simulation.state, read_checkpoint(tmp_path / "state.h5").state)
 
 
@@ -75,6 +76,7 @@ def test_a_table_that_cannot_be_read_is_reported_by_file(tmp_path):
 @pytest.mark.parametrize("name", ["bodies.csv", "energy.csv"])
 def test_a_full_disk_is_reported_by_file(scene, tmp_path, name):
     (tmp_path / name).symlink_to("/dev/full")
+    (tmp_path / "run.lock").touch()
     with pytest.raises(OutputError, match=rf"{name}: found No space left"):
         rigidfluid.run(scene, tmp_path)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 
 from rigidfluid.core.history import History
@@ -53,12 +53,12 @@ def run(
     SceneError, PluginError, MeshError
         Before anything is written.
     OutputError
-        Where the disk refuses, or there is nothing to resume.
+        Where the disk refuses, there is nothing to resume, or ``out`` is another run's or not a run's.
     StepError
         Where even the shortest step fails; what was computed stays, and can be resumed.
     """
-    with one_openblas_thread():
-        simulation = Simulation(scene, None if out is None else Path(out), resume, processes)
+    folder = None if out is None else Path(out)
+    with one_openblas_thread(), closing(Simulation(scene, folder, resume, processes)) as simulation:
         told = finished or (lambda _: None)
         try:
             simulation.go(progress)

@@ -81,11 +81,16 @@ class Simulation:
         self.history = History(scene.dimension)
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start = time.perf_counter()
-        if earlier is None:
-            self._begin(out)
-        else:
-            assert out is not None
-            self._take_up(out, earlier)
+        self._writer: Writer | None = None
+        try:
+            if earlier is None:
+                self._begin(out)
+            else:
+                assert out is not None
+                self._take_up(out, earlier)
+        except BaseException:
+            self.close()
+            raise
 
     @property
     def alone(self) -> bool:
@@ -114,6 +119,11 @@ class Simulation:
         self.history.summary["files"] = [] if self._writer is None else self._writer.files
         if self._writer is not None:
             self._writer.summary(self.history.summary)
+
+    def close(self) -> None:
+        """Let other runs write to the folder; nothing may be written after that."""
+        if self._writer is not None:
+            self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
