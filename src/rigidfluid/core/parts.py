@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.part_results import refuse_lost_body
 from rigidfluid.core.validation import read_table, unknown_key
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
@@ -104,10 +105,12 @@ def _body(scene: Scene, registry: Registry, number: int) -> Body:
     _refuse_unread(table.options, [part], type(table).model_fields, at)
     options = read_table(part.Options, table.options, at)
     try:
-        return part(options, scene.dimension)
+        body = part(options, scene.dimension)
     except SceneError as error:  # a body does not know its number
         subject = f"{at}.{error.subject.removeprefix('body.')}"
         raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    refuse_lost_body(body, at)
+    return body
 
 
 def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:

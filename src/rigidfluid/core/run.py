@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import closing, suppress
 from pathlib import Path
 
+from rigidfluid.core.foreign import no_exit
 from rigidfluid.core.history import History
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.simulation import Progress, Simulation
@@ -51,23 +52,35 @@ def run(
     Raises
     ------
     SceneError, PluginError, MeshError
-        Before anything is written.
+        Before anything is written; PluginError also where a part gives what cannot be, or exits.
     OutputError
         Where the disk refuses, there is nothing to resume, or ``out`` is another run's or not a run's.
     StepError
         Where even the shortest step fails; what was computed stays, and can be resumed.
+
+    Any other error, as that of a plug-in, leaves a summary too.
     """
     folder = None if out is None else Path(out)
-    with one_openblas_thread(), closing(Simulation(scene, folder, resume, processes)) as simulation:
+    with one_openblas_thread(), no_exit(), closing(Simulation(scene, folder, resume, processes)) as simulation:
         told = finished or (lambda _: None)
         try:
-            simulation.go(progress)
-        except (RigidfluidError, KeyboardInterrupt) as error:
-            if simulation.alone or isinstance(error, RigidfluidError):  # an interrupt need not reach all ranks
+            with no_exit():
+                simulation.go(progress)
+        except BaseException as error:
+            if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
                 with suppress(OutputError):  # a full disk has been reported once
-                    simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+                    simulation.finish(status=_status(error))
                 told(simulation.history)
+            if not isinstance(error, RigidfluidError | KeyboardInterrupt) and folder is not None:
+                error.add_note(f"What was computed until then is kept in {folder}; it can be resumed.")
             raise
         simulation.finish(status="complete")
         told(simulation.history)
     return simulation.history
+
+
+def _status(error: BaseException) -> str:
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted"
+    kind = "" if isinstance(error, RigidfluidError) else f"{type(error).__name__}: "
+    return f"stopped: {kind}{error}"
