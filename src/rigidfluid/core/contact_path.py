@@ -30,6 +30,9 @@ from rigidfluid.errors import StepRejected
 MOST_SUBSTEPS = 100_000
 """More of them in one step are refused."""
 
+HOPELESS = 1_000 * MOST_SUBSTEPS
+"""If a plan asks for more than this, none is walked: what flies apart needs fewer in the end, but not by so much."""
+
 IMPLICIT_PARTS = 8
 """Of a step in a fluid, each an implicit step of the bodies."""
 
@@ -303,7 +306,10 @@ def _resolve(
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: Movement, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
-    return plan(law, contacts, movement, arms(system), size, span)
+    planned = plan(law, contacts, movement, arms(system), size, span)
+    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.coast > HOPELESS * planned.substep:
+        raise _too_stiff(system, contacts, planned.substep)
+    return planned
 
 
 class _Push(NamedTuple):
