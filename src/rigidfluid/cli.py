@@ -341,7 +341,7 @@ def _print_end(history: History, folder: Path) -> None:
 
 def _print_energy(history: History) -> None:
     """What came from nowhere and what vanished, and the likely causes where it is much."""
-    from rigidfluid.core.energy_account import contacts_pushed, energy_account, energy_warnings, per_cent
+    from rigidfluid.core.energy_account import NOTICEABLE, contacts_pushed, energy_account, energy_warnings, per_cent
 
     energy = history.energy
     account = energy_account(energy)
@@ -350,7 +350,10 @@ def _print_energy(history: History) -> None:
         f"energy: {per_cent(account.created)} created, {per_cent(account.lost)} lost{friction}, "
         f"of {_figure(account.put_in)} put in"
     )
-    for warning in energy_warnings(energy, contacts_pushed(history.bodies, len(energy["time"]))):
+    if max(account.created, account.lost) < NOTICEABLE:
+        return  # the table of bodies is large, and needed for a cause alone
+    forces = history.table("bodies", [f"cf{axis}" for axis in "xyz"[: history.dimension]])
+    for warning in energy_warnings(energy, contacts_pushed(forces, len(energy["time"]))):
         grade, style = ("serious warning", "red") if warning.serious else ("warning", "yellow")
         _print(f"{grade}: {warning.text}. {warning.remedy}", style)
 

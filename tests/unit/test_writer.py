@@ -1,6 +1,7 @@
 """What lands on disk: checkpoints to the last bit, tables that can be cut back, and a disk that refuses."""
 
 import json
+import tracemalloc
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
@@ -47,10 +48,15 @@ def test_a_checkpoint_comes_back_to_the_last_bit(scene, tmp_path):
 
 
 def test_disk_and_memory_hold_the_same(scene, tmp_path):
-    history = rigidfluid.run(scene, tmp_path)
+    history, in_memory = rigidfluid.run(scene, tmp_path), rigidfluid.run(scene)
     assert json.loads((tmp_path / "summary.json").read_text()) == history.summary
-    for name, rows in history.records.items():
-        assert read_rows(tmp_path / f"{name}.csv") == rows
+    for name, rows in in_memory.records.items():
+        assert history.records[name] == rows
+        for column, values in in_memory.table(name).items():
+            assert values.dtype == history.table(name)[column].dtype or len(values) == 0
+            np.testing.assert_array_equal(values, history.table(name)[column])
+    for figure in ("smallest_gap", "reynolds", "energy"):
+        assert history.summary[figure] == in_memory.summary[figure]
     assert all(Path(file).exists() for file in history.summary["files"])
 
 
@@ -70,7 +76,31 @@ def test_a_table_that_cannot_be_read_is_reported_by_file(tmp_path):
     path = tmp_path / "bodies.csv"
     path.write_text(path.read_text().replace("\n0.0,", "\nzero,"))
     with pytest.raises(OutputError, match=r"bodies.csv: found a value that is no number in column time"):
-        rigidfluid.run(one_ball(), tmp_path, resume=True)
+        _ = rigidfluid.run(one_ball(), tmp_path, resume=True).bodies
+
+
+def test_memory_does_not_grow_with_a_run_that_is_on_disk(tmp_path):
+    """Fifty balls took 32 kB each step."""
+    places = [[0.2 + 0.4 * (i % 10), 0.2 + 0.4 * (i // 10)] for i in range(50)]
+    balls = [ball(place, [0.0, 0.0]) for place in places]
+    simulation = Simulation(dry_scene({}, *balls, end=1.0, step=0.01, upper=[5.0, 3.0]), tmp_path, False)
+    held = []
+    tracemalloc.start()
+    simulation.go(lambda _: held.append(tracemalloc.get_traced_memory()[0]))
+    tracemalloc.stop()
+    simulation.close()
+    assert held[-1] - held[20] < 80 * 1000
+
+
+def test_a_resumed_run_knows_its_extremes(tmp_path):
+    law = {"law": "centre", "range": 0.05, "epsilon": 1e-5, "epsilon_wall": 1e-5}
+    bounce = {"gravity": [0.0, -10.0], "step": 0.01}
+    thrown = ball([0.5, 0.3], [0.0, -2.0])
+    whole = rigidfluid.run(dry_scene(law, thrown, end=0.4, **bounce)).summary
+    for end in (0.2, 0.4):
+        scene = dry_scene(law, thrown, end=end, **bounce).to_dict() | {"output": {"every": 0.1}}
+        parts = rigidfluid.run(rigidfluid.Scene.from_dict(scene), tmp_path, resume=end > 0.2).summary
+    assert parts["smallest_gap"] == whole["smallest_gap"]
 
 
 @pytest.mark.parametrize("name", ["bodies.csv", "energy.csv"])

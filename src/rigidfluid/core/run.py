@@ -47,7 +47,8 @@ def run(
     Returns
     -------
     History
-        Tables and summary, the same that ``out`` holds; also where the run is shared, on all ranks.
+        Tables and summary, the same that ``out`` holds, and read from there when they are asked for; also where the run
+        is shared, on all ranks.
 
     Raises
     ------

@@ -16,6 +16,7 @@ from rigidfluid.core.clock import Clock
 from rigidfluid.core.contact_path import BodiesPath, first_step_again, follow
 from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling, unforeseen
 from rigidfluid.core.energy import Ledger
+from rigidfluid.core.extremes import Extremes
 from rigidfluid.core.history import History
 from rigidfluid.core.interfaces import FluidBackend
 from rigidfluid.core.mesh_adaptation import Mover, reference_of
@@ -78,7 +79,8 @@ class Simulation:
         sizes = _sizes(scene, self.system)
         self.mover = Mover(self.system, sizes, scene.mesh.quality if scene.mesh else 0.0)
         self.watch = Stopwatch()
-        self.history = History(scene.dimension)
+        self.history = History(scene.dimension, folder=out)
+        self.extremes = Extremes.none(len(self.system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start = time.perf_counter()
         self._writer: Writer | None = None
@@ -147,8 +149,8 @@ class Simulation:
         self._elapsed_before, self.rejected, self.remeshes = earlier.elapsed, earlier.rejected, earlier.remeshes
         self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
+        self.extremes = earlier.extremes
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
-        self.history.extend(self._writer.records())
 
     def _advance(self) -> None:
         """One accepted step: the longest that is allowed, halved until it succeeds."""
@@ -234,6 +236,7 @@ class Simulation:
     def _record(self) -> None:
         now = records(self.system, self._probes, self.state, self.clock.time(self.state.tick))
         self.history.extend(now)
+        self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
             with self.watch("write"):
                 self._writer.extend(now)
@@ -264,6 +267,7 @@ class Simulation:
             rejected=self.rejected,
             remeshes=self.remeshes,
             elapsed=self.elapsed,
+            extremes=self.extremes,
             ranks=self._ranks.size,
         )
 

@@ -14,9 +14,9 @@ from typing import Any, TextIO
 
 from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, read_staged, stage_checkpoint
 from rigidfluid.core.ranks import ROOT, Ranks
-from rigidfluid.core.records import Records, Row, columns
+from rigidfluid.core.records import Records, columns
 from rigidfluid.core.run_folder import clear, locked, refuse_foreign
-from rigidfluid.core.tables import Table, read_rows
+from rigidfluid.core.tables import Table, table_path
 from rigidfluid.core.types import Fields
 from rigidfluid.core.vtu import write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
@@ -60,26 +60,21 @@ class Writer:
             if is_mine:
                 self._mark = _taken(out, anew=resumed is None)
         for name, names in columns(dimension).items():
-            with self._writing_once(out / f"{name}.csv") as is_mine:
+            path = table_path(out, name)
+            with self._writing_once(path) as is_mine:
                 if is_mine:
-                    self._tables[name] = Table(out / f"{name}.csv", names, lengths.get(name))
+                    self._tables[name] = Table(path, names, lengths.get(name))
 
     @property
     def lengths(self) -> dict[str, int]:
         """Bytes in each table; the root has them all."""
         return {name: table.length for name, table in self._tables.items()}
 
-    def records(self) -> Records:
-        """The rows that are on disk."""
-        with self._ranks.together():
-            rows = {name: _rows(self.out / f"{name}.csv") for name in self._tables}
-        return self._ranks.shared(rows)
-
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
         with self._ranks.together():
             for name, table in self._tables.items():
-                with writing(self.out / f"{name}.csv"):
+                with writing(table_path(self.out, name)):
                     table.extend(records[name])
 
     def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
@@ -189,15 +184,6 @@ def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
             f"a run of {now}, as many as there are now",
             f"Resume it with {found}, or run without --resume.",
         )
-
-
-def _rows(path: Path) -> list[Row]:
-    try:
-        return read_rows(path)
-    except ValueError as error:
-        raise OutputError(
-            str(path), error, "a table as it was written", "Restore it, or run without --resume."
-        ) from error
 
 
 @contextmanager
