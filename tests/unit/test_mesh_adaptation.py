@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from falling import falling_disk
 
 from rigidfluid.core import mesh_adaptation
+from rigidfluid.core import simulation as loop
 from rigidfluid.core.mesh_adaptation import TANGLED, Mover
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.errors import StepRejected
+
+SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
 
 @pytest.mark.parametrize(
@@ -26,3 +33,18 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mover, "_map", lambda reference: still)
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mover._asks(state, state) is anew
+
+
+def test_a_rejected_attempt_changes_nothing(monkeypatch):
+    simulation = Simulation(falling_disk(**SHORT), None, False)
+    before = {key: value for key, value in vars(simulation).items() if key not in ("watch", "mover")}
+
+    def refuse(*_):
+        raise StepRejected("x", "y", "z", "Mend it.")
+
+    monkeypatch.setattr(loop, "attempt", refuse)
+    monkeypatch.setattr(Mover, "adapted", lambda _, state, pose: replace(state))
+    level, path = simulation._first_level()
+    with pytest.raises(StepRejected):
+        simulation._tried(level, path)
+    assert all(getattr(simulation, key) is value for key, value in before.items())

@@ -158,6 +158,7 @@ class Simulation:
         while True:
             try:
                 path = path or self._path(level)
+                self._accept_mesh(path.pose)
                 self.state = self._tried(level, path)
             except StepRejected as rejection:
                 self.rejected += 1
@@ -167,11 +168,15 @@ class Simulation:
             else:
                 return
 
-    def _tried(self, level: int, path: BodiesPath) -> State:
+    def _accept_mesh(self, pose: Pose) -> None:
+        """The present state on a new mesh, if a step to ``pose`` asks for one; it is as good if that step is rejected."""
         with self.watch("mesh"):
-            state = self.mover.adapted(self.state, path.pose)
-            self.remeshes += state is not self.state
-            self.state = state
+            state = self.mover.adapted(self.state, pose)
+        self.remeshes += state is not self.state
+        self.state = state
+
+    def _tried(self, level: int, path: BodiesPath) -> State:
+        """The state one step of this level later; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
             candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
             if level < self.clock.levels and unforeseen(self.system, self.state, candidate):
