@@ -335,6 +335,11 @@ def _print_end(history: History, folder: Path) -> None:
     if summary["smallest_gap"] is not None:
         _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
     _print(f"rest position: {_figure(summary['rest_position'])}")
+    if summary["failed_remeshes"]:
+        _print(
+            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on",
+            "yellow",
+        )
     _print_energy(history)
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 

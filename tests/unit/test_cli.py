@@ -161,6 +161,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "reynolds": 13.9654,
         "smallest_gap": None,
         "rest_position": [1.0, 2.0],
+        "failed_remeshes": 0,
     }
     history = at_rest()
     history.summary = figures | {"files": [tmp_path / "bodies.csv"]}

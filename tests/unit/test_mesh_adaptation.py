@@ -29,7 +29,7 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda mesh, points: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
     system: Any = None
-    mover = Mover(system, None, asked)
+    mover = Mover(system, None, asked, 1)
     monkeypatch.setattr(mover, "_map", lambda reference: still)
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mover._asks(state, state) is anew

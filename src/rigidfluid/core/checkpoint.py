@@ -34,6 +34,7 @@ class Checkpoint:
     seconds: Mapping[str, float]
     rejected: int
     remeshes: int
+    failed_remeshes: int
     elapsed: float
     extremes: Extremes
     ranks: int

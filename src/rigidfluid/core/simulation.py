@@ -77,7 +77,8 @@ class Simulation:
         earlier = _earlier(scene, out, self._ranks) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, self.system)
-        self.mover = Mover(self.system, sizes, scene.mesh.quality if scene.mesh else 0.0)
+        quality = scene.mesh.quality if scene.mesh else 0.0
+        self.mover = Mover(self.system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(self.system.bodies))
@@ -128,7 +129,8 @@ class Simulation:
             self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
+        self._elapsed_before = 0.0
+        self.rejected, self.remeshes, self.failed_remeshes = 0, 0, 0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover, self.clock)
@@ -142,11 +144,13 @@ class Simulation:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
         start = self.state
         self._advance()
-        self.state, self.rejected, self.remeshes = start, 0, 0
+        self.state = start
+        self.rejected, self.remeshes, self.failed_remeshes = 0, 0, 0
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self._elapsed_before, self.rejected, self.remeshes = earlier.elapsed, earlier.rejected, earlier.remeshes
+        self._elapsed_before, self.rejected = earlier.elapsed, earlier.rejected
+        self.remeshes, self.failed_remeshes = earlier.remeshes, earlier.failed_remeshes
         self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
@@ -169,10 +173,11 @@ class Simulation:
                 return
 
     def _accept_mesh(self, pose: Pose) -> None:
-        """The present state on a new mesh, if a step to ``pose`` asks for one; it is as good if that step is rejected."""
+        """The present state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
         with self.watch("mesh"):
             state = self.mover.adapted(self.state, pose)
-        self.remeshes += state is not self.state
+        self.remeshes += state.mesh is not self.state.mesh
+        self.failed_remeshes += state.remesh_failed not in (None, self.state.remesh_failed)
         self.state = state
 
     def _tried(self, level: int, path: BodiesPath) -> State:
@@ -271,6 +276,7 @@ class Simulation:
             seconds=self.watch.seconds,
             rejected=self.rejected,
             remeshes=self.remeshes,
+            failed_remeshes=self.failed_remeshes,
             elapsed=self.elapsed,
             extremes=self.extremes,
             ranks=self._ranks.size,

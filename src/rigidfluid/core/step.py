@@ -72,6 +72,7 @@ def attempt(
             advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
+        remesh_failed=state.remesh_failed,
     )
     return candidate, step
 
