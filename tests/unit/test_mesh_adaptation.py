@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from falling import falling_disk
 
+import rigidfluid
 from rigidfluid.core import mesh_adaptation
 from rigidfluid.core import simulation as loop
 from rigidfluid.core.mesh_adaptation import TANGLED, Mover
@@ -48,3 +49,12 @@ def test_a_rejected_attempt_changes_nothing(monkeypatch):
     with pytest.raises(StepRejected):
         simulation._tried(level, path)
     assert all(getattr(simulation, key) is value for key, value in before.items())
+
+
+def test_steps_whose_turns_did_not_settle_are_counted(monkeypatch):
+    wall = {"law": "centre", "range": 0.1, "epsilon": 1e-4, "epsilon_wall": 1e-4}
+    scene = falling_disk(**SHORT, body={"position": [1.0, 0.2], "velocity": [0.0, -1.0]}, contact=wall)
+    assert rigidfluid.run(scene).summary["unsettled_steps"] == 0
+    monkeypatch.setattr(loop, "settled", lambda *_: False)
+    summary = rigidfluid.run(scene).summary
+    assert summary["unsettled_steps"] == summary["steps"] > 0

@@ -33,6 +33,7 @@ class Checkpoint:
     lengths: Mapping[str, int]
     seconds: Mapping[str, float]
     rejected: int
+    unsettled: int
     remeshes: int
     failed_remeshes: int
     elapsed: float

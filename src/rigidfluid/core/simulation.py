@@ -130,7 +130,7 @@ class Simulation:
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before = 0.0
-        self.rejected, self.remeshes, self.failed_remeshes = 0, 0, 0
+        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover, self.clock)
@@ -145,11 +145,12 @@ class Simulation:
         start = self.state
         self._advance()
         self.state = start
-        self.rejected, self.remeshes, self.failed_remeshes = 0, 0, 0
+        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self._elapsed_before, self.rejected = earlier.elapsed, earlier.rejected
+        self._elapsed_before = earlier.elapsed
+        self.rejected, self.unsettled = earlier.rejected, earlier.unsettled
         self.remeshes, self.failed_remeshes = earlier.remeshes, earlier.failed_remeshes
         self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
@@ -163,13 +164,14 @@ class Simulation:
             try:
                 path = path or self._path(level)
                 self._accept_mesh(path.pose)
-                self.state = self._tried(level, path)
+                self.state, agreed = self._tried(level, path)
             except StepRejected as rejection:
                 self.rejected += 1
                 level, path = level + 1, None
                 if level > self.clock.levels:
                     raise self._stuck(rejection) from rejection
             else:
+                self.unsettled += not agreed
                 return
 
     def _accept_mesh(self, pose: Pose) -> None:
@@ -180,25 +182,26 @@ class Simulation:
         self.failed_remeshes += state.remesh_failed not in (None, self.state.remesh_failed)
         self.state = state
 
-    def _tried(self, level: int, path: BodiesPath) -> State:
-        """The state one step of this level later; nothing is changed."""
+    def _tried(self, level: int, path: BodiesPath) -> tuple[State, bool]:
+        """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
             candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
             if level < self.clock.levels and unforeseen(self.system, self.state, candidate):
                 raise _too_fast()
             if path.coupling is None:
                 if number > 0 or self.state.past is not None or self.state.mesh is None:
-                    return candidate
+                    return candidate, True
                 path = first_step_again(self.state, candidate.twist, self.clock.size(level))
                 continue
             with self.watch("response"):
                 found = shown_coupling(self.system, self.state, candidate, path, step)
-            if number == MOST_ATTEMPTS - 1 or settled(found, path, self.state, candidate):
+            agreed = settled(found, path, self.state, candidate)
+            if agreed or number == MOST_ATTEMPTS - 1:
                 break
             path = self._path(level, found)
             if level < self.clock.levels and self._changes_gaps_too_fast(path.pose):
                 raise _too_fast()
-        return replace(candidate, coupling=found)
+        return replace(candidate, coupling=found), agreed
 
     def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
@@ -275,6 +278,7 @@ class Simulation:
             lengths=writer.lengths,
             seconds=self.watch.seconds,
             rejected=self.rejected,
+            unsettled=self.unsettled,
             remeshes=self.remeshes,
             failed_remeshes=self.failed_remeshes,
             elapsed=self.elapsed,

@@ -26,8 +26,8 @@ _PACKAGES = (
     *("fenics-dolfinx", "petsc4py", "mpi4py", "ngsolve"),
 )
 FIGURES = (
-    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "remeshes", "failed_remeshes"),
-    *("wall_time", "wall_time_per_stage"),
+    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
+    *("failed_remeshes", "wall_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
@@ -50,6 +50,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "ranks": system.backend.ranks.size,
         "steps": state.count,
         "rejected_steps": simulation.rejected,
+        "unsettled_steps": simulation.unsettled,
         "remeshes": simulation.remeshes,
         "failed_remeshes": simulation.failed_remeshes,
         "wall_time": simulation.elapsed,
