@@ -14,6 +14,7 @@ import rigidfluid
 from rigidfluid.core import mesh_adaptation
 from rigidfluid.core import simulation as loop
 from rigidfluid.core.mesh_adaptation import TANGLED, Mover
+from rigidfluid.core.mesh_motion import MeshMotion
 from rigidfluid.core.simulation import Simulation
 from rigidfluid.errors import StepRejected
 
@@ -58,3 +59,10 @@ def test_steps_whose_turns_did_not_settle_are_counted(monkeypatch):
     monkeypatch.setattr(loop, "settled", lambda *_: False)
     summary = rigidfluid.run(scene).summary
     assert summary["unsettled_steps"] == summary["steps"] > 0
+
+
+def test_a_mesh_is_moved_to_a_pose_once(monkeypatch):
+    poses, move = [], MeshMotion.move
+    monkeypatch.setattr(MeshMotion, "move", lambda motion, pose: poses.append(pose) or move(motion, pose))
+    rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]}))
+    assert len({id(pose) for pose in poses}) == len(poses) > 4

@@ -49,6 +49,7 @@ class Mover:
         self._pause = pause
         self._motion: MeshMotion | None = None
         self._reference: Reference | None = None
+        self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
 
     def first_mesh(self) -> Mesh | None:
         """The mesh around the bodies' initial pose."""
@@ -64,8 +65,7 @@ class Mover:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
-        points = self._map(state.reference).move(pose)
-        worst = worst_quality(state.reference.mesh, points)
+        points, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
                 "mesh",
@@ -108,17 +108,22 @@ class Mover:
         failed = state.remesh_failed
         if failed is None or state.tick >= failed + self._pause:
             return False
-        return state.tick == failed or self._worst(reference, pose) >= NEARLY_TANGLED
+        return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
     def _asks(self, state: State, pose: Pose) -> bool:
         assert state.reference is not None
         if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
             return True
-        worst = self._worst(state.reference, pose)
+        _, worst = self._placed(state.reference, pose)
         return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
 
-    def _worst(self, reference: Reference, pose: Pose) -> float:
-        return worst_quality(reference.mesh, self._map(reference).move(pose))
+    def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
+        """Vertices (N, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of the
+        latest pose are kept, as a step asks for them several times."""
+        if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
+            points = self._map(reference).move(pose)
+            self._latest = reference, pose, points, worst_quality(reference.mesh, points)
+        return self._latest[2:]
 
     def _map(self, reference: Reference) -> MeshMotion:
         if self._motion is None or self._reference is not reference:
