@@ -17,6 +17,7 @@ from rigidfluid.core.overrides import override
 from rigidfluid.core.schema import json_schema
 from rigidfluid.core.system import build_system
 from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import Registry
 
 SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*.toml"))
 
@@ -337,6 +338,13 @@ def test_system_in_2d() -> None:
     np.testing.assert_array_equal(system.pose.orientation, [[0.3]])
     np.testing.assert_array_equal(system.twist.angular_velocity, [[2.0]])
     assert not system.controlled.any()
+
+
+def test_a_system_is_built_from_one_look_at_the_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, loads, load = Scene.from_dict(DISK), [], Registry.load
+    monkeypatch.setattr(Registry, "load", lambda: loads.append(1) or load())
+    build_system(scene)
+    assert len(loads) == 1
 
 
 def test_system_in_3d() -> None:

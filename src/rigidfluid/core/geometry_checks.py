@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.boundary import face_planes, faces
-from rigidfluid.core.parts import cheapest_detector
 from rigidfluid.core.types import Contacts, Pose
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import DETECTOR, Registry
 
 if TYPE_CHECKING:
-    from rigidfluid.core.interfaces import Body
+    from rigidfluid.core.interfaces import Body, Detector
     from rigidfluid.core.parts import Parts
     from rigidfluid.core.scene import MeshTable, Scene
 
@@ -47,20 +45,25 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     """
     _check_extent(scene, parts)
     mesh = scene.mesh if parts.backend.part.needs_mesh else None
-    contacts = initial_contacts(scene, parts.bodies, pose, _coarsest_gap(mesh, parts) if mesh else 0.0)
+    reach = _coarsest_gap(mesh, parts) if mesh else 0.0
+    contacts = initial_contacts(scene, parts.exact_detector, parts.bodies, pose, reach)
     _check_overlap(scene, contacts)
     if mesh is not None:
         _check_facets(mesh, parts)
         _check_resolution(scene, mesh, parts, contacts)
 
 
-def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose, reach: float) -> Contacts:
+def initial_contacts(
+    scene: Scene, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
+) -> Contacts:
     """Every pair of surfaces at the start, with faces that do not repel among them.
 
     Parameters
     ----------
     scene : Scene
         The scene, for its box.
+    detector : type
+        What finds them without a mesh, see `exact_detector`.
     bodies : sequence of Body
         Its bodies.
     pose : Pose
@@ -71,10 +74,8 @@ def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose, reach: fl
     Returns
     -------
     Contacts
-        Up to that gap, from the exact detector that suits the bodies best.
+        Up to that gap.
     """
-    name, _ = cheapest_detector(bodies, mesh=False)
-    detector = Registry.load().get(DETECTOR, name)
     return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, reach)
 
 

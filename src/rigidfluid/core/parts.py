@@ -33,7 +33,8 @@ class Choice(Generic[P]):
 class Parts:
     """All that a scene names; ``law`` is None in a scene without contact forces.
 
-    ``detector_why`` says who chose the detector, and for what reason.
+    ``detector_why`` says who chose the detector, and for what reason; ``exact_detector`` is the cheapest that is exact
+    without a mesh.
     """
 
     backend: Choice[FluidBackend]
@@ -41,6 +42,7 @@ class Parts:
     detector: Choice[Detector]
     law: Choice[ForceLaw] | None
     detector_why: str
+    exact_detector: type[Detector]
 
 
 def resolve(scene: Scene) -> Parts:
@@ -71,7 +73,8 @@ def resolve(scene: Scene) -> Parts:
     detector, why = _detector(scene.contact, registry, bodies, mesh, law is not None)
     _refuse_contact(scene.contact, detector, law, bodies, mesh)
     chosen = None if law is None else _choose(law, scene.contact)
-    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why)
+    exact = exact_detector(bodies, registry)
+    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why, exact)
 
 
 def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
@@ -97,6 +100,11 @@ def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
     if mesh:
         return "narrow_band", "not all bodies are ellipsoids, and there is a mesh and a law"
     return "brute_force", "not all bodies are ellipsoids, and there is no mesh or no law"
+
+
+def exact_detector(bodies: Sequence[Body], registry: Registry) -> type[Detector]:
+    """The cheapest detector that is exact for these bodies and needs no mesh."""
+    return registry.get(DETECTOR, cheapest_detector(bodies, mesh=False)[0])
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:
