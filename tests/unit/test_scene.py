@@ -127,6 +127,25 @@ BAD = {
         "type = 'pressure'",
     ),
     "quaternion in 2D": ({"body.0.orientation": [1, 0, 0, 0]}, "body.0.orientation", "no quaternion", "`angle`"),
+    "three numbers for a quaternion": (
+        {"body.0.orientation": [1, 0, 0]},
+        "body.0.orientation: found [1, 0, 0]",
+        "4 entries",
+        "quaternion",
+    ),
+    "no numbers for a quaternion": (
+        {"body.0.orientation": []},
+        "body.0.orientation: found []",
+        "4 entries",
+        "quaternion",
+    ),
+    "a number of 401 digits": ({"body.0.density": 10**400}, "body.0.density: found 1000", "finite", "Density"),
+    "a number of 5000 digits": (
+        {"body.0.density": 10**5000},
+        "scene: found a value that is no JSON",
+        "digits",
+        "values",
+    ),
     "fixed and moving": ({"body.0.fixed": True, "body.0.velocity": [1, 0]}, "body.0.fixed", "one of them", "Remove"),
     "prescribed and moving": (
         {"body.0.prescribed": {"velocity": [1, 0]}, "body.0.velocity": [1, 0]},
@@ -176,6 +195,7 @@ def test_bad_value_is_refused(changes: dict[str, Any], field: str, allowed: str,
     assert allowed in message
     assert remedy in message
     assert "\n" not in message
+    assert len(message) < 1000
 
 
 BAD_GEOMETRY = {
@@ -255,6 +275,19 @@ def test_unreadable_file_is_refused(tmp_path: Path, content: bytes | None, text:
     with pytest.raises(SceneError, match=text) as caught:
         load_scene(path)
     assert caught.value.subject == str(path)
+
+
+@pytest.mark.parametrize(
+    "text", ["a = " + "[" * 5000, "a = " + "9" * 5000, "a" + ".a" * 3000 + " = 1", "a = " + "{a=" * 2000]
+)
+def test_toml_that_python_cannot_hold_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises(SceneError, match=r"scene.toml: found invalid TOML|a value that is no JSON"):
+        load_scene(path)
+    key, _, value = text.partition(" = ")
+    with pytest.raises(SceneError):
+        load_scene(SCENES[0], [f"{key}={value}"])
 
 
 def test_folder_is_no_scene(tmp_path: Path) -> None:
