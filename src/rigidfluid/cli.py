@@ -254,6 +254,7 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
         LAUNCH.end()
         raise typer.Exit(INTERRUPTED) from None
     except Exception:
+        _complain(f"A fault in rigidfluid or in a plug-in. {on_interrupt}")
         if LAUNCH.size > 1:
             _console(stderr=True).print(Text(traceback.format_exc()), soft_wrap=True)
             LAUNCH.end()

@@ -91,9 +91,8 @@ def test_an_error_of_a_part_leaves_a_summary(install: Install, law: str, tmp_pat
     scene = springy(
         install, law, "return (self.range - contacts.gap)[:, None] * contacts.normal", "raise KeyError('lost')"
     )
-    with pytest.raises(KeyError) as raised:
+    with pytest.raises(KeyError):
         rigidfluid.run(scene, tmp_path)
-    assert "can be resumed" in raised.value.__notes__[0]
     assert json.loads((tmp_path / "summary.json").read_text())["status"] == "stopped: KeyError: 'lost'"
 
 

@@ -72,8 +72,6 @@ def run(
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=_status(error))
                 told(simulation.history)
-            if not isinstance(error, RigidfluidError | KeyboardInterrupt) and folder is not None:
-                error.add_note(f"What was computed until then is kept in {folder}; it can be resumed.")
             raise
         simulation.finish(status="complete")
         told(simulation.history)
