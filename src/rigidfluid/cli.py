@@ -173,7 +173,7 @@ def plugins() -> None:
             table.add_row(entry.kind.title, entry.name, entry.origin, "yes" if entry.available else f"no: {entry.hint}")
         for plugin in registry.unloaded:
             table.add_row("plug-in", plugin.name, plugin.origin, f"no: {plugin.reason}")
-        Console().print(table)
+        _console().print(table)
 
 
 @app.command()
@@ -254,8 +254,9 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
         LAUNCH.end()
         raise typer.Exit(INTERRUPTED) from None
     except Exception:
+        _complain(f"A fault in rigidfluid or in a plug-in. {on_interrupt}")
         if LAUNCH.size > 1:
-            Console(stderr=True, soft_wrap=True).print(Text(traceback.format_exc()))
+            _console(stderr=True).print(Text(traceback.format_exc()), soft_wrap=True)
             LAUNCH.end()
         raise
 
@@ -274,7 +275,7 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    console = Console(stderr=True)
+    console = _console(stderr=True)
     with Bar(*columns, console=console, disable=LAUNCH.rank > 0 or not console.is_terminal) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
         yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
@@ -305,7 +306,7 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    console = Console(stderr=True)
+    console = _console(stderr=True)
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(name, total=None, now="")
 
@@ -335,13 +336,18 @@ def _print_end(history: History, folder: Path) -> None:
     if summary["smallest_gap"] is not None:
         _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
     _print(f"rest position: {_figure(summary['rest_position'])}")
+    if summary["failed_remeshes"]:
+        _print(
+            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on",
+            "yellow",
+        )
     _print_energy(history)
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 
 
 def _print_energy(history: History) -> None:
     """What came from nowhere and what vanished, and the likely causes where it is much."""
-    from rigidfluid.core.energy_account import contacts_pushed, energy_account, energy_warnings, per_cent
+    from rigidfluid.core.energy_account import NOTICEABLE, contacts_pushed, energy_account, energy_warnings, per_cent
 
     energy = history.energy
     account = energy_account(energy)
@@ -350,7 +356,10 @@ def _print_energy(history: History) -> None:
         f"energy: {per_cent(account.created)} created, {per_cent(account.lost)} lost{friction}, "
         f"of {_figure(account.put_in)} put in"
     )
-    for warning in energy_warnings(energy, contacts_pushed(history.bodies, len(energy["time"]))):
+    if max(account.created, account.lost) < NOTICEABLE:
+        return  # the table of bodies is large, and needed for a cause alone
+    forces = history.table("bodies", [f"cf{axis}" for axis in "xyz"[: history.dimension]])
+    for warning in energy_warnings(energy, contacts_pushed(forces, len(energy["time"]))):
         grade, style = ("serious warning", "red") if warning.serious else ("warning", "yellow")
         _print(f"{grade}: {warning.text}. {warning.remedy}", style)
 
@@ -359,7 +368,7 @@ def _print_features(report: Report) -> None:
     table = Table("part", "", "why")
     for feature in report.features:
         table.add_row(feature.name, "on" if feature.on else "off", feature.why)
-    Console().print(table)
+    _console().print(table)
 
 
 def _print_bodies(report: Report) -> None:
@@ -370,7 +379,7 @@ def _print_bodies(report: Report) -> None:
     for body in report.bodies if len(report.bodies) <= MOST_BODIES else shown:
         figures = body.mass, body.submerged_weight, body.impact_speed, body.smallest_gap
         table.add_row(body.name, body.type, *map(_figure, figures), body.nearest)
-    Console().print(table)
+    _console().print(table)
     if len(report.bodies) > len(shown):
         _print(f"and {len(report.bodies) - len(shown)} bodies that are further from anything")
 
@@ -379,7 +388,7 @@ def _print_findings(report: Report) -> None:
     for finding in report.findings:
         style = {"error": "red", "warning": "yellow"}.get(finding.grade, "")
         text = f"{finding.grade}: {finding.text}." + (f" {finding.remedy}" if finding.remedy else "")
-        Console().print(Text(text, style=style), soft_wrap=True)
+        _console().print(Text(text, style=style), soft_wrap=True)
     _print(f"{report.count('error')} errors, {report.count('warning')} warnings")
 
 
@@ -401,7 +410,7 @@ def _print_comparison(comparison: Comparison, json_file: Path | None) -> None:
         table.add_row(*("never" if (value := getattr(row, column)) is None else f"{value:.1e}" for column in columns))
         pairs = [(getattr(row.ours, name), getattr(row.theirs, name)) for name in ("energy", "momentum", "pressure")]
         means.add_row(_figure(row.step), *(_figure(value) for pair in pairs for value in pair))
-    Console().print(table, means)
+    _console().print(table, means)
     if json_file is not None:
         _write_json([asdict(row) for row in comparison.rows], json_file)
 
@@ -415,12 +424,12 @@ def _print_backends(comparison: BackendComparison) -> None:
         table = Table(*HEADER, title=title, box=SIMPLE_HEAD, padding=0)
         for row in difference_rows(comparison, pair):
             table.add_row(*map(Text, row))
-        Console().print(table)
+        _console().print(table)
         _print(meaning(pair))
     costs = Table("", *(run.backend for run in comparison.runs))
     for row in cost_rows(comparison):
         costs.add_row(*map(Text, row))
-    Console().print(costs)
+    _console().print(costs)
     for run in comparison.failed:
         _complain(f"{run.backend} failed: {run.error}")
 
@@ -453,9 +462,14 @@ def _figure(value: Any) -> str:
 
 def _print(text: str, style: str = "") -> None:
     if LAUNCH.rank == 0:
-        Console().print(Text(text, style=style), soft_wrap=True)
+        _console().print(Text(text, style=style), soft_wrap=True)
 
 
 def _complain(text: str) -> None:
     if LAUNCH.rank == 0:
-        Console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
+        _console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
+
+
+def _console(stderr: bool = False) -> Console:
+    """Names and values are shown as they are: brackets in them are no markup."""
+    return Console(stderr=stderr, markup=False)

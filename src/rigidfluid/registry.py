@@ -16,6 +16,7 @@ from typing import Any, Generic, TypeVar, cast
 import pluggy
 
 from rigidfluid import hookspecs
+from rigidfluid.core.foreign import no_exit
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
 from rigidfluid.errors import PluginError
 
@@ -163,7 +164,7 @@ def _import(point: metadata.EntryPoint, plugin: str) -> Any:
         return point.load()
     except ImportError:
         raise
-    except Exception as error:  # foreign code may raise anything
+    except (Exception, SystemExit) as error:  # foreign code may raise anything
         found = f"{type(error).__name__}: {error}"
         raise PluginError(f"plug-in {plugin}", found, "a module that can be imported", "Mend the plug-in.") from error
 
@@ -193,7 +194,8 @@ def _entries(manager: pluggy.PluginManager, origins: dict[str, str]) -> Iterable
     for kind in KINDS:
         caller: pluggy.HookCaller = getattr(manager.hook, kind.hook)
         for implementation in caller.get_hookimpls():
-            offered: Any = implementation.function()
+            with no_exit():
+                offered: Any = implementation.function()
             for part in offered:
                 _check_class(kind, part, implementation.plugin_name)
                 hint = missing_packages(part)

@@ -161,6 +161,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "reynolds": 13.9654,
         "smallest_gap": None,
         "rest_position": [1.0, 2.0],
+        "failed_remeshes": 0,
     }
     history = at_rest()
     history.summary = figures | {"files": [tmp_path / "bodies.csv"]}
@@ -246,3 +247,17 @@ def test_misspelt_hook_fails_at_start(install: Install, law: str) -> None:
     assert_one_paragraph(
         result.stderr, "springy 1.2", "'rigidfluid_force_law'", "Did you mean 'rigidfluid_force_laws'?"
     )
+
+
+@pytest.mark.parametrize("name", ["[/x]", "[red]q[/blue]"])
+def test_names_are_no_markup(name: str) -> None:
+    result = rigidfluid_command("check", SCENE, "--set", f'body.0.name="{name}"')
+    assert result.exit_code == 0, result.exception
+    assert name in result.stdout
+
+
+@pytest.mark.parametrize("name", [r"$\\frac$", "$x^{2$"])
+def test_names_are_no_formulas(name: str, tmp_path: Path) -> None:
+    changes = ("--set", f'body.0.name="{name}"', "--set", "time.end=0.03")
+    assert rigidfluid_command("run", SCENE, *changes, "--out", tmp_path).exit_code == 0
+    assert rigidfluid_command("report", tmp_path).exit_code == 0

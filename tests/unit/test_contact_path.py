@@ -8,6 +8,7 @@ from rigidfluid.core import contact_path
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.types import Wrench
 from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import StepError
 
 RADIUS, RANGE, SPEED = 0.1, 0.02, 3.0
@@ -185,3 +186,13 @@ def test_a_driven_body_pushes_and_takes_no_push():
     np.testing.assert_allclose(history.bodies["vx"][-2:], [1.0, 2.0], rtol=1e-3)
     np.testing.assert_allclose(history.bodies["x"][::2], 0.3 + history.bodies["time"][::2], atol=1e-12)
     assert history.summary["energy"]["control"] == pytest.approx(0.5 * MASS * 4.0, rel=2e-3)
+
+
+def test_a_contact_that_no_step_can_follow_is_refused_at_once(monkeypatch):
+    """Not after a hundred thousand substeps of each of all shorter steps."""
+    asked, detect = [], SphereDetector.detect
+    monkeypatch.setattr(SphereDetector, "detect", lambda *given: asked.append(given) or detect(*given))
+    scene = dry({}, step=0.01, end=0.1, gravity=10.0, range=0.5, epsilon=1e-25, epsilon_wall=1e-25)
+    with pytest.raises(StepError, match=r"body body0 at time 0: found a contact that needs substeps of"):
+        rigidfluid.run(scene)
+    assert len(asked) < 100

@@ -10,6 +10,7 @@ from rigidfluid.core.free_rotation import rotate_freely
 from rigidfluid.core.rigid import rotate, rotation_matrices
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.simulation import Simulation
+from rigidfluid.errors import StepRejected
 
 INERTIA = np.array([1.0, 2.0, 3.0])
 START = np.array([0.3, 1.0, 1.5])
@@ -98,3 +99,13 @@ def test_round_bodies_turn_by_their_constant_spin():
     turned = rotate_freely(orientation, moment[:, None] * spin, moment[:, None, None] * np.eye(3), 0.7)
     np.testing.assert_allclose(turned, rotate(orientation, 0.7 * spin), rtol=0, atol=1e-15)
     np.testing.assert_array_equal(turned[3], orientation[3])
+
+
+def test_a_spin_of_too_many_turns_is_refused():
+    """Each turn takes its time, and nothing can interrupt them."""
+    momentum, inertia = np.tile(INERTIA * START, (2, 1)), np.tile(np.diag(INERTIA), (2, 1, 1))
+    momentum[1] *= 1e9
+    with pytest.raises(
+        StepRejected, match=r"body\.1\.angular_velocity: found .* rad in a step; allowed is at most 1000"
+    ):
+        rotate_freely(np.tile(UPRIGHT, (2, 1)), momentum, inertia, 1.0)

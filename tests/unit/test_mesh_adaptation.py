@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from falling import falling_disk
 
+import rigidfluid
 from rigidfluid.core import mesh_adaptation
+from rigidfluid.core import simulation as loop
 from rigidfluid.core.mesh_adaptation import TANGLED, Mover
+from rigidfluid.core.mesh_motion import MeshMotion
+from rigidfluid.core.simulation import Simulation
+from rigidfluid.errors import StepRejected
+
+SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
 
 @pytest.mark.parametrize(
@@ -22,7 +31,38 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda mesh, points: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
     system: Any = None
-    mover = Mover(system, None, asked)
+    mover = Mover(system, None, asked, 1)
     monkeypatch.setattr(mover, "_map", lambda reference: still)
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mover._asks(state, state) is anew
+
+
+def test_a_rejected_attempt_changes_nothing(monkeypatch):
+    simulation = Simulation(falling_disk(**SHORT), None, False)
+    before = {key: value for key, value in vars(simulation).items() if key not in ("watch", "mover")}
+
+    def refuse(*_):
+        raise StepRejected("x", "y", "z", "Mend it.")
+
+    monkeypatch.setattr(loop, "attempt", refuse)
+    monkeypatch.setattr(Mover, "adapted", lambda _, state, pose: replace(state))
+    level, path = simulation._first_level()
+    with pytest.raises(StepRejected):
+        simulation._tried(level, path)
+    assert all(getattr(simulation, key) is value for key, value in before.items())
+
+
+def test_steps_whose_turns_did_not_settle_are_counted(monkeypatch):
+    wall = {"law": "centre", "range": 0.1, "epsilon": 1e-4, "epsilon_wall": 1e-4}
+    scene = falling_disk(**SHORT, body={"position": [1.0, 0.2], "velocity": [0.0, -1.0]}, contact=wall)
+    assert rigidfluid.run(scene).summary["unsettled_steps"] == 0
+    monkeypatch.setattr(loop, "settled", lambda *_: False)
+    summary = rigidfluid.run(scene).summary
+    assert summary["unsettled_steps"] == summary["steps"] > 0
+
+
+def test_a_mesh_is_moved_to_a_pose_once(monkeypatch):
+    poses, move = [], MeshMotion.move
+    monkeypatch.setattr(MeshMotion, "move", lambda motion, pose: poses.append(pose) or move(motion, pose))
+    rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]}))
+    assert len({id(pose) for pose in poses}) == len(poses) > 4

@@ -17,6 +17,7 @@ from rigidfluid.core.overrides import override
 from rigidfluid.core.schema import json_schema
 from rigidfluid.core.system import build_system
 from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import Registry
 
 SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*.toml"))
 
@@ -95,6 +96,10 @@ BAD = {
     "a truth value is no number": ({"time.end": True}, "time.end: found True", "a valid number", "ends"),
     "text is no number": ({"time.end": "1.0"}, "time.end: found '1.0'", "a valid number", "ends"),
     "infinite": ({"time.end": float("inf")}, "time.end: found inf", "finite", "ends"),
+    "out of proportion": ({"domain.upper": [1e308, 1.0]}, "domain.upper.0: found 1e+308", "1e+30", "units"),
+    "next to nothing": ({"body.0.density": 1e-310}, "body.0.density: found 1e-310", "1e-30", "units"),
+    "an option out of proportion": ({"contact.epsilon": 1e-310}, "contact.epsilon: found 1e-310", "1e-30", "units"),
+    "more cells than any": ({"domain.upper": [1e6, 1e6]}, "mesh.size: found 0.15", "at least", "Coarsen"),
     "negative density": ({"body.0.density": -1.0}, "body.0.density: found -1", "greater than 0", "Density of the body"),
     "negative radius": ({"body.0.radius": -1.0}, "body.0.radius: found -1", "greater than 0", "Correct"),
     "not a choice": (
@@ -122,6 +127,25 @@ BAD = {
         "type = 'pressure'",
     ),
     "quaternion in 2D": ({"body.0.orientation": [1, 0, 0, 0]}, "body.0.orientation", "no quaternion", "`angle`"),
+    "three numbers for a quaternion": (
+        {"body.0.orientation": [1, 0, 0]},
+        "body.0.orientation: found [1, 0, 0]",
+        "4 entries",
+        "quaternion",
+    ),
+    "no numbers for a quaternion": (
+        {"body.0.orientation": []},
+        "body.0.orientation: found []",
+        "4 entries",
+        "quaternion",
+    ),
+    "a number of 401 digits": ({"body.0.density": 10**400}, "body.0.density: found 1000", "finite", "Density"),
+    "a number of 5000 digits": (
+        {"body.0.density": 10**5000},
+        "scene: found a value that is no JSON",
+        "digits",
+        "values",
+    ),
     "fixed and moving": ({"body.0.fixed": True, "body.0.velocity": [1, 0]}, "body.0.fixed", "one of them", "Remove"),
     "prescribed and moving": (
         {"body.0.prescribed": {"velocity": [1, 0]}, "body.0.velocity": [1, 0]},
@@ -156,6 +180,8 @@ BAD = {
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
     "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),
     "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
+    "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "match pattern", "Name in"),
+    "escape in a name": ({"body.0.name": "a\x1b[31m"}, "body.0.name: found 'a\\x1b", "match pattern", "Name in"),
     "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "match pattern", "Name of the scene"),
 }
 
@@ -169,9 +195,15 @@ def test_bad_value_is_refused(changes: dict[str, Any], field: str, allowed: str,
     assert allowed in message
     assert remedy in message
     assert "\n" not in message
+    assert len(message) < 1000
 
 
 BAD_GEOMETRY = {
+    "lost in the box": (
+        {"domain.lower": [-1e12, -1e12], "domain.upper": [1e12, 1e12], "mesh.size": 1e11},
+        "body.0",
+        "at least 1e-08",
+    ),
     "outside": ({"body.0.position": [1.0, 7.0]}, "body.0.position", "overlaps face 'top' of the domain by 1.125"),
     "through a wall": (
         {"body.0.position": [0.1, 3.0]},
@@ -245,6 +277,19 @@ def test_unreadable_file_is_refused(tmp_path: Path, content: bytes | None, text:
     assert caught.value.subject == str(path)
 
 
+@pytest.mark.parametrize(
+    "text", ["a = " + "[" * 5000, "a = " + "9" * 5000, "a" + ".a" * 3000 + " = 1", "a = " + "{a=" * 2000]
+)
+def test_toml_that_python_cannot_hold_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises(SceneError, match=r"scene.toml: found invalid TOML|a value that is no JSON"):
+        load_scene(path)
+    key, _, value = text.partition(" = ")
+    with pytest.raises(SceneError):
+        load_scene(SCENES[0], [f"{key}={value}"])
+
+
 def test_folder_is_no_scene(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="directory"):
         load_scene(tmp_path)
@@ -301,6 +346,13 @@ def test_detector_for_other_shapes() -> None:
     assert build_system(Scene.from_dict(changed({"body.1": ELLIPSE, "contact": {}}))).detector.name == "ellipsoid"
 
 
+def test_an_endless_box_is_refused_without_a_mesher() -> None:
+    """Netgen ends the whole process where the difference of two corners overflows."""
+    box = {"lower": [-1e308, -1e308], "upper": [1e308, 1e308]}
+    with pytest.raises(SceneError, match=r"domain.lower.0: found -1e\+308"):
+        Scene.from_dict(changed({"domain": box}))
+
+
 def test_a_law_for_balls_refuses_other_shapes() -> None:
     with pytest.raises(SceneError, match=r"contact.law: found 'centre' with bodies that are no balls"):
         Scene.from_dict(changed({"body.1": ELLIPSE}))
@@ -319,6 +371,13 @@ def test_system_in_2d() -> None:
     np.testing.assert_array_equal(system.pose.orientation, [[0.3]])
     np.testing.assert_array_equal(system.twist.angular_velocity, [[2.0]])
     assert not system.controlled.any()
+
+
+def test_a_system_is_built_from_one_look_at_the_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, loads, load = Scene.from_dict(DISK), [], Registry.load
+    monkeypatch.setattr(Registry, "load", lambda: loads.append(1) or load())
+    build_system(scene)
+    assert len(loads) == 1
 
 
 def test_system_in_3d() -> None:

@@ -96,7 +96,7 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
     histories = shared(2, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
         *("bodies.csv", "contacts.csv", "energy.csv", "probes.csv"),
-        *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json"),
+        *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json", "run.lock"),
     }
     assert histories[0].summary["files"] == histories[1].summary["files"]
     assert str(tmp_path / "state.1.h5") in histories[1].summary["files"]

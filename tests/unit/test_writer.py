@@ -1,11 +1,13 @@
 """What lands on disk: checkpoints to the last bit, tables that can be cut back, and a disk that refuses."""
 
 import json
+import tracemalloc
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
@@ -16,6 +18,10 @@ from rigidfluid.core.tables import Table, read_rows
 from rigidfluid.errors import MeshError, OutputError
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
+
+
+def one_ball():
+    return dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.1, step=0.01)
 
 
 @pytest.fixture
@@ -37,14 +43,20 @@ def same(left, right):
 def test_a_checkpoint_comes_back_to_the_last_bit(scene, tmp_path):
     simulation = Simulation(scene, tmp_path, False)
     simulation.go(None)
+    simulation.close()
     assert same(simulation.state, read_checkpoint(tmp_path / "state.h5").state)
 
 
 def test_disk_and_memory_hold_the_same(scene, tmp_path):
-    history = rigidfluid.run(scene, tmp_path)
+    history, in_memory = rigidfluid.run(scene, tmp_path), rigidfluid.run(scene)
     assert json.loads((tmp_path / "summary.json").read_text()) == history.summary
-    for name, rows in history.records.items():
-        assert read_rows(tmp_path / f"{name}.csv") == rows
+    for name, rows in in_memory.records.items():
+        assert history.records[name] == rows
+        for column, values in in_memory.table(name).items():
+            assert values.dtype == history.table(name)[column].dtype or len(values) == 0
+            np.testing.assert_array_equal(values, history.table(name)[column])
+    for figure in ("smallest_gap", "reynolds", "energy"):
+        assert history.summary[figure] == in_memory.summary[figure]
     assert all(Path(file).exists() for file in history.summary["files"])
 
 
@@ -59,9 +71,42 @@ def test_numbers_and_names_survive_a_table(tmp_path):
     assert read_rows(tmp_path / "t.csv") == rows
 
 
+def test_a_table_that_cannot_be_read_is_reported_by_file(tmp_path):
+    rigidfluid.run(one_ball(), tmp_path)
+    path = tmp_path / "bodies.csv"
+    path.write_text(path.read_text().replace("\n0.0,", "\nzero,"))
+    with pytest.raises(OutputError, match=r"bodies.csv: found a value that is no number in column time"):
+        _ = rigidfluid.run(one_ball(), tmp_path, resume=True).bodies
+
+
+def test_memory_does_not_grow_with_a_run_that_is_on_disk(tmp_path):
+    """Fifty balls took 32 kB each step."""
+    places = [[0.2 + 0.4 * (i % 10), 0.2 + 0.4 * (i // 10)] for i in range(50)]
+    balls = [ball(place, [0.0, 0.0]) for place in places]
+    simulation = Simulation(dry_scene({}, *balls, end=1.0, step=0.01, upper=[5.0, 3.0]), tmp_path, False)
+    held = []
+    tracemalloc.start()
+    simulation.go(lambda _: held.append(tracemalloc.get_traced_memory()[0]))
+    tracemalloc.stop()
+    simulation.close()
+    assert held[-1] - held[20] < 80 * 1000
+
+
+def test_a_resumed_run_knows_its_extremes(tmp_path):
+    law = {"law": "centre", "range": 0.05, "epsilon": 1e-5, "epsilon_wall": 1e-5}
+    bounce = {"gravity": [0.0, -10.0], "step": 0.01}
+    thrown = ball([0.5, 0.3], [0.0, -2.0])
+    whole = rigidfluid.run(dry_scene(law, thrown, end=0.4, **bounce)).summary
+    for end in (0.2, 0.4):
+        scene = dry_scene(law, thrown, end=end, **bounce).to_dict() | {"output": {"every": 0.1}}
+        parts = rigidfluid.run(rigidfluid.Scene.from_dict(scene), tmp_path, resume=end > 0.2).summary
+    assert parts["smallest_gap"] == whole["smallest_gap"]
+
+
 @pytest.mark.parametrize("name", ["bodies.csv", "energy.csv"])
 def test_a_full_disk_is_reported_by_file(scene, tmp_path, name):
     (tmp_path / name).symlink_to("/dev/full")
+    (tmp_path / "run.lock").touch()
     with pytest.raises(OutputError, match=rf"{name}: found No space left"):
         rigidfluid.run(scene, tmp_path)
 
@@ -104,13 +149,20 @@ def test_a_run_that_gets_stuck_says_where_and_keeps_what_it_has(tmp_path):
     assert read_rows(tmp_path / "bodies.csv")[-1][0] == pytest.approx(summary["time"])
 
 
-def test_a_failed_remesh_leaves_the_mesh_that_still_serves(scene, monkeypatch):
-    def fail(*_):
+def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkeypatch):
+    """It is tried again once a nominal step, and not at each of the short ones at the start."""
+    tried = []
+
+    def fail(*given):
+        tried.append(given)
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
     monkeypatch.setattr("rigidfluid.core.mesh_adaptation.remesh", fail)
     monkeypatch.setattr(Mover, "_asks", lambda *_: True)
-    assert rigidfluid.run(scene).summary["status"] == "complete"
+    summary = rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})).summary
+    assert summary["status"] == "complete"
+    assert 0 < summary["failed_remeshes"] == len(tried) <= 4
+    assert summary["steps"] > 8
 
 
 def test_a_body_without_any_wall_has_no_gap(tmp_path):

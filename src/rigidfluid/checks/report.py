@@ -19,10 +19,13 @@ from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.rest import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.core.features import Feature, features
+from rigidfluid.core.foreign import no_exit
 from rigidfluid.core.geometry_checks import initial_contacts
+from rigidfluid.core.parts import exact_detector
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.system import System, build_system, gap_reach
 from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.registry import Registry
 
 
 @dataclass(frozen=True)
@@ -84,10 +87,12 @@ def check(scene: Scene) -> Report:
     RigidfluidError
         If the scene cannot be built at all.
     """
-    system = build_system(scene)
-    start = initial_contacts(scene, system.bodies, system.pose, gap_reach(system))
-    found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
-    return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
+    with no_exit():
+        system = build_system(scene)
+        detector = exact_detector(system.bodies, Registry.load())
+        start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
+        found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
+        return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
 
 
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:

@@ -11,14 +11,16 @@ from rigidfluid.core.types import FloatArray
 
 
 def added_mass(body: Body) -> FloatArray:
-    """Added mass over the fluid's density: of ellipsoids π diag(b², a²) in 2D, V diag(α/(2 - α), …) in 3D; else zero.
+    """Added mass over the fluid's density: of ellipsoids π diag(b², a²) in 2D, V diag(α/(2 - α), …) in 3D.
+
+    Of other shapes that of a ball of their volume, V/(d - 1): averaged over all directions none has less.
 
     α = abc ∫₀^∞ dλ / [(a² + λ) √((a² + λ)(b² + λ)(c² + λ))], and so on, of sum 2.
 
     Parameters
     ----------
     body : Body
-        The shape, of semi-axes a, b[, c].
+        The shape; a, b[, c] are its semi-axes if it has some.
 
     Returns
     -------
@@ -27,11 +29,12 @@ def added_mass(body: Body) -> FloatArray:
 
     Notes
     -----
-    Lamb, Hydrodynamics, 6th ed. 1932, §§ 71, 114.
+    Lamb, Hydrodynamics, 6th ed. 1932, §§ 71, 114; other shapes: Pólya, PNAS 33 (1947) 218,
+    doi:10.1073/pnas.33.7.218.
     """
     axes = body.semi_axes
     if axes is None:
-        return np.zeros((body.dimension, body.dimension))
+        return body.volume / (body.dimension - 1.0) * np.eye(body.dimension)
     if len(axes) == 2:
         return pi * np.diag(axes[::-1] ** 2)
     alpha = _lamb_integrals(axes)

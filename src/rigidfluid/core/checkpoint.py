@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from rigidfluid.core.extremes import Extremes
 from rigidfluid.core.ranks import ALONE, Ranks
 from rigidfluid.core.state import State
 from rigidfluid.errors import OutputError
@@ -24,7 +25,7 @@ from rigidfluid.errors import OutputError
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
     """What a rank of a run needs to go on: its ``state``, the ``scene`` as JSON, the ``times`` of its outputs, the
-    ``lengths`` of the tables in bytes, what the run has cost, and how many ``ranks`` have files like this."""
+    ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
 
     state: State
     scene: str
@@ -32,8 +33,11 @@ class Checkpoint:
     lengths: Mapping[str, int]
     seconds: Mapping[str, float]
     rejected: int
+    unsettled: int
     remeshes: int
+    failed_remeshes: int
     elapsed: float
+    extremes: Extremes
     ranks: int
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contacts import select
 from rigidfluid.core.coupled_movement import CoupledMovement
+from rigidfluid.core.detection import detect
 from rigidfluid.core.followed import FollowedContacts
 from rigidfluid.core.implicit_contacts import cross_contacts
 from rigidfluid.core.interfaces import ForceLaw
@@ -19,7 +20,7 @@ from rigidfluid.core.redetected import RedetectedContacts
 from rigidfluid.core.reduced_model import Coupling
 from rigidfluid.core.rigid import inverse_lab_inertia, rotation_matrices
 from rigidfluid.core.state import State
-from rigidfluid.core.substep import Plan, plan, relative_motion, relative_velocity
+from rigidfluid.core.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.system import System
 from rigidfluid.core.time_scheme import predict_pose, start_pose
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
@@ -28,6 +29,9 @@ from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
 """More of them in one step are refused."""
+
+HOPELESS = 1_000 * MOST_SUBSTEPS
+"""If a plan asks for more than this, none is walked: what flies apart needs fewer in the end, but not by so much."""
 
 IMPLICIT_PARTS = 8
 """Of a step in a fluid, each an implicit step of the bodies."""
@@ -139,7 +143,7 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
 
 def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodiesPath:
     movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
-    if size <= RESOLVED * plan(law, near, movement, arms(system), size, size).substep:
+    if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
         movement.vary_load(size)
     if system.implicit:
         path = _cross_coupled(system, law, movement, near, size)
@@ -222,7 +226,7 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
     """The contacts of any pose, as a detector finds them that needs no mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:
-        near = system.detector.detect(pose, None, reach)
+        near = detect(system, pose, None, reach)
         chosen = may_repel(system, near)
         return near if chosen.all() else select(near, chosen)
 
@@ -302,7 +306,14 @@ def _resolve(
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: Movement, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
-    return plan(law, contacts, movement, arms(system), size, span)
+    planned = plan(law, contacts, movement, _surfaces(system), size, span)
+    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.coast > HOPELESS * planned.substep:
+        raise _too_stiff(system, contacts, planned.substep)
+    return planned
+
+
+def _surfaces(system: System) -> Reach:
+    return Reach(arms(system), system.leverage)
 
 
 class _Push(NamedTuple):

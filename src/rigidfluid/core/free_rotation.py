@@ -9,9 +9,13 @@ import numpy as np
 from numba import njit
 
 from rigidfluid.core.types import FloatArray
+from rigidfluid.errors import StepRejected
 
 LARGEST_TURN = 0.1
 """Angle turned in one application of the fourth-order scheme [rad]: a period is then right to 1e-8."""
+
+MOST_TURNED = 1000.0
+"""More in one call is refused [rad]: the time that it takes grows with the turns."""
 
 _SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 _STAGES = np.array([_SUZUKI, _SUZUKI, 1.0 - 4.0 * _SUZUKI, _SUZUKI, _SUZUKI])
@@ -42,6 +46,11 @@ def rotate_freely(
     (n, q) array
         Orientation after [rad | 1].
 
+    Raises
+    ------
+    StepRejected
+        If a body that is not round turns by many turns.
+
     Notes
     -----
     Suzuki 1990, DOI 10.1016/0375-9601(90)90962-N; the midpoint rule: Austin, Krishnaprasad & Wang 1993,
@@ -50,18 +59,31 @@ def rotate_freely(
     if orientation.shape[1] == 1:
         return orientation + time * angular_momentum / inertia[:, 0]
     result = orientation.copy()
-    _turn(result, angular_momentum, inertia, time, LARGEST_TURN, _STAGES)
+    body, turned = _turn(result, angular_momentum, inertia, time, LARGEST_TURN, _STAGES, MOST_TURNED)
+    if turned > MOST_TURNED:
+        raise StepRejected(
+            f"body.{body}.angular_velocity",
+            f"a spin that may turn it by {turned:.3g} rad in a step",
+            f"at most {MOST_TURNED:g} rad",
+            "Shorten time.step, or let it spin slower.",
+        )
     return result
 
 
 @njit(cache=True)
-def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages):
+def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages, most_turned):
+    """Turn all in place, but stop at a body that may turn by too much; that one, or the last, and how far it turns."""
+    body, turned = 0, 0.0
     for body in range(len(orientation)):
         if _is_round(inertia, body):
             _spin(orientation, angular_momentum, body, time / inertia[body, 0, 0])
-        else:
-            inverse = np.linalg.inv(inertia[body])
-            _tumble(orientation[body], angular_momentum[body], inverse, time, largest_turn, stages)
+            continue
+        inverse = np.linalg.inv(inertia[body])
+        turned = abs(time) * (np.sqrt((angular_momentum[body] ** 2).sum()) * np.sqrt((inverse**2).sum()))
+        if turned > most_turned:
+            break
+        _tumble(orientation[body], angular_momentum[body], inverse, time, int(np.ceil(turned / largest_turn)), stages)
+    return body, turned
 
 
 @njit(cache=True)
@@ -92,10 +114,7 @@ def _spin(orientation, momentum, body, factor):
 
 
 @njit(cache=True)
-def _tumble(quaternion, momentum, inverse, time, largest_turn, stages):
-    length = np.sqrt(momentum[0] ** 2 + momentum[1] ** 2 + momentum[2] ** 2)
-    fastest = length * np.sqrt((inverse**2).sum())
-    steps = int(np.ceil(abs(time) * fastest / largest_turn))
+def _tumble(quaternion, momentum, inverse, time, steps, stages):
     for _ in range(steps):
         for stage in stages:
             _midpoint(quaternion, momentum, inverse, stage * time / steps)

@@ -9,19 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.boundary import face_planes, faces
-from rigidfluid.core.parts import cheapest_detector
 from rigidfluid.core.types import Contacts, Pose
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import DETECTOR, Registry
 
 if TYPE_CHECKING:
-    from rigidfluid.core.interfaces import Body
+    from rigidfluid.core.interfaces import Body, Detector
     from rigidfluid.core.parts import Parts
     from rigidfluid.core.scene import MeshTable, Scene
 
 
 MOST_FACETS_PER_RADIUS = 10**4
 """Facets still smaller than that beside a body are a slip of units, and a mesher would never end."""
+
+
+SMALLEST_BODY = 1e-8
+"""Of the largest coordinate of the box: smaller bodies are lost in rounding, and Netgen may end the whole process."""
 
 
 def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
@@ -39,23 +41,29 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     Raises
     ------
     SceneError
-        If bodies overlap each other or a face of the domain, or if the mesh is too coarse for a gap.
+        If bodies overlap each other or a face of the domain or are lost in it, or the mesh is too coarse for a gap.
     """
+    _check_extent(scene, parts)
     mesh = scene.mesh if parts.backend.part.needs_mesh else None
-    contacts = initial_contacts(scene, parts.bodies, pose, _coarsest_gap(mesh, parts) if mesh else 0.0)
+    reach = _coarsest_gap(mesh, parts) if mesh else 0.0
+    contacts = initial_contacts(scene, parts.exact_detector, parts.bodies, pose, reach)
     _check_overlap(scene, contacts)
     if mesh is not None:
         _check_facets(mesh, parts)
         _check_resolution(scene, mesh, parts, contacts)
 
 
-def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose, reach: float) -> Contacts:
+def initial_contacts(
+    scene: Scene, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
+) -> Contacts:
     """Every pair of surfaces at the start, with faces that do not repel among them.
 
     Parameters
     ----------
     scene : Scene
         The scene, for its box.
+    detector : type
+        What finds them without a mesh, see `exact_detector`.
     bodies : sequence of Body
         Its bodies.
     pose : Pose
@@ -66,11 +74,22 @@ def initial_contacts(scene: Scene, bodies: Sequence[Body], pose: Pose, reach: fl
     Returns
     -------
     Contacts
-        Up to that gap, from the exact detector that suits the bodies best.
+        Up to that gap.
     """
-    name, _ = cheapest_detector(bodies, mesh=False)
-    detector = Registry.load().get(DETECTOR, name)
     return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, reach)
+
+
+def _check_extent(scene: Scene, parts: Parts) -> None:
+    farthest = max(abs(coordinate) for coordinate in (*scene.domain.lower, *scene.domain.upper))
+    radii = [body.bounding_radius for body in parts.bodies]
+    smallest = min(range(len(radii)), key=radii.__getitem__)
+    if radii[smallest] < SMALLEST_BODY * farthest:
+        raise SceneError(
+            f"body.{smallest}",
+            f"a bounding radius of {radii[smallest]:.3g} in a box with a corner at {farthest:.3g}",
+            f"at least {SMALLEST_BODY:g} of the box's largest coordinate",
+            "Make the box smaller, or bring it nearer to the origin.",
+        )
 
 
 def _check_overlap(scene: Scene, contacts: Contacts) -> None:

@@ -1,17 +1,20 @@
-"""The results of a run in memory: the same tables and summary that the writer puts on disk."""
+"""The results of a run: tables and summary, the same in memory and on disk."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.records import Records, columns
+from rigidfluid.core.records import Records, Row, columns
+from rigidfluid.core.tables import read_columns, read_rows, table_path
+from rigidfluid.errors import OutputError
 
 
-@dataclass
 class History:
     """Tables ``bodies``, ``contacts``, ``energy`` and ``probes``, and the ``summary`` of summary.json.
 
@@ -19,22 +22,48 @@ class History:
     ----------
     dimension : int
         2 or 3; it decides the columns.
+    records : Records, optional
+        Rows to start with.
+    folder : Path, optional
+        Where a run writes its tables. No row is then held in memory: each table is read when it is asked for, and a
+        later run in the same folder replaces it.
     """
 
-    dimension: int
-    records: Records = field(default_factory=dict)
-    summary: dict[str, Any] = field(default_factory=dict)
+    def __init__(self, dimension: int, records: Records | None = None, folder: Path | None = None) -> None:
+        self.dimension = dimension
+        self.summary: dict[str, Any] = {}
+        self._rows: Records = records or {}
+        self._folder = folder
+
+    @property
+    def records(self) -> Records:
+        """All rows by table name; raises OutputError as `table` does."""
+        if self._folder is None:
+            return self._rows
+        return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension)}
 
     def extend(self, records: Records) -> None:
-        """Append the rows of one state."""
-        for name, rows in records.items():
-            self.records.setdefault(name, []).extend(rows)
+        """Append the rows of one state, unless a writer puts them on disk."""
+        if self._folder is None:
+            for name, rows in records.items():
+                self._rows.setdefault(name, []).extend(rows)
 
-    def table(self, name: str) -> dict[str, NDArray[Any]]:
-        """One table as arrays by column name, a row per entry."""
+    def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
+        """One table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
+
+        Raises
+        ------
+        OutputError
+            If the table is on disk and cannot be read.
+        """
         names = columns(self.dimension)[name]
-        rows = self.records.get(name, [])
-        return {column: np.array([row[i] for row in rows]) for i, column in enumerate(names)}
+        wanted = tuple(names if only is None else only)
+        if self._folder is not None:
+            path = table_path(self._folder, name)
+            with _reading(path):
+                return read_columns(path, wanted)
+        rows = self._rows.get(name, [])
+        return {column: np.array([row[i] for row in rows]) for i, column in enumerate(names) if column in wanted}
 
     @property
     def bodies(self) -> dict[str, NDArray[Any]]:
@@ -55,3 +84,18 @@ class History:
     def probes(self) -> dict[str, NDArray[Any]]:
         """The table of probes.csv: a row per probe and accepted step."""
         return self.table("probes")
+
+
+def _rows(path: Path) -> list[Row]:
+    with _reading(path):
+        return read_rows(path)
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a table into an OutputError that names the file."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        remedy = "Restore the file, or run the scene anew."
+        raise OutputError(str(path), error, "a table as a run has written it", remedy) from error

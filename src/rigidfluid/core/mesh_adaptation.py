@@ -38,14 +38,18 @@ class Mover:
     quality : float
         A moved mesh whose worst cell falls below this, or is nearly tangled, and below half of what it was when made,
         is re-made.
+    pause : int
+        For so many ticks after a mesh could not be made, none is tried unless a cell is nearly tangled.
     """
 
-    def __init__(self, system: System, sizes: Sizes | None, quality: float) -> None:
+    def __init__(self, system: System, sizes: Sizes | None, quality: float, pause: int) -> None:
         self._system = system
         self._sizes = sizes
         self._quality = quality
+        self._pause = pause
         self._motion: MeshMotion | None = None
         self._reference: Reference | None = None
+        self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
 
     def first_mesh(self) -> Mesh | None:
         """The mesh around the bodies' initial pose."""
@@ -61,8 +65,7 @@ class Mover:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
-        points = self._map(state.reference).move(pose)
-        worst = worst_quality(state.reference.mesh, points)
+        points, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
                 "mesh",
@@ -73,14 +76,16 @@ class Mover:
         return replace(state.reference.mesh, points=points)
 
     def adapted(self, state: State, pose: Pose) -> State:
-        """The same state, on a new mesh if a step to ``pose`` asks for one."""
-        if state.reference is None or state.reference.tick == state.tick or not self._asks(state, pose):
+        """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
+        if state.reference is None or state.reference.tick == state.tick:
+            return state
+        if self._waits(state.reference, state, pose) or not self._asks(state, pose):
             return state
         assert state.mesh is not None
         try:
             mesh = self._remade(state.mesh, state.pose)
-        except MeshError:
-            return state  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
+        except MeshError:  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
+            return replace(state, remesh_failed=state.tick)
         fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
@@ -88,6 +93,7 @@ class Mover:
             reference=reference_of(mesh, state.pose, state.gaps, state.tick),
             fluid=fluid,
             ledger=state.ledger.after_transfer(loss),
+            remesh_failed=None,
         )
 
     def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
@@ -97,13 +103,27 @@ class Mover:
             made = None if present is None else remesh(present, s.bodies, pose, s.walls, self._sizes)
         return distributed(made, ranks)
 
+    def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
+        """Whether a mesh that could not be made shortly before is not worth another try."""
+        failed = state.remesh_failed
+        if failed is None or state.tick >= failed + self._pause:
+            return False
+        return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
+
     def _asks(self, state: State, pose: Pose) -> bool:
         assert state.reference is not None
         if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
             return True
-        points = self._map(state.reference).move(pose)
-        worst = worst_quality(state.reference.mesh, points)
+        _, worst = self._placed(state.reference, pose)
         return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
+
+    def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
+        """Vertices (N, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of the
+        latest pose are kept, as a step asks for them several times."""
+        if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
+            points = self._map(reference).move(pose)
+            self._latest = reference, pose, points, worst_quality(reference.mesh, points)
+        return self._latest[2:]
 
     def _map(self, reference: Reference) -> MeshMotion:
         if self._motion is None or self._reference is not reference:

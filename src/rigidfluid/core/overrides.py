@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
+from rigidfluid.core.validation import shown
 from rigidfluid.errors import SceneError
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
@@ -65,13 +66,15 @@ def assign(data: dict[str, Any], path: str, value: Any) -> None:
 def _value(path: str, text: str) -> Any:
     try:
         parsed = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         parsed = {}
     if set(parsed) == {"value"}:
         return parsed["value"]
     if _WORD.fullmatch(text):
         return text
-    raise SceneError(path, repr(text), "a TOML value, or one word", 'For instance: 0.02, [0.0, 1.0], "a text", stokes.')
+    raise SceneError(
+        path, shown(text), "a TOML value, or one word", 'For instance: 0.02, [0.0, 1.0], "a text", stokes.'
+    )
 
 
 def _entry(table: Any, key: str, path: str) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.part_results import refuse_lost_body
 from rigidfluid.core.validation import read_table, unknown_key
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
@@ -32,7 +33,8 @@ class Choice(Generic[P]):
 class Parts:
     """All that a scene names; ``law`` is None in a scene without contact forces.
 
-    ``detector_why`` says who chose the detector, and for what reason.
+    ``detector_why`` says who chose the detector, and for what reason; ``exact_detector`` is the cheapest that is exact
+    without a mesh.
     """
 
     backend: Choice[FluidBackend]
@@ -40,6 +42,7 @@ class Parts:
     detector: Choice[Detector]
     law: Choice[ForceLaw] | None
     detector_why: str
+    exact_detector: type[Detector]
 
 
 def resolve(scene: Scene) -> Parts:
@@ -70,7 +73,8 @@ def resolve(scene: Scene) -> Parts:
     detector, why = _detector(scene.contact, registry, bodies, mesh, law is not None)
     _refuse_contact(scene.contact, detector, law, bodies, mesh)
     chosen = None if law is None else _choose(law, scene.contact)
-    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why)
+    exact = exact_detector(bodies, registry)
+    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why, exact)
 
 
 def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
@@ -98,16 +102,23 @@ def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
     return "brute_force", "not all bodies are ellipsoids, and there is no mesh or no law"
 
 
+def exact_detector(bodies: Sequence[Body], registry: Registry) -> type[Detector]:
+    """The cheapest detector that is exact for these bodies and needs no mesh."""
+    return registry.get(DETECTOR, cheapest_detector(bodies, mesh=False)[0])
+
+
 def _body(scene: Scene, registry: Registry, number: int) -> Body:
     table, at = scene.body[number], f"body.{number}"
     part = registry.get(BODY, table.type, f"{at}.type")
     _refuse_unread(table.options, [part], type(table).model_fields, at)
     options = read_table(part.Options, table.options, at)
     try:
-        return part(options, scene.dimension)
+        body = part(options, scene.dimension)
     except SceneError as error:  # a body does not know its number
         subject = f"{at}.{error.subject.removeprefix('body.')}"
         raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    refuse_lost_body(body, at)
+    return body
 
 
 def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from rigidfluid.core import broad_phase
 from rigidfluid.core.contacts import select
+from rigidfluid.core.detection import detect
 from rigidfluid.core.rigid import angle_between
 from rigidfluid.core.system import System
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, Mesh, Pose
@@ -18,7 +19,7 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
     """
     count = len(system.bodies)
-    near = system.detector.detect(pose, mesh, system.reach)
+    near = detect(system, pose, mesh, system.reach)
     gaps = np.full(count, np.inf)
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
@@ -35,7 +36,7 @@ def may_repel(system: System, contacts: Contacts) -> BoolArray:
 
 def refuse_overlap(surface: str, gap: float) -> None:
     """Raise StepRejected if the ``gap`` of a body [length] is none."""
-    if gap <= 0.0:
+    if not gap > 0.0:
         raise StepRejected(
             f"body {surface}",
             f"a gap of {gap:.3e}",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contacts import select
+from rigidfluid.core.detection import detect
 from rigidfluid.core.proximity import may_repel, travel
 from rigidfluid.core.system import System
 from rigidfluid.core.types import Contacts, IntArray, Pose
@@ -44,7 +45,7 @@ class RedetectedContacts:
         return select(found, np.searchsorted(numbers, self._pairs))
 
     def _detected(self, pose: Pose, reach: float) -> Contacts:
-        near = self._system.detector.detect(pose, None, reach)
+        near = detect(self._system, pose, None, reach)
         return select(near, may_repel(self._system, near))
 
     def _numbers(self, contacts: Contacts) -> IntArray:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 
+from rigidfluid.core.foreign import no_exit
 from rigidfluid.core.history import History
 from rigidfluid.core.scene import Scene
 from rigidfluid.core.simulation import Progress, Simulation
@@ -46,28 +47,39 @@ def run(
     Returns
     -------
     History
-        Tables and summary, the same that ``out`` holds; also where the run is shared, on all ranks.
+        Tables and summary, the same that ``out`` holds, and read from there when they are asked for; also where the run
+        is shared, on all ranks.
 
     Raises
     ------
     SceneError, PluginError, MeshError
-        Before anything is written.
+        Before anything is written; PluginError also where a part gives what cannot be, or exits.
     OutputError
-        Where the disk refuses, or there is nothing to resume.
+        Where the disk refuses, there is nothing to resume, or ``out`` is another run's or not a run's.
     StepError
         Where even the shortest step fails; what was computed stays, and can be resumed.
+
+    Any other error, as that of a plug-in, leaves a summary too.
     """
-    with one_openblas_thread():
-        simulation = Simulation(scene, None if out is None else Path(out), resume, processes)
+    folder = None if out is None else Path(out)
+    with one_openblas_thread(), no_exit(), closing(Simulation(scene, folder, resume, processes)) as simulation:
         told = finished or (lambda _: None)
         try:
-            simulation.go(progress)
-        except (RigidfluidError, KeyboardInterrupt) as error:
-            if simulation.alone or isinstance(error, RigidfluidError):  # an interrupt need not reach all ranks
+            with no_exit():
+                simulation.go(progress)
+        except BaseException as error:
+            if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
                 with suppress(OutputError):  # a full disk has been reported once
-                    simulation.finish(status=f"stopped: {error}" if str(error) else "interrupted")
+                    simulation.finish(status=_status(error))
                 told(simulation.history)
             raise
         simulation.finish(status="complete")
         told(simulation.history)
     return simulation.history
+
+
+def _status(error: BaseException) -> str:
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted"
+    kind = "" if isinstance(error, RigidfluidError) else f"{type(error).__name__}: "
+    return f"stopped: {kind}{error}"

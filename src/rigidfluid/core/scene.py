@@ -113,7 +113,11 @@ class PrescribedTable(_Table):
 class BodyTable(_OpenTable):
     """One rigid body."""
 
-    name: str = Field(default="", description="Name in the results; `body0`, `body1`, … if not given")
+    name: str = Field(
+        default="",
+        pattern=r"^[^\x00-\x1f\x7f]*$",  # a control character would break the tables and plots that names stand in
+        description="Name in the results, without control characters; `body0`, `body1`, … if not given",
+    )
     type: str = Field(description="Name of a body type")
     density: Positive = Field(description="Density of the body [mass/length^d]")
     position: Vector = Field(description="Initial position of the centre of mass [length]")
@@ -282,5 +286,5 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None

@@ -14,9 +14,12 @@ from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.interfaces import FluidBackend
-    from rigidfluid.core.scene import BodyTable, BoundaryTable, Scene
+    from rigidfluid.core.scene import BodyTable, BoundaryTable, MeshTable, Scene
 
     Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
+
+MOST_CELLS = 10**9
+"""More of them, a cube or square of the edge length each, are a slip of units, and a mesher would never end."""
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -70,6 +73,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend]) -> None:
             raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
     if scene.mesh is None:
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
+    _check_cells(scene, scene.mesh)
     _check_inflow(scene)
 
 
@@ -194,12 +198,17 @@ def _check_sizes(scene: Scene) -> None:
         raise SceneError("time.step", time.step, f"at least {time.end / MOST_STEPS:g} for this end", "Lengthen it.")
     if scene.output.every < time.step:
         raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
-    if time.step > time.end:
-        raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten the step.")
     if time.shortest > time.step:
         raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
     if mesh and mesh.size_body > mesh.size:
         raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
+
+
+def _check_cells(scene: Scene, mesh: MeshTable) -> None:
+    volume = float(np.prod(np.subtract(scene.domain.upper, scene.domain.lower)))
+    least = (volume / MOST_CELLS) ** (1.0 / scene.dimension)
+    if mesh.size < least:
+        raise SceneError("mesh.size", mesh.size, f"at least {least:.3g} for this domain", "Coarsen it.")
 
 
 def _check_inflow(scene: Scene) -> None:

@@ -16,6 +16,7 @@ from rigidfluid.core.clock import Clock
 from rigidfluid.core.contact_path import BodiesPath, first_step_again, follow
 from rigidfluid.core.coupling import expected_coupling, settled, shown_coupling, unforeseen
 from rigidfluid.core.energy import Ledger
+from rigidfluid.core.extremes import Extremes
 from rigidfluid.core.history import History
 from rigidfluid.core.interfaces import FluidBackend
 from rigidfluid.core.mesh_adaptation import Mover, reference_of
@@ -76,16 +77,23 @@ class Simulation:
         earlier = _earlier(scene, out, self._ranks) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, self.system)
-        self.mover = Mover(self.system, sizes, scene.mesh.quality if scene.mesh else 0.0)
+        quality = scene.mesh.quality if scene.mesh else 0.0
+        self.mover = Mover(self.system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
-        self.history = History(scene.dimension)
+        self.history = History(scene.dimension, folder=out)
+        self.extremes = Extremes.none(len(self.system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start = time.perf_counter()
-        if earlier is None:
-            self._begin(out)
-        else:
-            assert out is not None
-            self._take_up(out, earlier)
+        self._writer: Writer | None = None
+        try:
+            if earlier is None:
+                self._begin(out)
+            else:
+                assert out is not None
+                self._take_up(out, earlier)
+        except BaseException:
+            self.close()
+            raise
 
     @property
     def alone(self) -> bool:
@@ -115,8 +123,14 @@ class Simulation:
         if self._writer is not None:
             self._writer.summary(self.history.summary)
 
+    def close(self) -> None:
+        """Let other runs write to the folder; nothing may be written after that."""
+        if self._writer is not None:
+            self._writer.close()
+
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before, self.rejected, self.remeshes = 0.0, 0, 0
+        self._elapsed_before = 0.0
+        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = _initial_state(self.system, self.mover, self.clock)
@@ -130,15 +144,18 @@ class Simulation:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
         start = self.state
         self._advance()
-        self.state, self.rejected, self.remeshes = start, 0, 0
+        self.state = start
+        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self._elapsed_before, self.rejected, self.remeshes = earlier.elapsed, earlier.rejected, earlier.remeshes
+        self._elapsed_before = earlier.elapsed
+        self.rejected, self.unsettled = earlier.rejected, earlier.unsettled
+        self.remeshes, self.failed_remeshes = earlier.remeshes, earlier.failed_remeshes
         self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
+        self.extremes = earlier.extremes
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
-        self.history.extend(self._writer.records())
 
     def _advance(self) -> None:
         """One accepted step: the longest that is allowed, halved until it succeeds."""
@@ -146,37 +163,45 @@ class Simulation:
         while True:
             try:
                 path = path or self._path(level)
-                self.state = self._tried(level, path)
+                self._accept_mesh(path.pose)
+                self.state, agreed = self._tried(level, path)
             except StepRejected as rejection:
                 self.rejected += 1
                 level, path = level + 1, None
                 if level > self.clock.levels:
                     raise self._stuck(rejection) from rejection
             else:
+                self.unsettled += not agreed
                 return
 
-    def _tried(self, level: int, path: BodiesPath) -> State:
+    def _accept_mesh(self, pose: Pose) -> None:
+        """The present state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
         with self.watch("mesh"):
-            state = self.mover.adapted(self.state, path.pose)
-            self.remeshes += state is not self.state
-            self.state = state
+            state = self.mover.adapted(self.state, pose)
+        self.remeshes += state.mesh is not self.state.mesh
+        self.failed_remeshes += state.remesh_failed not in (None, self.state.remesh_failed)
+        self.state = state
+
+    def _tried(self, level: int, path: BodiesPath) -> tuple[State, bool]:
+        """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
             candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
             if level < self.clock.levels and unforeseen(self.system, self.state, candidate):
                 raise _too_fast()
             if path.coupling is None:
                 if number > 0 or self.state.past is not None or self.state.mesh is None:
-                    return candidate
+                    return candidate, True
                 path = first_step_again(self.state, candidate.twist, self.clock.size(level))
                 continue
             with self.watch("response"):
                 found = shown_coupling(self.system, self.state, candidate, path, step)
-            if number == MOST_ATTEMPTS - 1 or settled(found, path, self.state, candidate):
+            agreed = settled(found, path, self.state, candidate)
+            if agreed or number == MOST_ATTEMPTS - 1:
                 break
             path = self._path(level, found)
             if level < self.clock.levels and self._changes_gaps_too_fast(path.pose):
                 raise _too_fast()
-        return replace(candidate, coupling=found)
+        return replace(candidate, coupling=found), agreed
 
     def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
@@ -224,6 +249,7 @@ class Simulation:
     def _record(self) -> None:
         now = records(self.system, self._probes, self.state, self.clock.time(self.state.tick))
         self.history.extend(now)
+        self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
             with self.watch("write"):
                 self._writer.extend(now)
@@ -252,8 +278,11 @@ class Simulation:
             lengths=writer.lengths,
             seconds=self.watch.seconds,
             rejected=self.rejected,
+            unsettled=self.unsettled,
             remeshes=self.remeshes,
+            failed_remeshes=self.failed_remeshes,
             elapsed=self.elapsed,
+            extremes=self.extremes,
             ranks=self._ranks.size,
         )
 

@@ -36,7 +36,8 @@ class State:
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
-    wrenches are those that led to the present twist.
+    wrenches are those that led to the present twist. ``remesh_failed``: the tick at which this mesh could not be made
+    anew, None if it has not been tried.
     """
 
     tick: int
@@ -54,6 +55,7 @@ class State:
     hydrodynamic_wrench: Wrench
     contact_wrench: Wrench
     ledger: Ledger
+    remesh_failed: int | None = None
 
     @property
     def past_twist(self) -> Twist | None:

@@ -1,4 +1,4 @@
-"""One attempted step: predict, move the mesh, find contacts, push, advance. State in, candidate out."""
+"""One attempted step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rigidfluid.core.contact_path import BodiesPath
 from rigidfluid.core.convection import turning
 from rigidfluid.core.energy import Power, Work, kinetic_energy
 from rigidfluid.core.mesh_adaptation import Mover
+from rigidfluid.core.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.proximity import refuse_overlap, surroundings
 from rigidfluid.core.state import Past, State
 from rigidfluid.core.stopwatch import Stopwatch
@@ -34,11 +35,12 @@ def attempt(
     Raises
     ------
     StepRejected
-        When bodies overlap, a cell is tangled or the backend fails.
+        When bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
     """
     size = clock.size(level)
     time = clock.time(state.tick + clock.ticks(level))
     pose = path.pose
+    refuse_lost_pose(system.surfaces, pose)
     with watch("move mesh"):
         mesh = mover.moved(state, pose)
     with watch("detect"):
@@ -51,6 +53,7 @@ def attempt(
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
             step = replace(step, turning=turning(system, state, path, step))
         advance = system.backend.advance(state.fluid, state.mesh, step)
+        refuse_lost_advance(system.surfaces, advance, state.pose)
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
@@ -73,6 +76,7 @@ def attempt(
             advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
+        remesh_failed=state.remesh_failed,
     )
     return candidate, step
 
@@ -85,7 +89,11 @@ def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
 
 def contact_energy(system: System, contacts: Contacts) -> float:
     """Stored in the contacts [energy]."""
-    return float(np.sum(system.law.energy(contacts))) if system.law and len(contacts) else 0.0
+    if system.law is None or len(contacts) == 0:
+        return 0.0
+    energy = system.law.energy(contacts)
+    refuse_no_number("contacts", "energy", energy, "contact.law")
+    return float(np.sum(energy))
 
 
 def step_to(

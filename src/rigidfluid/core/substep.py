@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.contacts import select
 from rigidfluid.core.interfaces import ForceLaw
 from rigidfluid.core.movement import Movement
+from rigidfluid.core.part_results import refuse_no_number
 from rigidfluid.core.rigid import cross
 from rigidfluid.core.stiffness import greatest_stiffness, on_the_way
 from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
@@ -18,13 +19,18 @@ from rigidfluid.core.types import BoolArray, Contacts, FloatArray, IntArray, Mot
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
 
-MOST_LEVERAGE = 5.0
-"""Mass times (r × n)·I⁻¹(r × n) is no more at any point of a homogeneous ellipsoid, however slender."""
-
 FADED = 8.0
 """The frequency of balls that part is taken for no more than so many times the highest that is still to come."""
 
 _HALVINGS = 30
+
+
+class Reach(NamedTuple):
+    """How far the surface of each body reaches from its centre of mass, ``arms`` (n,) [length], and how easily it gives
+    way there, ``leverage`` (n,) [1], see `most_leverage`; zero for balls, which turn in their place."""
+
+    arms: FloatArray
+    leverage: FloatArray
 
 
 class Plan(NamedTuple):
@@ -34,7 +40,7 @@ class Plan(NamedTuple):
     substep: float
 
 
-def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray, size: float, span: float) -> Plan:
+def plan(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach, size: float, span: float) -> Plan:
     """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
 
     Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
@@ -50,8 +56,8 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray
         All that may come into range in the span.
     movement : Movement
         The n bodies as they move now.
-    arms : (n,) array
-        How far the surface reaches from the centre of mass, zero for balls, which turn in their place [length].
+    reach : Reach
+        Of the bodies' surfaces.
     size, span : float
         Of the whole step, and how far contacts are foreseen [time].
 
@@ -63,7 +69,7 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray
     if len(contacts) == 0:
         return Plan(span, span)
     pulled = _of_both(movement.pull(span), contacts).sum(axis=1)
-    approach = _approach(law, contacts, movement, arms)
+    approach = _approach(law, contacts, movement, reach)
     speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
     halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
@@ -83,17 +89,17 @@ class _Approach(NamedTuple):
     parting: BoolArray
 
 
-def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, arms: FloatArray) -> _Approach:
+def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach) -> _Approach:
     """Normals of balls turn with the line of centres; those of other shapes may turn anywhere."""
-    twist, arm = movement.twist, _of_both(arms, contacts)
-    spin = _of_both(arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
+    twist, arm = movement.twist, _of_both(reach.arms, contacts)
+    spin = _of_both(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
     velocity = _relative(twist.velocity, contacts)
     opening = np.sum(velocity * contacts.normal, axis=1)
     inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
     energy = _radial_energy(contacts, movement, velocity, opening, inside)
     if tumbling.any():
-        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], arms)
-    inverse = _inverse_masses(contacts, movement) * np.where(arm > 0.0, 1.0 + MOST_LEVERAGE, 1.0)
+        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], reach)
+    inverse = _inverse_masses(contacts, movement) * (1.0 + _of_both(reach.leverage, contacts))
     fastest = np.linalg.norm(velocity, axis=1) + spin.sum(axis=1)
     return _Approach(fastest, energy, inverse, ~tumbling & (inside > 0.0) & (opening > 0.0))
 
@@ -115,13 +121,13 @@ def _radial_energy(
     return np.asarray(0.5 * mass * square)
 
 
-def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArray, arms: FloatArray) -> FloatArray:
+def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArray, reach: Reach) -> FloatArray:
     """As if all mass had the speed that the kinetic energy can give to the fastest point of a free body, (m,) [energy].
 
     Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A driven body is
     not stopped; so its fastest point counts.
     """
-    spin, inverse = movement.twist.angular_velocity, movement.inverse_inertia
+    arms, spin, inverse = reach.arms, movement.twist.angular_velocity, movement.inverse_inertia
     free, turning = inverse.any(axis=(1, 2)), np.zeros(len(arms))
     own = free & (arms > 0.0)
     turning[own] = 0.5 * np.einsum("ni,nij,nj->n", spin[own], np.linalg.inv(inverse[own]), spin[own])
@@ -130,7 +136,7 @@ def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArra
     lightness: FloatArray = np.asarray(np.linalg.eigvalsh(movement.mobility)[:, 0], dtype=np.float64)
     mass = _reciprocal(_of_both(lightness, contacts).sum(axis=1))
     kinetic = 0.5 * mass * speed**2 + _of_both(turning, contacts).sum(axis=1)
-    return np.asarray((1.0 + MOST_LEVERAGE) * kinetic)
+    return np.asarray((1.0 + _of_both(reach.leverage, contacts).max(axis=1)) * kinetic)
 
 
 def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _Approach, pull: FloatArray) -> float:
@@ -138,6 +144,7 @@ def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _
     stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
     inverse = approach.inverse
     rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
+    refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from rigidfluid.core.energy import Ledger
 from rigidfluid.core.energy_account import EnergyAccount, energy_account
-from rigidfluid.core.history import History
 from rigidfluid.core.memory import peak_memory
 from rigidfluid.core.ranks import Ranks
 from rigidfluid.core.records import LEDGER_COLUMNS
@@ -27,7 +26,8 @@ _PACKAGES = (
     *("fenics-dolfinx", "petsc4py", "mpi4py", "ngsolve"),
 )
 FIGURES = (
-    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "remeshes", "wall_time", "wall_time_per_stage"),
+    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
+    *("failed_remeshes", "wall_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
@@ -38,8 +38,7 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
-    state, system, history = simulation.state, simulation.system, simulation.history
-    bodies = history.bodies
+    state, system, extremes = simulation.state, simulation.system, simulation.extremes
     return {
         "status": status,
         "scene": simulation.scene.to_dict(),
@@ -51,14 +50,16 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "ranks": system.backend.ranks.size,
         "steps": state.count,
         "rejected_steps": simulation.rejected,
+        "unsettled_steps": simulation.unsettled,
         "remeshes": simulation.remeshes,
+        "failed_remeshes": simulation.failed_remeshes,
         "wall_time": simulation.elapsed,
         "wall_time_per_stage": simulation.watch.seconds,
         "peak_memory": _of_all(system.backend.ranks, peak_memory()),
-        **reynolds_numbers(simulation.scene, system, history),
-        "smallest_gap": _finite(np.min(bodies["gap"])),
+        **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
+        "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        "energy": energy_balance(state.ledger, energy_account(history.energy)),
+        "energy": energy_balance(state.ledger, energy_account(simulation.history.energy)),
         "auto_epsilon": chosen_strengths(system),
     }
 
@@ -79,27 +80,20 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def reynolds_numbers(scene: Scene, system: System, history: History) -> dict[str, float | None]:
+def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[str, float | None]:
     """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
 
-    R is the radius of a ball, of other shapes that of the smallest ball around them. None without a fluid.
+    ``speeds`` (n,) are the highest |v|. R is the radius of a ball, of other shapes that of the smallest ball around
+    them. None without a fluid.
     """
     if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
         return {"reynolds_solid_density": None, "reynolds": None}
-    speeds = _highest_speeds(system, history)
     per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
     solid = np.array([body.density for body in scene.body])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),
         "reynolds": float(np.max(per_density) * scene.fluid.density),
     }
-
-
-def _highest_speeds(system: System, history: History) -> FloatArray:
-    bodies = history.bodies
-    components = [bodies["v" + axis] for axis in "xyz"[: system.dimension]]
-    speed = np.sqrt(np.sum(np.square(components), axis=0)).reshape(-1, len(system.bodies))
-    return np.asarray(speed.max(axis=0))
 
 
 def energy_balance(ledger: Ledger, account: EnergyAccount) -> dict[str, float]:

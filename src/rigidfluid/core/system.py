@@ -13,6 +13,7 @@ from rigidfluid.core.boundary import conditions, face_planes, faces
 from rigidfluid.core.geometry_checks import check_geometry
 from rigidfluid.core.impact import impact_speeds
 from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.leverage import most_leverage
 from rigidfluid.core.parts import Parts, resolve
 from rigidfluid.core.prescribed import prescribed_motion
 from rigidfluid.core.scene import Scene
@@ -47,6 +48,7 @@ class System:
     ``loads``: what contacts must hold; its smallest gap is 0 without a law.
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
+    ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
     """
 
     dimension: int
@@ -68,6 +70,7 @@ class System:
     detector: Detector
     detector_why: str
     reach: float
+    leverage: FloatArray
     law: ForceLaw | None
     loads: Loads
     substeps: int | None
@@ -124,6 +127,7 @@ def build_system(scene: Scene) -> System:
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
+        leverage=np.array([most_leverage(body) for body in parts.bodies]),
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,

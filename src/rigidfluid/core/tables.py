@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import csv
 import os
+from array import array
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from sys import intern
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rigidfluid.core.records import Row
 from rigidfluid.errors import OutputError
@@ -57,6 +63,11 @@ KINDS: Mapping[str, type[float | int | str]] = {"body": str, "a": str, "b": str,
 """What stands in a column; a number with a fraction where it is not named here."""
 
 
+def table_path(folder: Path, name: str) -> Path:
+    """The file of a table of a run."""
+    return folder / f"{name}.csv"
+
+
 def read_rows(path: Path) -> list[Row]:
     """The rows of a table on disk, numbers as numbers; raises ValueError where one is not."""
     with path.open(newline="", encoding="utf-8") as file:
@@ -65,8 +76,29 @@ def read_rows(path: Path) -> list[Row]:
         return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
 
 
+def read_columns(path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:
+    """Columns of a table on disk as arrays, with no more of it held meanwhile; raises ValueError as read_rows does."""
+    with path.open(newline="", encoding="utf-8") as file:
+        reader = csv.reader(file)
+        names = next(reader, [])
+        columns = [(name, names.index(name), _empty(name)) for name in wanted]
+        for row in reader:
+            if len(row) < len(names):
+                raise ValueError(f"a torn line {reader.line_num}")
+            for name, place, values in columns:
+                values.append(_value(name, row[place]))
+        return {name: np.array(values) for name, _, values in columns}
+
+
+def _empty(name: str) -> Any:
+    """A column to append to, of eight bytes for each number."""
+    kind = KINDS.get(name, float)
+    return [] if kind is str else array("q" if kind is int else "d")
+
+
 def _value(name: str, text: str) -> float | int | str:
     try:
-        return KINDS.get(name, float)(text)
+        kind = KINDS.get(name, float)
+        return intern(text) if kind is str else kind(text)
     except ValueError:
         raise ValueError(f"a value that is no number in column {name}") from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -12,6 +12,11 @@ from pydantic_core import ErrorDetails
 
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
+
+LARGEST, SMALLEST = 1e30, 1e-30
+"""Numbers of a scene lie between these, or are zero: powers and products of them then stay finite."""
+
+_LONG = 200
 
 M = TypeVar("M", bound=BaseModel)
 Location = tuple[int | str, ...]
@@ -39,13 +44,15 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     SceneError
         At the first value that is not allowed; unknown keys come first, as they often explain what is missing.
     """
-    # Through JSON: its arrays may become tuples in strict mode, while a string never becomes a number.
-    text = json.dumps(data, default=_plain)
+    text = _json(data, at)
     try:
-        return model.model_validate_json(text)
+        table = model.model_validate_json(text)
     except ValidationError as error:
         complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
-        raise _scene_error(model, complaints[0], at) from None
+        raise _scene_error(model, complaints, at) from None
+    for field, number in _numbers(json.loads(text), at):
+        _refuse_out_of_proportion(field, number)
+    return table
 
 
 def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
@@ -71,19 +78,61 @@ def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
     return SceneError(field, "a key that nothing reads", ", ".join(keys), remedy)
 
 
+def shown(value: object) -> str:
+    """A value for a message, cut short where it is long."""
+    text = repr(value)
+    return text if len(text) <= _LONG else f"{text[:_LONG]}… ({len(text)} characters)"
+
+
+def _json(data: Mapping[str, Any], at: str) -> str:
+    """JSON's arrays may become tuples in strict mode, while a string never becomes a number."""
+    try:
+        return json.dumps(data, default=_plain)
+    except (ValueError, TypeError, RecursionError) as error:
+        found = f"a value that is no JSON ({error})"
+        raise SceneError(at or "scene", found, "tables, lists, numbers and texts", "Correct the values.") from None
+
+
 def _plain(value: Any) -> Any:
     """NumPy values as lists and numbers; TOML's dates, which no key takes, as they are written."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-def _scene_error(model: type[BaseModel], complaint: ErrorDetails, at: str) -> SceneError:
-    location = complaint["loc"]
+def _numbers(value: Any, at: str) -> Iterator[tuple[str, float]]:
+    """Every number in tables and lists, with its field."""
+    if isinstance(value, dict | list):
+        for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _numbers(inner, f"{at}.{key}" if at else str(key))
+    elif isinstance(value, int | float):
+        yield at, value
+
+
+def _refuse_out_of_proportion(field: str, number: float) -> None:
+    if number != 0 and not SMALLEST <= abs(number) <= LARGEST:
+        allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size"
+        raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
+
+
+def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
+    """The error of the first complaint."""
+    complaint, location = complaints[0], complaints[0]["loc"]
     field = ".".join([*filter(None, [at]), *map(str, location)])
     if complaint["type"] == "extra_forbidden":
         return unknown_key(field, _model_at(model, location[:-1]).model_fields)
-    if complaint["type"] == "missing":
+    if complaint["type"] == "missing" and isinstance(complaint["input"], Mapping):
         return _missing_key(model, complaint, field)
-    return SceneError(field or "scene", repr(complaint["input"]), _allowed(complaint), _remedy(model, location))
+    if complaint["type"] == "missing":
+        return _short_list(model, complaints, at)
+    return SceneError(field or "scene", shown(complaint["input"]), _allowed(complaint), _remedy(model, location))
+
+
+def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
+    """Of a list that must have a certain length, pydantic says which of its places are empty."""
+    place = complaints[0]["loc"][:-1]
+    field = ".".join([*filter(None, [at]), *map(str, place)])
+    empty = sum(complaint["type"] == "missing" and complaint["loc"][:-1] == place for complaint in complaints)
+    given = complaints[0]["input"]
+    return SceneError(field, shown(given), f"{len(given) + empty} entries", _remedy(model, place))
 
 
 def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:

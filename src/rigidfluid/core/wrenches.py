@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from rigidfluid.core.part_results import refuse_lost_forces
 from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
 
 
@@ -29,9 +30,15 @@ def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wr
     -------
     Wrench
         Force and torque on the n bodies; what a wall takes is dropped.
+
+    Raises
+    ------
+    PluginError, StepRejected
+        If the force has another shape, or is no number.
     """
     wrench = nothing(pose)
     if len(contacts):
+        refuse_lost_forces(contacts, force_on_a)
         a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
         _accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
     return wrench

@@ -6,17 +6,17 @@ Of a run that ranks share each writes its part of the fields and its checkpoint,
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from rigidfluid.core.checkpoint import Checkpoint, adopt_checkpoint, read_checkpoint, read_staged, stage_checkpoint
 from rigidfluid.core.ranks import ROOT, Ranks
 from rigidfluid.core.records import Records, columns
-from rigidfluid.core.tables import Table, read_rows
+from rigidfluid.core.run_folder import clear, locked, refuse_foreign
+from rigidfluid.core.tables import Table, table_path
 from rigidfluid.core.types import Fields
 from rigidfluid.core.vtu import write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
@@ -41,37 +41,40 @@ class Writer:
     Raises
     ------
     OutputError
-        From every method, where the disk refuses; on all ranks if it does on one.
+        From every method, where the disk refuses; on all ranks if it does on one. At the start also where another run
+        is writing there, or files of these names are not a run's.
     """
 
     def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None, ranks: Ranks) -> None:
         self.out, self._ranks = out, ranks
         self._tables: dict[str, Table] = {}
+        self._mark: TextIO | None = None
+        with ExitStack() as undo:
+            undo.callback(self.close)
+            self._start(dimension, resumed)
+            undo.pop_all()
+
+    def _start(self, dimension: int, resumed: Checkpoint | None) -> None:
+        out, lengths = self.out, {} if resumed is None else resumed.lengths
         with self._writing_once(out) as is_mine:
             if is_mine:
-                (out / FIELDS).mkdir(parents=True, exist_ok=True)
-                if resumed is None:
-                    _clear(out)
-        lengths = {} if resumed is None else resumed.lengths
+                self._mark = _taken(out, anew=resumed is None)
         for name, names in columns(dimension).items():
-            with self._writing_once(out / f"{name}.csv") as is_mine:
+            path = table_path(out, name)
+            with self._writing_once(path) as is_mine:
                 if is_mine:
-                    self._tables[name] = Table(out / f"{name}.csv", names, lengths.get(name))
+                    self._tables[name] = Table(path, names, lengths.get(name))
 
     @property
     def lengths(self) -> dict[str, int]:
         """Bytes in each table; the root has them all."""
         return {name: table.length for name, table in self._tables.items()}
 
-    def records(self) -> Records:
-        """The rows that are on disk."""
-        return self._ranks.shared({name: read_rows(self.out / f"{name}.csv") for name in self._tables})
-
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
         with self._ranks.together():
             for name, table in self._tables.items():
-                with writing(self.out / f"{name}.csv"):
+                with writing(table_path(self.out, name)):
                     table.extend(records[name])
 
     def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
@@ -104,6 +107,11 @@ class Writer:
             if is_mine:
                 (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
 
+    def close(self) -> None:
+        """Let other runs write to the folder."""
+        if self._mark is not None:
+            self._mark.close()
+
     @property
     def files(self) -> list[str]:
         """The files of a finished run; those with fields are listed in the series."""
@@ -117,6 +125,17 @@ class Writer:
         """Whether this rank is to write a file that is there once; its failure is everyone's."""
         with self._ranks.together(), writing(path):
             yield self._ranks.is_root
+
+
+def _taken(out: Path, anew: bool) -> TextIO:
+    """The folder's lock; of an earlier run there only what is not to be written ``anew`` is left."""
+    if anew:
+        refuse_foreign(out)
+    (out / FIELDS).mkdir(parents=True, exist_ok=True)
+    mark = locked(out)
+    if anew:
+        clear(out)
+    return mark
 
 
 def checkpoint_name(rank: int) -> str:
@@ -179,13 +198,3 @@ def writing(path: Path) -> Iterator[None]:
             "a folder that can be written to, on a disk with room",
             "Choose another --out, or make room and go on with --resume.",
         ) from error
-
-
-def _clear(out: Path) -> None:
-    """Remove an earlier run's files, so that two runs never mix."""
-    for name in (SUMMARY, SERIES):
-        (out / name).unlink(missing_ok=True)
-    for file in (*out.glob("state*.h5*"), *(out / FIELDS).glob("*vtu")):
-        file.unlink()
-    (out / "report.html").unlink(missing_ok=True)
-    shutil.rmtree(out / "report", ignore_errors=True)

@@ -23,7 +23,7 @@ def draw_bodies(axes: Axes, time: FloatArray, values: FloatArray, names: Sequenc
         _draw_spread(axes, time, finite, len(names))
         return
     for curve, name, colour in zip(finite.T, names, PALETTE, strict=False):
-        axes.plot(time, curve, color=colour, label=name)
+        axes.plot(time, curve, color=colour, label=_as_it_is(name))
 
 
 def add_legend(figure: Figure | SubFigure) -> None:
@@ -55,3 +55,8 @@ def _draw_spread(axes: Axes, time: FloatArray, values: FloatArray, count: int) -
     axes.fill_between(time, low, high, color=BLUE, alpha=0.15, linewidth=0, label=f"all {count} bodies")
     axes.fill_between(time, five, most, color=BLUE, alpha=0.35, linewidth=0, label="middle 90 %")
     axes.plot(time, half, color=BLUE, label="median")
+
+
+def _as_it_is(name: str) -> str:
+    """Dollars in a name enclose no formula."""
+    return name.replace("$", r"\$")

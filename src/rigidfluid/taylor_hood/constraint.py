@@ -76,8 +76,3 @@ class Constraint:
         flat = np.concatenate(values)
         self.operator.data = flat[self._order]
         self.transposed.data = flat[self._transposed_order]
-
-    def given(self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray) -> FloatArray:
-        """All unknowns (nodes·d + vertices,) with the prescribed velocities in place and zero elsewhere."""
-        velocity = self.surfaces.prescribed(time, node_points, position, twist, self.controlled)
-        return np.concatenate([velocity.ravel(), np.zeros(self._numbering.vertices)])

@@ -10,6 +10,13 @@
             return MyBody(MyOptions(length=1.0), dimension=2)
 """
 
+# ruff: noqa: E402  pytest must know the modules before they are imported: an assertion that fails then shows its values.
+
+import pytest
+
+_MODULES = ("arrangement", "body", "detector", "fluid", "fluid_backend", "force_law")
+pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
+
 from rigidfluid.testing.arrangement import Arrangement
 from rigidfluid.testing.body import BodyContract
 from rigidfluid.testing.detector import DetectorContract
