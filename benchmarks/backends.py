@@ -24,8 +24,8 @@ from disk_under_way import MESHES, OUTPUT_EVERY, falling
 from stages import STAGES, measured
 
 from rigidfluid.bench.processes import measured_apart
-from rigidfluid.core.memory import peak_memory
-from rigidfluid.core.threads import one_openblas_thread
+from rigidfluid.core.run.memory import peak_memory
+from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 

@@ -23,9 +23,9 @@ sys.path.append(str(ROOT / "tests" / "support"))
 import fluid_contacts  # noqa: E402
 import numpy as np  # noqa: E402
 
-from rigidfluid.core.scene import Scene, load_scene  # noqa: E402
-from rigidfluid.core.simulation import Simulation  # noqa: E402
-from rigidfluid.core.threads import one_openblas_thread  # noqa: E402
+from rigidfluid.core.run.simulation import Simulation  # noqa: E402
+from rigidfluid.core.run.threads import one_openblas_thread  # noqa: E402
+from rigidfluid.core.scene.scene import Scene, load_scene  # noqa: E402
 
 HEAD = ("scene", "unknowns", "contacts", "free step [s]", "contact step [s]", "ratio", "steps", "re-meshes")
 PITCH = 0.066

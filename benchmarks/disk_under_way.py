@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import rigidfluid
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_disk.toml"
 # Thousands of unknowns: (size, size_body, growth) of the mesh.

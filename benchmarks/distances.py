@@ -19,9 +19,9 @@ from rigidfluid.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.bench.shells import INNER, shell
 from rigidfluid.bench.timing import fastest
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.rigid import rotation_matrices
-from rigidfluid.core.types import FloatArray, Mesh, Pose
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.marching.field import distance_field

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 import rigidfluid
-from rigidfluid.core.contact_path import follow
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.contact.contact_path import follow
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.crosscheck.kinds import kinds
 from rigidfluid.crosscheck.library import lammps_session
 from rigidfluid.crosscheck.theirs import build

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.types import FluidProblem, Mesh
+from rigidfluid.core.model.types import FluidProblem, Mesh
 
 
 def as_ngsolve(mesh: Mesh, bodies: int) -> Any:

@@ -15,10 +15,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from rigidfluid.core.memory import peak_memory
-from rigidfluid.core.scene import load_scene
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.threads import one_openblas_thread
+from rigidfluid.core.run.memory import peak_memory
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.run.threads import one_openblas_thread
+from rigidfluid.core.scene.scene import load_scene
 from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"

@@ -11,7 +11,7 @@ from typing import Any
 
 from disk_under_way import OUTPUT_EVERY
 
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
 
 # A stage of the run's stopwatch → what it does.
 WATCHED = {"mesh": "adapt mesh", "contact": "bodies through contacts", "move mesh": "move mesh", "detect": "detect"}

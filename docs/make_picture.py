@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import rigidfluid
-from rigidfluid.core.history import History
-from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.reports.plane import corner_triangles, fine_triangles
 from rigidfluid.reports.style import BLACK, BODY, COLOURMAP, ORANGE, STYLE, VERMILLION, new_figure
 

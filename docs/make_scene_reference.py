@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.registry import Entry, Registry
 
 PATH = Path(__file__).with_name("scene.md")

@@ -19,7 +19,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import rigidfluid
-from rigidfluid.core.history import History
+from rigidfluid.core.output.history import History
 from rigidfluid.crosscheck import crosscheck
 from rigidfluid.crosscheck.comparison import PARTED
 from rigidfluid.errors import StepError

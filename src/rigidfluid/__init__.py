@@ -6,13 +6,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rigidfluid.core.run import run
-    from rigidfluid.core.scene import Scene, load_scene
+    from rigidfluid.core.run.run import run
+    from rigidfluid.core.scene.scene import Scene, load_scene
 
 __version__ = "0.1.0"
 __all__ = ["Scene", "__version__", "load_scene", "run"]
 
-_HOMES = {"run": "rigidfluid.core.run", "Scene": "rigidfluid.core.scene", "load_scene": "rigidfluid.core.scene"}
+_HOMES = {
+    "run": "rigidfluid.core.run.run",
+    "Scene": "rigidfluid.core.scene.scene",
+    "load_scene": "rigidfluid.core.scene.scene",
+}
 
 
 def __getattr__(name: str) -> object:

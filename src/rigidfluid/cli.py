@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid import __version__
-from rigidfluid.core.launch import Launch
+from rigidfluid.core.run.launch import Launch
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from rigidfluid.checks import Report
     from rigidfluid.comparison.compare import CompareProgress
     from rigidfluid.comparison.comparison import Comparison as BackendComparison
-    from rigidfluid.core.history import History
-    from rigidfluid.core.run import Progress
-    from rigidfluid.core.scene import Scene
+    from rigidfluid.core.output.history import History
+    from rigidfluid.core.run.run import Progress
+    from rigidfluid.core.scene.scene import Scene
     from rigidfluid.crosscheck import Comparison
     from rigidfluid.studies.results import Results
     from rigidfluid.studies.run import StudyProgress
@@ -95,8 +95,8 @@ def main(context: typer.Context, version: Version = False) -> None:
 def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None, resume: Resume = False) -> None:
     """Simulate a scene and write the results."""
     with _reported("The same command with --resume goes on from the last checkpoint."):
-        from rigidfluid.core.run import run as simulate
-        from rigidfluid.core.scene import load_scene
+        from rigidfluid.core.run.run import run as simulate
+        from rigidfluid.core.scene.scene import load_scene
 
         loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
@@ -114,7 +114,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
     """Say what a scene switches on and off, and whether its contacts can hold; exit code 1 if they cannot."""
     with _reported():
         from rigidfluid.checks import check as ask
-        from rigidfluid.core.scene import load_scene
+        from rigidfluid.core.scene.scene import load_scene
 
         report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
@@ -130,7 +130,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
 def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile = None, steps: Steps = 3) -> None:
     """Run a dry scene of balls in LAMMPS too, and say how far the results are apart."""
     with _reported():
-        from rigidfluid.core.scene import load_scene
+        from rigidfluid.core.scene.scene import load_scene
         from rigidfluid.crosscheck import crosscheck as run_both
 
         _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)
@@ -233,7 +233,7 @@ def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> N
 def schema() -> None:
     """Print the JSON Schema of scene files, with the keys of every installed part."""
     with _reported():
-        from rigidfluid.core.schema import json_schema
+        from rigidfluid.core.setup.schema import json_schema
 
         _print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
@@ -347,7 +347,13 @@ def _print_end(history: History, folder: Path) -> None:
 
 def _print_energy(history: History) -> None:
     """What came from nowhere and what vanished, and the likely causes where it is much."""
-    from rigidfluid.core.energy_account import NOTICEABLE, contacts_pushed, energy_account, energy_warnings, per_cent
+    from rigidfluid.core.output.energy_account import (
+        NOTICEABLE,
+        contacts_pushed,
+        energy_account,
+        energy_warnings,
+        per_cent,
+    )
 
     energy = history.energy
     account = energy_account(energy)
@@ -393,7 +399,7 @@ def _print_findings(report: Report) -> None:
 
 
 def _write_json(data: object, path: Path) -> None:
-    from rigidfluid.core.writer import writing
+    from rigidfluid.core.output.writer import writing
 
     with writing(path):
         path.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")

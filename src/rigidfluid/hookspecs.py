@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw
+    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
 hookimpl = pluggy.HookimplMarker("rigidfluid")

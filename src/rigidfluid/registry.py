@@ -16,8 +16,8 @@ from typing import Any, Generic, TypeVar, cast
 import pluggy
 
 from rigidfluid import hookspecs
-from rigidfluid.core.foreign import no_exit
-from rigidfluid.core.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.foreign import no_exit
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
 from rigidfluid.errors import PluginError
 
 GROUP = "rigidfluid"

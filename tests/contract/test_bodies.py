@@ -2,7 +2,7 @@ import pytest
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body
+from rigidfluid.core.model.interfaces import Body
 from rigidfluid.testing import BodyContract
 
 

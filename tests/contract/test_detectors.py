@@ -4,9 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigidfluid.core.contacts import select
-from rigidfluid.core.interfaces import Detector, PartOptions
-from rigidfluid.core.types import Contacts
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interfaces import Detector, PartOptions
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.fast_marching import FastMarchingDetector

@@ -8,7 +8,7 @@ from scipy.sparse import identity
 
 from rigidfluid.backends.dolfinx import Dolfinx
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Response, Step, Wrench
+from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Response, Step, Wrench
 from rigidfluid.testing import FluidBackendContract
 
 

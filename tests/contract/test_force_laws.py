@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from touching import unstacked
 
-from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.repulsion import Repulsion
+from rigidfluid.core.contact.repulsion import Repulsion
+from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.contact import ContactLaw

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 
 UNCHANGED = {"size": 0.1, "size_body": 0.03, "quality": 0.01, "refinements": 0, "cells_per_gap": 1}
 """A mesh that serves for the whole bounce."""

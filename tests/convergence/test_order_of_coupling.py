@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from falling import falling_disk
 
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
 
 END, REMESH = 0.16, 0.08
 

@@ -16,8 +16,8 @@ import numpy as np
 from mpi4py import MPI
 from shared_steps import go_on, resident, started
 
-from rigidfluid.core.step import step_to
-from rigidfluid.core.wrenches import nothing
+from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.run.step import step_to
 
 STEPS = 3
 

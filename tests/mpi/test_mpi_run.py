@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from falling import SCENES
 
-from rigidfluid.core.vtu import read_pvd, read_vtu
+from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 pytestmark = [

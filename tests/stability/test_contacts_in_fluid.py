@@ -23,12 +23,12 @@ from fluid_contacts import (
 )
 
 import rigidfluid
-from rigidfluid.core.history import History
-from rigidfluid.core.proximity import arms, travel
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.system import build_system
-from rigidfluid.core.types import FloatArray, Pose
+from rigidfluid.core.contact.proximity import arms, travel
+from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.output.history import History
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
 

@@ -5,7 +5,7 @@ import pytest
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
 
 RADIUS, GRAVITY = 0.125, 981.0
 AREA = np.pi * RADIUS**2

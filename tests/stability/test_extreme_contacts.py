@@ -7,8 +7,8 @@ from extreme_cases import CASES, ENDS, Case, Finding, findings, surprises
 from extreme_scenes import three_disks
 from fluid_contacts import created_and_lost
 
-from rigidfluid.core.history import History
-from rigidfluid.core.records import LEDGER_COLUMNS
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import LEDGER_COLUMNS
 
 LIGHT_AND_HEAVY = [
     pytest.param(case, id=case.name, marks=[pytest.mark.validation] if case.heavy else []) for case in CASES

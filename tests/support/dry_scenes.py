@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 
 
 def ball(position: Sequence[float], velocity: Sequence[float], **keys: Any) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from dry_scenes import ball, dry_scene
 
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 
 Table = dict[str, Any]
 

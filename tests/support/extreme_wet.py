@@ -8,7 +8,7 @@ import fluid_contacts as contacts
 from extreme_scenes import ellipsoid, wet, wet_hit
 from fluid_contacts import Stepping, Table
 
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 
 
 def floor_hit(

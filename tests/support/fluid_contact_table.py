@@ -16,8 +16,8 @@ import numpy as np
 from fluid_contacts import GRAVITY, RADIUS, created_and_lost, put_in, resting_gap
 
 import rigidfluid
-from rigidfluid.core.history import History
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.output.history import History
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import MeshError, StepError
 
 Figures = Callable[[History], str]

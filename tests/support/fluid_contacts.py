@@ -11,8 +11,8 @@ from dry_scenes import ball
 from extreme_scenes import dashpot, driven, ellipsoid, law, wet, wet_hit
 from touching import contact as one_contact
 
-from rigidfluid.core.history import History
-from rigidfluid.core.scene import Scene, load_scene
+from rigidfluid.core.output.history import History
+from rigidfluid.core.scene.scene import Scene, load_scene
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 Table = dict[str, Any]

@@ -12,11 +12,11 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.distribution import whole
-from rigidfluid.core.extension import FactorisedExtension
-from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.ranks import MpiRanks
-from rigidfluid.core.types import Fields
+from rigidfluid.core.mesh.distribution import whole
+from rigidfluid.core.model.extension import FactorisedExtension
+from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.ranks import MpiRanks
+from rigidfluid.core.model.types import Fields
 from rigidfluid.hookspecs import hookimpl
 
 CURRENT = threading.local()

@@ -7,9 +7,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
-from rigidfluid.core.topology import boundary_facets
-from rigidfluid.core.types import Mesh
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.mesh.topology import boundary_facets
+from rigidfluid.core.model.types import Mesh
 
 INNER, OUTER = 0, 1
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
-from rigidfluid.core.frames import distance_to_body
-from rigidfluid.core.mesh_quality import cell_volumes
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.topology import check_mesh
-from rigidfluid.core.types import Pose, Wall
+from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.model.types import Pose, Wall
 
 
 def ball(radius, dimension=2):

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
 
 STEPS, EVERY = 3, 2
 

@@ -4,7 +4,7 @@ import pickle
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier, BrokenBarrierError
 
-from rigidfluid.core.ranks import ROOT, Ranks
+from rigidfluid.core.model.ranks import ROOT, Ranks
 
 
 class ThreadedRanks(Ranks):

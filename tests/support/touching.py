@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import Contacts, FloatArray, Loads
+from rigidfluid.core.model.types import Contacts, FloatArray, Loads
 
 NORMAL = np.array([[0.6, 0.8]])
 

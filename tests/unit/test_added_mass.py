@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, ellipsoid
 
-from rigidfluid.core.added_mass import added_mass
+from rigidfluid.core.mechanics.added_mass import added_mass
 
 
 def test_of_a_ball_half_the_mass_of_the_fluid_it_displaces():

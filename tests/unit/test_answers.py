@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid.core.answers import ALONE, updated_model
-from rigidfluid.core.reduced_model import ReducedModel
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Pose, Response
+from rigidfluid.core.contact.answers import ALONE, updated_model
+from rigidfluid.core.model.reduced_model import ReducedModel
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose, Response
 
 WIDTH, D0, RADIUS = 3, 500.0, 0.1
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.contacts import select
-from rigidfluid.core.proximity import surroundings
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import build_system
+from rigidfluid.core.contact.proximity import surroundings
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import SceneError
 
 

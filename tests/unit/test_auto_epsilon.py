@@ -8,9 +8,9 @@ from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from touching import NORMAL, contact, unstacked
 
-from rigidfluid.core.loads import work_to_stop
-from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
-from rigidfluid.core.types import FloatArray, Loads
+from rigidfluid.core.contact.loads import work_to_stop
+from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.model.types import FloatArray, Loads
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw

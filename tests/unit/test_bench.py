@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from rigidfluid.bench.collisions import PAPER
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.cli import app
-from rigidfluid.core.interfaces import PartOptions
+from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.detectors.sphere import SphereDetector
 
 

@@ -4,8 +4,8 @@ from scipy.optimize import minimize_scalar
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body
-from rigidfluid.core.types import Contacts, FloatArray, Pose, Wall
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Wall
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 
 TILT = 0.4

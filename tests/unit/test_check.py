@@ -16,8 +16,8 @@ from rigidfluid import Scene
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.cli import app
-from rigidfluid.core.meetings import representatives
-from rigidfluid.core.system import build_system
+from rigidfluid.core.contact.meetings import representatives
+from rigidfluid.core.setup.system import build_system
 
 RADIUS, RANGE, GRAVITY, HEIGHT = 0.1, 0.02, 10.0, 0.5
 MASS = 3.0 * np.pi * RADIUS**2
@@ -425,12 +425,12 @@ def test_command_names_the_file_that_it_cannot_write(tmp_path: Path) -> None:
 
 
 def test_no_mesh_and_no_factorisation(monkeypatch: pytest.MonkeyPatch) -> None:
-    import rigidfluid.core.meshing
+    import rigidfluid.core.mesh.meshing
 
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("a mesh")
 
-    monkeypatch.setattr(rigidfluid.core.meshing, "netgen_mesh", refused)
+    monkeypatch.setattr(rigidfluid.core.mesh.meshing, "netgen_mesh", refused)
     assert report(**WET, **MESH).findings
 
 
@@ -547,7 +547,7 @@ def test_auto_stops_a_stack_at_the_smallest_gap() -> None:
 
 def test_the_check_asks_a_law_at_as_many_gaps_as_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """The law `contact` is stiffest at 2/3 of its range, which lies between two of the gaps."""
-    from rigidfluid.core import stiffness
+    from rigidfluid.core.contact import stiffness
 
     scene = tables(contact={"law": "contact", "epsilon": 1e-12})
     (finding,) = answers(scene, "step")

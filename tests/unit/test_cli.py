@@ -14,11 +14,11 @@ import jsonschema
 import pytest
 from typer.testing import CliRunner, Result
 
-import rigidfluid.core.run
+import rigidfluid.core.run.run
 from rigidfluid import __version__
 from rigidfluid.cli import app
-from rigidfluid.core.history import History
-from rigidfluid.core.records import columns
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
 
 SCENE = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
 Install = Callable[..., Path]
@@ -134,7 +134,7 @@ def test_interruption_tells_how_to_go_on(monkeypatch: pytest.MonkeyPatch, tmp_pa
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rigidfluid.core.run, "run", interrupted)
+    monkeypatch.setattr(rigidfluid.core.run.run, "run", interrupted)
     result = rigidfluid_command("run", SCENE, "--out", tmp_path)
     assert result.exit_code == 130
     assert "--resume" in result.stderr
@@ -165,7 +165,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
     }
     history = at_rest()
     history.summary = figures | {"files": [tmp_path / "bodies.csv"]}
-    monkeypatch.setattr(rigidfluid.core.run, "run", lambda *_, finished, **__: finished(history))
+    monkeypatch.setattr(rigidfluid.core.run.run, "run", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
     assert "rest position: (1, 2)" in text

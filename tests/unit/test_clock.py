@@ -2,7 +2,7 @@
 
 import pytest
 
-from rigidfluid.core.clock import Clock
+from rigidfluid.core.run.clock import Clock
 
 
 def test_a_step_stays_on_its_grid_grows_twofold_and_does_not_pass_the_end():

@@ -24,9 +24,9 @@ from rigidfluid.comparison.figures import difference_plot, most_different
 from rigidfluid.comparison.page import MOST_BODIES
 from rigidfluid.comparison.scenes import backend_scenes
 from rigidfluid.comparison.tables import meaning
-from rigidfluid.core.records import columns
-from rigidfluid.core.scene_text import scene_text
-from rigidfluid.core.system import build_system
+from rigidfluid.core.output.records import columns
+from rigidfluid.core.scene.scene_text import scene_text
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.reports import report
 from rigidfluid.reports.results import Results
@@ -43,7 +43,7 @@ BACKENDS = f"""
 
     from rigidfluid.backends.dry import Dry
     from rigidfluid.backends.scikit_fem import ScikitFem
-    from rigidfluid.core.interfaces import PartOptions
+    from rigidfluid.core.model.interfaces import PartOptions
     from rigidfluid.errors import StepError
     from rigidfluid.hookspecs import hookimpl
 

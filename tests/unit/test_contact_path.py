@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core import contact_path
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.types import Wrench
-from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.core.contact import contact_path
+from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.model.types import Wrench
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import StepError
 

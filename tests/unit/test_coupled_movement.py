@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rigidfluid.core.coupled_movement import CoupledMovement
-from rigidfluid.core.reduced_model import Asked, Coupling, ReducedModel, reduced_model
-from rigidfluid.core.types import FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel, reduced_model
+from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 BODIES, WIDTH = 3, 3
 INSIDE = np.array([0, 1, 2, 6, 7])

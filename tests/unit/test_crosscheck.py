@@ -13,8 +13,8 @@ from dry_scenes import ball, dry_scene
 from typer.testing import CliRunner
 
 from rigidfluid.cli import app
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import build_system
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.crosscheck import Row, crosscheck
 from rigidfluid.crosscheck import library as lammps_library
 from rigidfluid.crosscheck.kinds import kinds

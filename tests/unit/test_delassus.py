@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box_walls, ellipsoid, upright
 
-from rigidfluid.core.coupled_movement import CoupledMovement
-from rigidfluid.core.delassus import delassus
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.movement import FreeMovement
-from rigidfluid.core.reduced_model import Asked, Coupling, reduced_model
-from rigidfluid.core.types import Contacts, FloatArray, Pose, Twist, Wrench
-from rigidfluid.core.wrenches import contact_wrench, flat
+from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.contact.delassus import delassus
+from rigidfluid.core.mechanics.movement import FreeMovement
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.reduced_model import Asked, Coupling, reduced_model
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 
 

@@ -5,9 +5,9 @@ import pytest
 from marching_meshes import box, stars
 from threaded_ranks import on_ranks
 
-from rigidfluid.core.distribution import distributed, partition, surface_vertices, whole
-from rigidfluid.core.ranks import ALONE
-from rigidfluid.core.types import Mesh
+from rigidfluid.core.mesh.distribution import distributed, partition, surface_vertices, whole
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.model.types import Mesh
 
 
 def part_of(mesh, ranks):

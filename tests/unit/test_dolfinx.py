@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from falling import falling_disk
 
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
 

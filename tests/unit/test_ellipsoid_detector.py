@@ -10,10 +10,10 @@ from mesh_tools import ball, ellipsoid
 from scipy.optimize import minimize
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body, PartOptions
-from rigidfluid.core.rigid import moment, rotate, rotation_matrices
-from rigidfluid.core.types import Contacts, FloatArray, Pose, Wall
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.mechanics.rigid import moment, rotate, rotation_matrices
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Wall
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.ellipsoid_separation import touching_normal
@@ -320,8 +320,8 @@ def test_one_body_and_its_walls_need_no_compiler() -> None:
     code = """
 import sys
 import numpy as np
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.types import Pose, Wall
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import Pose, Wall
 from rigidfluid.registry import BODY, DETECTOR, Registry
 shape, detector = Registry.load().get(BODY, "ellipsoid"), Registry.load().get(DETECTOR, "ellipsoid")
 bodies, walls = [shape(shape.Options(semi_axes=[1.0, 0.5]), 2)], [Wall(1, "bottom", np.zeros(2), np.array([0.0, 1.0]))]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.energy import Ledger, Power, Work, kinetic_energy
-from rigidfluid.core.rigid import rotate, rotation_matrices
-from rigidfluid.core.types import Pose, Twist
+from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.model.energy import Ledger, Power, Work, kinetic_energy
+from rigidfluid.core.model.types import Pose, Twist
 
 
 def test_the_ledger_adds_up():

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rigidfluid.core.energy_account import contacts_pushed, energy_account, energy_warnings, per_cent
-from rigidfluid.core.records import LEDGER_COLUMNS
+from rigidfluid.core.output.energy_account import contacts_pushed, energy_account, energy_warnings, per_cent
+from rigidfluid.core.output.records import LEDGER_COLUMNS
 
 PUT_IN = 10.0
 QUIET = np.zeros(6, dtype=bool)

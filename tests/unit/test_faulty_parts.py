@@ -11,7 +11,7 @@ from dry_scenes import ball, dry_scene
 
 import rigidfluid
 from rigidfluid.checks import check
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import PluginError
 from rigidfluid.registry import Registry
 

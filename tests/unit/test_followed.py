@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mesh_tools import ball, ellipsoid
 
-from rigidfluid.core.followed import FollowedContacts
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.rigid import rotate
-from rigidfluid.core.types import Pose, Wall
+from rigidfluid.core.contact.followed import FollowedContacts
+from rigidfluid.core.mechanics.rigid import rotate
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import Pose, Wall
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.sphere import SphereDetector
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipkinc
 
-from rigidfluid.core.free_rotation import rotate_freely
-from rigidfluid.core.rigid import rotate, rotation_matrices
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.mechanics.free_rotation import rotate_freely
+from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import StepRejected
 
 INERTIA = np.array([1.0, 2.0, 3.0])

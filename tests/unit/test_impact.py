@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from rigidfluid import Scene
-from rigidfluid.core.impact import terminal_speeds
-from rigidfluid.core.system import build_system
+from rigidfluid.core.setup.impact import terminal_speeds
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import SceneError
 
 RADIUS, RANGE, GRAVITY = 0.1, 0.02, 10.0

@@ -7,14 +7,14 @@ from scipy.integrate import quad
 from touching import contact
 
 import rigidfluid
-from rigidfluid.core import implicit_contacts
-from rigidfluid.core.contact_newton import discrete_gradient
-from rigidfluid.core.redetected import RedetectedContacts
-from rigidfluid.core.repulsion import RepulsionOptions
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import build_system
-from rigidfluid.core.types import Pose, Wrench
-from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.core.contact import implicit_contacts
+from rigidfluid.core.contact.contact_newton import discrete_gradient
+from rigidfluid.core.contact.redetected import RedetectedContacts
+from rigidfluid.core.contact.repulsion import RepulsionOptions
+from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.model.types import Pose, Wrench
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import SceneError, StepError, StepRejected
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw

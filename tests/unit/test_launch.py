@@ -3,9 +3,9 @@
 import pytest
 from typer.testing import CliRunner
 
-import rigidfluid.core.run
+import rigidfluid.core.run.run
 from rigidfluid import cli
-from rigidfluid.core.launch import Launch
+from rigidfluid.core.run.launch import Launch
 from rigidfluid.errors import OutputError
 
 OPEN_MPI = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"}
@@ -76,7 +76,7 @@ def test_what_one_process_meets_alone_ends_all_and_is_shown(monkeypatch, tmp_pat
 
     ends = []
     monkeypatch.setattr(Launch, "end", lambda launch: ends.append(launch))
-    monkeypatch.setattr(rigidfluid.core.run, "run", fail)
+    monkeypatch.setattr(rigidfluid.core.run.run, "run", fail)
     result = command(monkeypatch, 1, "run", scene_file(tmp_path))
     assert bool(ends) == ended
     assert text in result.stderr

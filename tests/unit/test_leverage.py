@@ -11,10 +11,10 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
-from rigidfluid.core import contact_path
-from rigidfluid.core.added_mass import added_mass
-from rigidfluid.core.leverage import ELLIPSOIDS, most_leverage
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.contact import contact_path
+from rigidfluid.core.mechanics.added_mass import added_mass
+from rigidfluid.core.mechanics.leverage import ELLIPSOIDS, most_leverage
+from rigidfluid.core.run.simulation import Simulation
 
 
 def shape(dimension: int, points: Any, gyration: Any) -> Any:

@@ -3,7 +3,7 @@
 import numpy as np
 from falling import falling_disk
 
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.taylor_hood.location import locate
 
 

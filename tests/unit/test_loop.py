@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core import simulation as loop
-from rigidfluid.core.checkpoint import read_checkpoint
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.output.checkpoint import read_checkpoint
+from rigidfluid.core.run import simulation as loop
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import StepError, StepRejected
 
 BALL = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [5.0, 5.0]}

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from touching import NORMAL, contact
 
-from rigidfluid.core.types import Motion
+from rigidfluid.core.model.types import Motion
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 

@@ -6,9 +6,9 @@ from marching_meshes import naive_distances, stars
 from mesh_tools import ball, box_walls, random_ellipsoids, upright
 from numba import njit
 
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.topology import boundary_facets
-from rigidfluid.core.types import Contacts, Mesh
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.topology import boundary_facets
+from rigidfluid.core.model.types import Contacts, Mesh
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError

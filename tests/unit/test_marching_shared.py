@@ -8,9 +8,9 @@ from marching_meshes import stars
 from mesh_tools import ball, box_walls, random_ellipsoids, upright
 from threaded_ranks import ThreadedRanks, on_ranks
 
-from rigidfluid.core.distribution import distributed
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.types import Contacts
+from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.errors import SceneError

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from rigidfluid.core import memory
+from rigidfluid.core.run import memory
 
 MEBIBYTE = 2**20
 
@@ -24,7 +24,7 @@ def test_memory_once_taken_counts() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux counts what the parent holds")
 def test_the_parents_memory_does_not_count() -> None:
     ballast = b"x" * (300 * MEBIBYTE)
-    code = "from rigidfluid.core.memory import peak_memory; print(peak_memory())"
+    code = "from rigidfluid.core.run.memory import peak_memory; print(peak_memory())"
     taken = int(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
     assert taken < len(ballast)
 

@@ -11,11 +11,11 @@ import pytest
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core import mesh_adaptation
-from rigidfluid.core import simulation as loop
-from rigidfluid.core.mesh_adaptation import TANGLED, Mover
-from rigidfluid.core.mesh_motion import MeshMotion
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.mesh import mesh_adaptation
+from rigidfluid.core.mesh.mesh_adaptation import TANGLED, Mover
+from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.run import simulation as loop
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepRejected
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}

@@ -4,10 +4,10 @@ import pytest
 from mesh_tools import ball, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere
-from rigidfluid.core.parts import cheapest_detector
-from rigidfluid.core.run import run
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import build_system
+from rigidfluid.core.run.run import run
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.parts import cheapest_detector
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import SceneError
 
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}

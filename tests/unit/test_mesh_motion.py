@@ -6,12 +6,12 @@ from gathered_backend import OnTheRoot
 from mesh_tools import ball, edges_of, ellipsoid, nobody, upright
 from threaded_ranks import on_ranks
 
-from rigidfluid.core.distribution import distributed
-from rigidfluid.core.frames import to_body_frame
-from rigidfluid.core.mesh_motion import MeshMotion, held_components, stiffness
-from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.types import Pose
+from rigidfluid.core.mechanics.frames import to_body_frame
+from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components, stiffness
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.model.types import Pose
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
 LOW, HIGH = np.full(3, -1.0), np.ones(3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 
 REGULAR = {
     2: np.array([[0, 0], [1, 0], [0.5, np.sqrt(0.75)]]),

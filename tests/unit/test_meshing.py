@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from mesh_tools import assert_valid, ball, body_facets, edge_lengths, edges_of, ellipsoid, nobody, upright
 
-from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.topology import check_mesh
-from rigidfluid.core.types import Mesh, Pose
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])

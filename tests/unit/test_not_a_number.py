@@ -10,14 +10,14 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
-from rigidfluid.core.scene import Scene
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import StepError
 
 Install = Callable[..., Path]
 
 LAW = """
     import numpy as np
-    from rigidfluid.core.interfaces import ForceLaw
+    from rigidfluid.core.model.interfaces import ForceLaw
     from rigidfluid.hookspecs import hookimpl
 
     class Faulty(ForceLaw):
@@ -67,7 +67,7 @@ BACKEND = """
     import numpy as np
     from dataclasses import replace
     from rigidfluid.backends.dry import Dry
-    from rigidfluid.core.types import Twist
+    from rigidfluid.core.model.types import Twist
     from rigidfluid.hookspecs import hookimpl
 
     class Lost(Dry):

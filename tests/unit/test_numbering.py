@@ -5,8 +5,8 @@ import pytest
 from marching_meshes import box
 from threaded_ranks import on_ranks
 
-from rigidfluid.core.distribution import distributed
-from rigidfluid.core.types import Mesh
+from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
 
 

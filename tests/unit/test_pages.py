@@ -11,7 +11,7 @@ import pytest
 from falling import SCENES
 
 import rigidfluid
-from rigidfluid.core.records import columns
+from rigidfluid.core.output.records import columns
 from rigidfluid.registry import FORCE_LAW, GROUP, KINDS, Registry
 
 ROOT = SCENES.parent

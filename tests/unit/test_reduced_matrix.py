@@ -5,8 +5,8 @@ import pytest
 from falling import falling_disk
 from scipy import sparse
 
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
 BALLS = {

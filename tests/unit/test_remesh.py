@@ -16,15 +16,15 @@ from mesh_tools import (
     upright,
 )
 
-from rigidfluid.core import refine_surface as surface
-from rigidfluid.core import remesh as module
-from rigidfluid.core.mesh_motion import MeshMotion
-from rigidfluid.core.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.refine_surface import long_edges, refine_surface
-from rigidfluid.core.remesh import initial_mesh, remesh
-from rigidfluid.core.size_field import Sizes, wanted_size
-from rigidfluid.core.types import Mesh, Pose
+from rigidfluid.core.mesh import refine_surface as surface
+from rigidfluid.core.mesh import remesh as module
+from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.refine_surface import long_edges, refine_surface
+from rigidfluid.core.mesh.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 6.0])

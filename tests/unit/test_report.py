@@ -12,9 +12,9 @@ import pytest
 from falling import SCENES, falling_disk
 
 import rigidfluid
-from rigidfluid.core.energy_account import per_cent
-from rigidfluid.core.types import Fields
-from rigidfluid.core.vtu import read_pvd, read_vtu, write_vtu
+from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.energy_account import per_cent
+from rigidfluid.core.output.vtu import read_pvd, read_vtu, write_vtu
 from rigidfluid.errors import OutputError
 from rigidfluid.reports import report
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.rigid import (
+from rigidfluid.core.mechanics.rigid import (
     angle_between,
     cross,
     lab_inertia,

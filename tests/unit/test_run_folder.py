@@ -10,8 +10,8 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
-from rigidfluid.core.run_folder import PICTURES
-from rigidfluid.core.simulation import Simulation
+from rigidfluid.core.output.run_folder import PICTURES
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import OutputError
 from rigidfluid.reports import report
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from rigidfluid import Scene, load_scene
-from rigidfluid.core.boundary import conditions
-from rigidfluid.core.overrides import override
-from rigidfluid.core.schema import json_schema
-from rigidfluid.core.system import build_system
+from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.setup.boundary import conditions
+from rigidfluid.core.setup.schema import json_schema
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 

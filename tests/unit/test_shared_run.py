@@ -11,12 +11,13 @@ from gathered_backend import Gathered, install_gathered
 from threaded_ranks import on_ranks
 
 import rigidfluid
-from rigidfluid.core import mesh_adaptation, vtu
-from rigidfluid.core.checkpoint import read_checkpoint
-from rigidfluid.core.ranks import ALONE
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.vtu import read_pvd, read_vtu
-from rigidfluid.core.writer import earlier_run
+from rigidfluid.core.mesh import mesh_adaptation
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.output import vtu
+from rigidfluid.core.output.checkpoint import read_checkpoint
+from rigidfluid.core.output.vtu import read_pvd, read_vtu
+from rigidfluid.core.output.writer import earlier_run
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import MeshError, OutputError, SceneError, StepRejected
 from rigidfluid.reports import report
 

@@ -3,8 +3,8 @@ import pytest
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.types import FloatArray, Pose, Wall
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import FloatArray, Pose, Wall
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from rigidfluid import Scene
-from rigidfluid.core.stacks import stacked
-from rigidfluid.core.system import build_system
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.contact.stacks import stacked
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.setup.system import build_system
 
 BOX = np.array([2.0, 3.0, 4.0])
 

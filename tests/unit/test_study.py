@@ -15,10 +15,10 @@ from typer.testing import CliRunner, Result
 
 import rigidfluid
 from rigidfluid.cli import app
-from rigidfluid.core.history import History
-from rigidfluid.core.records import columns
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.summary import FIGURES
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
+from rigidfluid.core.run.summary import FIGURES
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid.reports.style import PALETTE

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.cli import app
-from rigidfluid.core.types import Contacts, Mesh, Pose
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import RigidfluidError

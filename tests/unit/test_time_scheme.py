@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.rigid import lab_inertia, rotation_matrices
-from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
-from rigidfluid.core.types import Pose, Twist, Wrench
+from rigidfluid.core.mechanics.rigid import lab_inertia, rotation_matrices
+from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])
 

@@ -6,9 +6,9 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.time_scheme import predict_pose
-from rigidfluid.core.types import Mesh
+from rigidfluid.core.mechanics.time_scheme import predict_pose
+from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.discretisation import kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.rigid import moment
-from rigidfluid.core.types import Contacts, Pose
-from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.core.mechanics.rigid import moment
+from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.model.types import Contacts, Pose
 
 WALL = 3
 

@@ -11,10 +11,10 @@ from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core.checkpoint import read_checkpoint
-from rigidfluid.core.mesh_adaptation import Mover
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.tables import Table, read_rows
+from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.output.checkpoint import read_checkpoint
+from rigidfluid.core.output.tables import Table, read_rows
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import MeshError, OutputError
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
@@ -157,7 +157,7 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
         tried.append(given)
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
-    monkeypatch.setattr("rigidfluid.core.mesh_adaptation.remesh", fail)
+    monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
     monkeypatch.setattr(Mover, "_asks", lambda *_: True)
     summary = rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})).summary
     assert summary["status"] == "complete"

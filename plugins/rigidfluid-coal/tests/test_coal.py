@@ -11,9 +11,9 @@ import pytest
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body, PartOptions
-from rigidfluid.core.rigid import rotation_matrices
-from rigidfluid.core.types import FloatArray, Pose, Wall
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.types import FloatArray, Pose, Wall
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import DETECTOR, Registry
 from rigidfluid.testing import Arrangement, DetectorContract

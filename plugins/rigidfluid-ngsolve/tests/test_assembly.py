@@ -9,7 +9,7 @@ import pytest
 from skfem import MeshTet, MeshTri
 
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid_ngsolve.assembly import FormAssembly
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid_ngsolve import NGSolve
 

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.types import (
+from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
     Fields,

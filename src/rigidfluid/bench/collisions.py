@@ -11,10 +11,10 @@ import numpy as np
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.bench.mesh_sizes import mesh_sizes
 from rigidfluid.bench.timing import fastest
-from rigidfluid.core.interfaces import Detector, PartOptions
-from rigidfluid.core.remesh import initial_mesh
-from rigidfluid.core.types import Contacts, Mesh, Pose
-from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.mesh.remesh import initial_mesh
+from rigidfluid.core.model.interfaces import Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.forces.centre import CentreLaw, CentreOptions

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.types import FloatArray, Pose, Wall
+from rigidfluid.core.model.types import FloatArray, Pose, Wall
 
 RANGE = 0.03
 """Range of the contact force [length]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import ceil, log2
 
-from rigidfluid.core.size_field import Sizes
+from rigidfluid.core.mesh.size_field import Sizes
 
 PAPER_NODES = {
     2: {1: 16462, 25: 17780, 49: 18284, 81: 18813, 100: 19139},
@@ -34,7 +34,7 @@ def mesh_sizes(dimension: int, bodies: int, coarseness: float = 1.0) -> Sizes:
     Returns
     -------
     Sizes
-        For :func:`~rigidfluid.core.remesh.initial_mesh`.
+        For :func:`~rigidfluid.core.mesh.remesh.initial_mesh`.
     """
     size = coarseness * EDGES[dimension][bodies]
     return Sizes(size, 0.98 * size, refinements=ceil(log2(coarseness)) + (dimension == 3))

@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.bench.shells import INNER, shell
 from rigidfluid.bench.timing import fastest, least_processor_time, timed
-from rigidfluid.core.types import IntArray, Mesh
+from rigidfluid.core.model.types import IntArray, Mesh
 from rigidfluid.marching.field import DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.marching.simplices import vertex_to_facet
 
 

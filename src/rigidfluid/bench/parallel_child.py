@@ -14,11 +14,11 @@ from typing import Any
 from rigidfluid.bench.collisions import count_contacts
 from rigidfluid.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.bench.mesh_sizes import mesh_sizes
-from rigidfluid.core.contacts import select
-from rigidfluid.core.launch import Launch
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.threads import one_openblas_thread
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.run.launch import Launch
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.run.threads import one_openblas_thread
+from rigidfluid.core.scene.scene import Scene
 
 STEPS = 10
 """As many as in the paper."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.child import environment, failure, python
+from rigidfluid.core.run.child import environment, failure, python
 from rigidfluid.errors import LaunchError
 
 

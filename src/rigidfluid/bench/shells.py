@@ -6,9 +6,9 @@ from math import pi
 
 import numpy as np
 
-from rigidfluid.core.topology import boundary_facets
-from rigidfluid.core.types import FloatArray, Mesh
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.mesh.topology import boundary_facets
+from rigidfluid.core.model.types import FloatArray, Mesh
 
 INNER, OUTER = 0, 1
 """Markers of the two surfaces."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
-from rigidfluid.core.interfaces import Body
+from rigidfluid.core.model.interfaces import Body
 from rigidfluid.hookspecs import hookimpl
 
 

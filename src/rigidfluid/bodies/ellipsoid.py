@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.ellipsoid_distance import closest_point
-from rigidfluid.core.interfaces import Body, PartOptions
-from rigidfluid.core.types import FloatArray
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 

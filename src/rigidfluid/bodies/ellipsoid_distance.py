@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 
 _MAX_ITERATIONS = 1000
 _SMALLEST = 1e-100

@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.interfaces import Body, PartOptions
-from rigidfluid.core.types import FloatArray
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.types import FloatArray
 
 
 class SphereOptions(PartOptions):

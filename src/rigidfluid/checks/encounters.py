@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.checks.response import turning_gap
-from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.loads import (
+from rigidfluid.core.contact.loads import (
     closing_speed,
     held_weight,
     impact_energy,
@@ -17,10 +16,11 @@ from rigidfluid.core.loads import (
     pair_energy,
     stacked_weight,
 )
-from rigidfluid.core.meetings import body_meetings, free, kinds, representatives, wall_meetings
-from rigidfluid.core.stiffness import greatest_stiffness
-from rigidfluid.core.system import System
-from rigidfluid.core.types import Contacts, FloatArray, Wall
+from rigidfluid.core.contact.meetings import body_meetings, free, kinds, representatives, wall_meetings
+from rigidfluid.core.contact.stiffness import greatest_stiffness
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, FloatArray, Wall
+from rigidfluid.core.setup.system import System
 
 MOST_SHOWN = 8
 """Of the kinds of pairs, for one question."""

@@ -10,9 +10,9 @@ import numpy as np
 from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.stepping import ACCURATE
-from rigidfluid.core.loads import of_both
-from rigidfluid.core.shapes import equal_volume_radius
-from rigidfluid.core.types import FloatArray, FluidProblem
+from rigidfluid.core.contact.loads import of_both
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.types import FloatArray, FluidProblem
 
 QUESTION = "energy-error"
 _ALLOWED = 0.05

@@ -10,7 +10,7 @@ from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.checks.remedies import stronger
 from rigidfluid.checks.response import barrier, energy_along
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 
 QUESTION = "impact"
 _SLACK = 0.8

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.finding import Finding, at_most, figure
-from rigidfluid.core.contacts import select
-from rigidfluid.core.interfaces import Body, ForceLaw
-from rigidfluid.core.loads import impact_energy
-from rigidfluid.core.meetings import free, kinds
-from rigidfluid.core.proximity import may_repel
-from rigidfluid.core.scene import MeshTable
-from rigidfluid.core.shapes import inscribed_radius
-from rigidfluid.core.system import System
-from rigidfluid.core.types import Contacts
+from rigidfluid.core.contact.loads import impact_energy
+from rigidfluid.core.contact.meetings import free, kinds
+from rigidfluid.core.contact.proximity import may_repel
+from rigidfluid.core.mechanics.shapes import inscribed_radius
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interfaces import Body, ForceLaw
+from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.setup.system import System
 
 
 def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Finding]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rigidfluid.checks.finding import at_least, at_most
-from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.repulsion import AUTO, Repulsion
+from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.model.interfaces import ForceLaw
 
 
 def stronger(law: ForceLaw, at_walls: bool, share: float) -> tuple[Mapping[str, float], str]:

@@ -18,13 +18,13 @@ from rigidfluid.checks.reach import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.rest import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
-from rigidfluid.core.features import Feature, features
-from rigidfluid.core.foreign import no_exit
-from rigidfluid.core.geometry_checks import initial_contacts
-from rigidfluid.core.parts import exact_detector
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import System, build_system, gap_reach
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.model.foreign import no_exit
+from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.features import Feature, features
+from rigidfluid.core.setup.geometry_checks import initial_contacts
+from rigidfluid.core.setup.parts import exact_detector
+from rigidfluid.core.setup.system import System, build_system, gap_reach
 from rigidfluid.registry import Registry
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.response import rest_gap
-from rigidfluid.core.scene import MeshTable
+from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "cells"
 _MOST_REFINEMENTS = 20

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.meetings import at_gaps
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.contact.meetings import at_gaps
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, FloatArray
 
 _HALVINGS = 60
 _ZOOMS = 3

@@ -9,9 +9,9 @@ import numpy as np
 
 from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import Finding, Grade, at_most, figure
-from rigidfluid.core.contact_path import MOST_SUBSTEPS
-from rigidfluid.core.scene import TimeTable
-from rigidfluid.core.substep import RESOLUTION
+from rigidfluid.core.contact.contact_path import MOST_SUBSTEPS
+from rigidfluid.core.contact.substep import RESOLUTION
+from rigidfluid.core.scene.scene import TimeTable
 
 QUESTION = "step"
 _STABLE = 2.0

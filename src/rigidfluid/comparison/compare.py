@@ -13,8 +13,8 @@ from rigidfluid.comparison.differences import Pair, pair
 from rigidfluid.comparison.page import write_page
 from rigidfluid.comparison.runs import Run, backend_run
 from rigidfluid.comparison.scenes import backend_scenes
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.scene.scene import Scene
 
 TABLE = "comparison.json"
 

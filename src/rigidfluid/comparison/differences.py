@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.records import columns
-from rigidfluid.core.rigid import angle_between
-from rigidfluid.core.types import BoolArray, FloatArray
+from rigidfluid.core.mechanics.rigid import angle_between
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.output.records import columns
 from rigidfluid.reports.results import Results
 
 ORIENTATION, ENERGY = "orientation", "energy"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.comparison.differences import UNITS, Pair, histories, label
 from rigidfluid.comparison.runs import Run
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.reports.curves import add_legend, widen
 from rigidfluid.reports.style import BLACK, PALETTE, new_figure
 

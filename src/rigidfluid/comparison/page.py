@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from rigidfluid.comparison.comparison import Comparison
 from rigidfluid.comparison.figures import body_plot, difference_plot, most_different
 from rigidfluid.comparison.tables import HEADER, cost_rows, difference_rows, meaning
-from rigidfluid.core.scene_text import scene_text
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.reports.html import document, grid, picture
 from rigidfluid.reports.style import STYLE, save
 

@@ -9,10 +9,10 @@ from os import SEEK_END
 from pathlib import Path
 
 from rigidfluid.comparison.child import run_apart
-from rigidfluid.core.ranks import ALONE
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.scene_text import scene_text
-from rigidfluid.core.writer import earlier_run, writing
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.output.writer import earlier_run, writing
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.errors import OutputError, RigidfluidError
 from rigidfluid.reports.results import Results, read_results
 

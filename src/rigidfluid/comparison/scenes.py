@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.overrides import override
-from rigidfluid.core.scene import FluidTable, Scene, read_toml
-from rigidfluid.core.validation import unknown_key
+from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.scene.scene import FluidTable, Scene, read_toml
+from rigidfluid.core.scene.validation import unknown_key
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 

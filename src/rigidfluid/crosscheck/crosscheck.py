@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import build_system
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import build_system
 from rigidfluid.crosscheck.comparison import Comparison, compared
 from rigidfluid.crosscheck.ours import run_ours
 from rigidfluid.crosscheck.refusals import refuse_foreign

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.system import System
-from rigidfluid.core.types import FloatArray, IntArray
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.setup.system import System
 from rigidfluid.errors import CrosscheckError
 
 MOST_KINDS = 12

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.balls import on_wall
-from rigidfluid.core.contacts import select
-from rigidfluid.core.rigid import cross
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.simulation import Simulation
-from rigidfluid.core.state import State
-from rigidfluid.core.system import System
-from rigidfluid.core.types import FloatArray, Motion
+from rigidfluid.core.contact.balls import on_wall
+from rigidfluid.core.mechanics.rigid import cross
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import FloatArray, Motion
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import System
 from rigidfluid.crosscheck.samples import Sample, Samples
 from rigidfluid.crosscheck.timing import Timing
 

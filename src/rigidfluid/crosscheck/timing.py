@@ -7,8 +7,8 @@ from math import ceil
 
 import numpy as np
 
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import Scene
 
 
 @dataclass(frozen=True)

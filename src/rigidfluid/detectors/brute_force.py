@@ -8,9 +8,9 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.rigid import rotation_matrices
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose, Wall
 
 Distance = Callable[[FloatArray], FloatArray]
 

@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.broad_phase import near_pairs
-from rigidfluid.core.contacts import in_order, select
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.rigid import rotation_matrices
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
-from rigidfluid.core.unit_sphere import unit_sphere_points
+from rigidfluid.core.contact.broad_phase import near_pairs
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.model.contacts import in_order, select
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError, StepError
 
 _STARTS = 16

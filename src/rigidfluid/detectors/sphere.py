@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
 
 
@@ -40,7 +40,7 @@ class SphereDetector(Detector):
     name: ClassVar[str] = "sphere"
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
-        from rigidfluid.core.near_pairs import NearPairs
+        from rigidfluid.core.contact.near_pairs import NearPairs
 
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)

@@ -6,9 +6,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.errors import StepRejected
 
 

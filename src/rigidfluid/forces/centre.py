@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.balls import on_wall, require_balls
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.contact.balls import on_wall, require_balls
+from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray
 
 
 class CentreOptions(RepulsionOptions):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.repulsion import Repulsion, RepulsionOptions
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray
 
 
 class ContactOptions(RepulsionOptions):

@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.balls import require_balls
-from rigidfluid.core.interfaces import ForceLaw, PartOptions
-from rigidfluid.core.types import Contacts, FloatArray, Loads, Motion
+from rigidfluid.core.contact.balls import require_balls
+from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Loads, Motion
 from rigidfluid.errors import SceneError
 
 

@@ -7,8 +7,8 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from rigidfluid.core.interfaces import ForceLaw, PartOptions
-from rigidfluid.core.types import Contacts, FloatArray, Motion
+from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Motion
 
 
 class SpringDashpotOptions(PartOptions):

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.broad_phase import near_pairs, near_walls
-from rigidfluid.core.interfaces import Body
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose, Wall
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, reset
 from rigidfluid.marching.field import Accuracy, Wave, march_from

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar, final
 
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, Mesh, Pose, Wall
 from rigidfluid.marching.options import MarchingOptions
 
 

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.marching.exact import march, reset, seed
 from rigidfluid.marching.first_order import march_first_order
 from rigidfluid.marching.topology import Numbers, Topology

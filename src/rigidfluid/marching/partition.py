@@ -15,7 +15,7 @@ from threading import Barrier, BrokenBarrierError, Lock
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.exact import accept, march, reset, seed
 from rigidfluid.marching.field import DistanceField, Wave
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology

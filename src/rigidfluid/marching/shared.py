@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.marching.adjacency import inner_vertices, rows_of
 from rigidfluid.marching.band import longest_edges
 from rigidfluid.marching.field import Wave

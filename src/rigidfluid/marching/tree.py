@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
 from rigidfluid.marching.topology import Numbers
 

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
 from typing import TypeVar
 
-from rigidfluid.core.types import Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import Workspace, new_workspace
 

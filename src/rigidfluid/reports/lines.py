@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from rigidfluid.core.energy_account import energy_account, per_cent
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels

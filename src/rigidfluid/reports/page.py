@@ -7,8 +7,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.energy_account import per_cent
-from rigidfluid.core.scene_text import scene_text
+from rigidfluid.core.output.energy_account import per_cent
+from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.reports.html import document, picture, table
 
 _MOST_BODIES = 8

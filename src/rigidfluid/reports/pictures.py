@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import TriMesh
 from matplotlib.figure import Figure
 
-from rigidfluid.core.types import BoolArray, Fields, FloatArray
-from rigidfluid.core.vtu import read_vtu
+from rigidfluid.core.model.types import BoolArray, Fields, FloatArray
+from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.reports.plane import Outline, corner_triangles, fine_triangles
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BODY, COLOURMAP, new_figure

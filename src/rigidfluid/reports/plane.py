@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from rigidfluid.core.types import BoolArray, Fields, FloatArray, IntArray
+from rigidfluid.core.model.types import BoolArray, Fields, FloatArray, IntArray
 
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 

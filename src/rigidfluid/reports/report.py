@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
 from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, position_plot, speed_plot
 from rigidfluid.reports.page import page
 from rigidfluid.reports.pictures import gap_picture, mesh_picture, moments, narrowest_moment, speed_picture

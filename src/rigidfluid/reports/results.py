@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.history import History
-from rigidfluid.core.records import Row, columns
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.system import System, build_system
-from rigidfluid.core.tables import read_rows
-from rigidfluid.core.types import FloatArray
-from rigidfluid.core.vtu import read_pvd
-from rigidfluid.core.writer import SERIES, SUMMARY
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import Row, columns
+from rigidfluid.core.output.tables import read_rows
+from rigidfluid.core.output.vtu import read_pvd
+from rigidfluid.core.output.writer import SERIES, SUMMARY
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import System, build_system
 from rigidfluid.errors import OutputError
 
 NEEDED = (

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.history import History
-from rigidfluid.core.records import columns
-from rigidfluid.core.scene import Scene
-from rigidfluid.core.summary import ENERGIES, FIGURES
-from rigidfluid.core.tables import KINDS
-from rigidfluid.core.types import BoolArray, FloatArray
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.tables import KINDS
+from rigidfluid.core.run.summary import ENERGIES, FIGURES
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 from rigidfluid.studies.model import FigureTable

@@ -6,8 +6,8 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from rigidfluid.core.overrides import assign
-from rigidfluid.core.validation import read_table
+from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import RigidfluidError, SceneError
 from rigidfluid.registry import suggestion
 from rigidfluid.studies.kernels import KERNELS

@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from rigidfluid.core.scene import read_toml
-from rigidfluid.core.validation import read_table
+from rigidfluid.core.scene.scene import read_toml
+from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import matplotlib
 
-from rigidfluid.core.summary import versions
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.run.summary import versions
 from rigidfluid.reports.html import document, grid, picture, table
 from rigidfluid.reports.style import STYLE, save
 from rigidfluid.studies.model import Study

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
 from rigidfluid.errors import OutputError
 from rigidfluid.studies.model import Settings
 from rigidfluid.studies.subject import Outcome

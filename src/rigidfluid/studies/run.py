@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rigidfluid.core.writer import writing
+from rigidfluid.core.output.writer import writing
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.studies.kernel_subject import KernelSubject
 from rigidfluid.studies.model import Settings, Study

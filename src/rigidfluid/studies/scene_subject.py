@@ -7,9 +7,9 @@ from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
-from rigidfluid.core.overrides import assign
-from rigidfluid.core.run import run
-from rigidfluid.core.scene import Scene, read_toml
+from rigidfluid.core.run.run import run
+from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.studies.figure import check_figure, read_figure
 from rigidfluid.studies.model import ErrorTable, Settings, Study
 from rigidfluid.studies.subject import Outcome, Target, tried

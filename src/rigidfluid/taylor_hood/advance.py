@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, inviscid
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy

@@ -9,8 +9,8 @@ from typing import ClassVar, final
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.interfaces import FluidBackend, PartOptions
-from rigidfluid.core.types import (
+from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
+from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
     Fields,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.facets import facet_weights
 from rigidfluid.taylor_hood.surfaces import Surfaces
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
 
 # Entries of ω × r: (velocity component, component of ω, component of r, sign).

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, FluidProblem
+from rigidfluid.core.model.types import FloatArray, FluidProblem
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces

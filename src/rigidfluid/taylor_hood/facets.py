@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, IntArray
+from rigidfluid.core.model.types import FloatArray, IntArray
 
 # ∫ φᵢ over a straight quadratic facet of measure 1: Simpson's weights on an edge, the midpoints' on a triangle.
 _WEIGHTS = {2: np.array([1.0, 1.0, 4.0]) / 6.0, 3: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 3.0}

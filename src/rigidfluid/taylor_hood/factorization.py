@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
 
 _ANALYSE_AND_FACTORISE, _FACTORISE, _SOLVE = 12, 22, 33

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rigidfluid.core.types import FloatArray, IntArray
+from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import EDGES
 
 _CANDIDATES = (8, 64, 512)

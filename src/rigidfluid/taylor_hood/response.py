@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, Response, Step
+from rigidfluid.core.model.types import FloatArray, Response, Step
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, inviscid
 from rigidfluid.taylor_hood.discretisation import Discretisation
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.location import barycentric, locate, quadratic_basis
 from rigidfluid.taylor_hood.numbering import Numbering
 

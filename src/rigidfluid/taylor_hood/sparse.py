@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering

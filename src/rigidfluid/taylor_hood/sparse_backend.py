@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, final
 
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import BoolArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering

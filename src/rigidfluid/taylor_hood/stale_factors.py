@@ -9,8 +9,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, gcrotmk
 
-from rigidfluid.core.ranks import ALONE
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
 from rigidfluid.taylor_hood.stale_solver import StaleSolver
 

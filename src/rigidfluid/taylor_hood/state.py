@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.types import FluidState, Mesh, Pose, Twist
+from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rigidfluid.core.rigid import cross, moment
-from rigidfluid.core.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.core.mechanics.rigid import cross, moment
+from rigidfluid.core.model.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.facets import facet_weights
 from rigidfluid.taylor_hood.numbering import Numbering
 

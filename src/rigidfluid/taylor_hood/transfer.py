@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, FluidState, Mesh, Pose, Twist
+from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering

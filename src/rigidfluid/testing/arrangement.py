@@ -11,10 +11,10 @@ import numpy as np
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.frames import distance_to_body, to_world
-from rigidfluid.core.interfaces import Body
-from rigidfluid.core.rigid import rotate, rotation_matrices
-from rigidfluid.core.types import FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.mechanics.frames import distance_to_body, to_world
+from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose, Wall
 
 ASPECT = 5.0
 """Longest over shortest semi-axis of the slenderest ellipsoids."""
@@ -139,7 +139,7 @@ def in_a_box(
     bodies = tuple(map(_body, semi_axes.tolist()))
 
     def make_mesh() -> Mesh:
-        from rigidfluid.core.meshing import generate_mesh
+        from rigidfluid.core.mesh.meshing import generate_mesh
 
         return generate_mesh(bodies, pose, *corners, *sizes, 0.5)
 

@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.interfaces import Body
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
 
 
 class BodyContract:

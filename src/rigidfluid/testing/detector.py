@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.interfaces import Detector
-from rigidfluid.core.types import Contacts, FloatArray
+from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.testing.arrangement import (
     Arrangement,

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.interfaces import ForceLaw
-from rigidfluid.core.rigid import moment
-from rigidfluid.core.types import Contacts, FloatArray, IntArray, Motion, Pose
-from rigidfluid.core.wrenches import contact_wrench
+from rigidfluid.core.mechanics.rigid import moment
+from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Motion, Pose
 from rigidfluid.errors import StepRejected
 
 Column = Callable[[Contacts], FloatArray]
@@ -158,7 +158,7 @@ class ForceLawContract:
         _assert_close(law.stiffness(swapped), law.stiffness(contacts))
 
     def test_a_pair_gains_no_momentum(self, law: ForceLaw, dimension: int) -> None:
-        """With ``core/wrenches``, all forces of the law have no resultant and no moment about any point."""
+        """With ``core/mechanics/wrenches``, all forces of the law have no resultant and no moment about any point."""
         contacts = self._pairs_of(law, dimension)
         count = 1 + int(max(contacts.body_a.max(), contacts.body_b.max()))
         position = np.random.default_rng(8).normal(size=(count, dimension))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.interfaces import Body
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, ClassVar, final
 from scipy.sparse import csc_array
 
 from rigidfluid.backends.dolfinx.options import DolfinxOptions
-from rigidfluid.core.extension import Extension
-from rigidfluid.core.interfaces import PartOptions
-from rigidfluid.core.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.core.model.extension import Extension
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import BoolArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -31,7 +31,7 @@ class Dolfinx(TaylorHoodBackend):
         from mpi4py import MPI
 
         from rigidfluid.backends.dolfinx.krylov import StaleLU, StaleSchur
-        from rigidfluid.core.ranks import MpiRanks
+        from rigidfluid.core.model.ranks import MpiRanks
 
         super().__init__(options, problem)
         if MPI.COMM_WORLD.size > 1:

@@ -14,7 +14,7 @@ from rigidfluid.backends.dolfinx.krylov import Krylov, StaleLU
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.types import BoolArray, FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex

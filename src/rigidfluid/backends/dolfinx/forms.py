@@ -9,7 +9,7 @@ from dolfinx import default_scalar_type, fem
 
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 
 _COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
 

@@ -11,8 +11,8 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
-from rigidfluid.core.ranks import Ranks
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.stale_solver import StaleSolver

@@ -12,7 +12,7 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
 from rigidfluid.backends.dolfinx.schur import SchurData
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

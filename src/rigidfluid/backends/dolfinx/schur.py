@@ -11,8 +11,8 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.mesh_quality import cell_volumes
-from rigidfluid.core.types import BoolArray, FloatArray
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
-from rigidfluid.core.types import FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.numbering import Numbering
 
 

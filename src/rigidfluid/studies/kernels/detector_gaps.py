@@ -14,10 +14,10 @@ from pydantic import Field, model_validator
 from rigidfluid.bench.timing import fastest
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.meshing import generate_mesh
-from rigidfluid.core.types import Contacts, FloatArray, Mesh, Pose
-from rigidfluid.core.validation import read_table
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import DETECTOR, Registry
 from rigidfluid.studies.kernels.convex_gaps import true_gap

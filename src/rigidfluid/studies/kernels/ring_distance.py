@@ -11,7 +11,7 @@ from pydantic import Field
 
 from rigidfluid.bench.shells import INNER, shell
 from rigidfluid.bench.timing import fastest
-from rigidfluid.core.types import IntArray, Mesh
+from rigidfluid.core.model.types import IntArray, Mesh
 from rigidfluid.marching.field import Accuracy, DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology

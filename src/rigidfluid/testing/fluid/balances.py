@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigidfluid.core.rigid import cross, moment
-from rigidfluid.core.types import FloatArray, FluidProblem, Pose
+from rigidfluid.core.mechanics.rigid import cross, moment
+from rigidfluid.core.model.types import FloatArray, FluidProblem, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import (
     ball_moments,

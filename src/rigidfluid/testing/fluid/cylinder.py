@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.boundary import FaceVelocity, inward_normal
-from rigidfluid.core.remesh import initial_mesh
-from rigidfluid.core.size_field import Sizes
-from rigidfluid.core.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.core.mesh.remesh import initial_mesh
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.core.setup.boundary import FaceVelocity, inward_normal
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.flow import Flow
 

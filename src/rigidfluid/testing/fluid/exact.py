@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.boundary import faces, inward_normal
-from rigidfluid.core.types import BoundaryCondition, FloatArray, FluidProblem
+from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem
+from rigidfluid.core.setup.boundary import faces, inward_normal
 
 DENSITY, VISCOSITY = 1.3, 0.7
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.interfaces import FluidBackend
-from rigidfluid.core.time_scheme import derivative_weights, extrapolation_weights, newton_euler
-from rigidfluid.core.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
-from rigidfluid.core.wrenches import flat
+from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from rigidfluid.core.types import Advance, FluidState
+from rigidfluid.core.model.types import Advance, FluidState
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import copied
 from rigidfluid.testing.fluid.exact import problem

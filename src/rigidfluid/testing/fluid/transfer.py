@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.types import FloatArray, Mesh
+from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.testing.fluid.base import FluidContract, stirring_shift
 from rigidfluid.testing.fluid.boxes import (
     balls_pose,

@@ -1,0 +1,168 @@
+"""Asks the backend how bodies near contacts answer to impulses, and no more often than their surroundings change."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Step
+from rigidfluid.core.setup.system import System
+
+CHANGED, CHANGED_SHARED = 0.01, 0.05
+"""A body is asked again when the tightness of its contacts, or its way in a step over its radius, has changed by so
+much; among many that share questions, by the other."""
+
+_FILM = 0.1
+"""Of the radius: films thinner than that are heavy beside the body."""
+
+ALONE = 12
+"""Up to so many bodies are asked one by one; more share questions with others far away."""
+
+FAR = 3.0
+"""So many of their diameters apart, bodies answer next to nothing to each other's impulses: as r⁻², in 3D as r⁻³."""
+
+
+def updated_model(
+    system: System,
+    state: State,
+    step: Step,
+    contacts: Contacts,
+    twist: FloatArray,
+    velocities: IntArray,
+    known: ReducedModel | None,
+) -> ReducedModel:
+    """The model of some velocities; the backend is asked for bodies alone whose contacts or motion have changed.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and backend.
+    state : State
+        At the start of the step.
+    step : Step
+        Whose matrix and mesh the answers are of.
+    contacts : Contacts
+        Where the bodies are in the step.
+    twist : (n, d+k) array
+        How they move there: friction depends on the flow that it meets.
+    velocities : (c,) array
+        Numbers among the components (n, d+k) of all twists.
+    known : ReducedModel or None
+        An earlier one, of these velocities or others.
+
+    Returns
+    -------
+    ReducedModel
+        Of the velocities.
+    """
+    if len(velocities) == 0:
+        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Asked(np.zeros(0), np.zeros(0)), False)
+    bodies, d0 = velocities // step.load.shape[1], float(step.derivative[0])
+    now = Asked(_tightness(system, contacts)[bodies], twist.ravel()[velocities])
+    by_mass, by_step, before = _remembered(known, velocities, d0)
+    shared = len(np.unique(bodies)) > ALONE
+    changed = _changes(system, now, before, bodies, velocities % step.load.shape[1], d0)
+    fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))
+    if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
+        return known
+    if fresh.any():
+        for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
+            _take_over(matrix, answers, fresh)
+    asked = Asked(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
+    return reduced_model(velocities, by_mass, by_step, d0, asked, shared)
+
+
+def _changes(
+    system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
+) -> FloatArray:
+    """Of each velocity's body the change of tightness, or of its way in a step over its radius, (c,) [1]."""
+    reach = np.array([body.bounding_radius for body in system.bodies])
+    arm = np.where(components < system.dimension, 1.0, reach[bodies])
+    way = np.zeros(len(reach))
+    turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
+    np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))
+    return np.maximum(np.abs(now.tightness - before.tightness) / before.tightness, way[bodies])
+
+
+def _tightness(system: System, contacts: Contacts) -> FloatArray:
+    """1 + Σ R/(10 gap) over the contacts of each body of radius R, (n,) [1].
+
+    Films are as heavy as they are thin; those thicker than a tenth of the body weigh little beside it.
+    """
+    reach = np.array([body.bounding_radius for body in system.bodies])
+    total = np.ones(len(reach))
+    for body in (contacts.body_a, contacts.body_b):
+        on_body = body < len(reach)
+        np.add.at(total, body[on_body], _FILM * reach[body[on_body]] / contacts.gap[on_body])
+    return total
+
+
+def _remembered(known: ReducedModel | None, velocities: IntArray, d0: float) -> tuple[FloatArray, FloatArray, Asked]:
+    """W_i and W_s (c, c) as far as they are known, zero elsewhere, and how it was then, elsewhere NaN."""
+    by_mass, by_step = np.zeros((2, len(velocities), len(velocities)))
+    before = Asked(*np.full((2, len(velocities)), np.nan))
+    if known is not None:
+        _, here, there = np.intersect1d(velocities, known.velocities, return_indices=True)
+        by_mass[np.ix_(here, here)] = known.mobility[np.ix_(there, there)]
+        by_step[np.ix_(here, here)] = known.answer(d0, np.eye(len(known.velocities)))[np.ix_(there, there)]
+        for old, then in zip(before.arrays, known.asked.arrays, strict=True):
+            old[here] = then[there]
+    return by_mass, by_step, before
+
+
+def _take_over(matrix: FloatArray, answers: FloatArray, fresh: BoolArray) -> None:
+    """Put the columns of ``answers`` (c, f) in place, and as rows too; what was not answered is NaN."""
+    of_rows = np.full_like(matrix, np.nan)
+    of_rows[:, fresh] = answers
+    both = np.stack([of_rows, of_rows.T])
+    said = np.isfinite(both)
+    times = said.sum(axis=0)
+    mean = np.where(said, both, 0.0).sum(axis=0) / np.maximum(times, 1)
+    asked = fresh[:, None] | fresh[None, :]
+    matrix[asked] = mean[asked]
+
+
+def _asked(
+    system: System, state: State, step: Step, velocities: IntArray, fresh: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """W_i and W_s (c, f) of the ``fresh`` velocities; NaN where another body of the same question is nearer."""
+    assert state.mesh is not None
+    width = step.load.shape[1]
+    bodies, turn = np.divmod(velocities[fresh], width)
+    group, components = _groups(system, step.pose.position, bodies), np.unique(turn)
+    question = group * len(components) + np.searchsorted(components, turn)
+    numbers, question = np.unique(question, return_inverse=True)
+    impulses = np.zeros((len(numbers), *step.load.shape))
+    impulses[question, bodies, turn] = 1.0
+    response = system.backend.response(state.fluid, state.mesh, step, impulses)
+    mine = _nearest_of(step.pose.position, velocities // width, bodies, question)
+    by_mass, by_step = (
+        np.where(mine, twists.reshape(len(numbers), -1)[question][:, velocities].T, np.nan)
+        for twists in (response.by_mass, response.by_step)
+    )
+    return by_mass, by_step
+
+
+def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
+    """The group of each of ``bodies`` (f,), whose members are far apart; each is alone where few are asked."""
+    each, place = np.unique(bodies, return_inverse=True)
+    if len(each) <= ALONE:
+        return place
+    reach = np.array([system.bodies[body].bounding_radius for body in each])
+    apart = np.linalg.norm(position[each, None] - position[None, each], axis=2)
+    near = apart < FAR * (reach[:, None] + reach[None, :])
+    group = np.full(len(each), -1)
+    for body in range(len(each)):
+        taken = set(group[near[body]].tolist())
+        group[body] = next(number for number in range(len(each)) if number not in taken)
+    return np.asarray(group[place])
+
+
+def _nearest_of(position: FloatArray, answering: IntArray, asked: IntArray, question: IntArray) -> BoolArray:
+    """Whether of all bodies in a question the one that was ``asked`` (f,) is nearest to the one ``answering`` (c,)."""
+    apart = np.linalg.norm(position[answering][:, None] - position[asked][None, :], axis=2)
+    nearest = np.full((len(answering), int(question.max()) + 1), np.inf)
+    for column, number in enumerate(question):
+        nearest[:, number] = np.minimum(nearest[:, number], apart[:, column])
+    return np.asarray(apart <= nearest[:, question])

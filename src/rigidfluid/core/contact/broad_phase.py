@@ -1,0 +1,100 @@
+"""Leaves out what cannot be near: pairs of bodies and body–wall pairs whose bounding balls are too far apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, IntArray, Wall
+
+
+def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
+    """Pairs a < b of balls with |x_a - x_b| - r_a - r_b ≤ ``reach``, from all pairs or a search tree.
+
+    Parameters
+    ----------
+    position : (n, d) array
+        Centres [length].
+    radii : (n,) array
+        Radii [length].
+    reach : float
+        Largest gap, may be infinite [length].
+
+    Returns
+    -------
+    (m,) array, (m,) array
+        Numbers a and b, in no particular order; pairs that rounding puts just beyond are among them.
+    """
+    first, second = _candidates(position, radii, reach)
+    gap = np.linalg.norm(position[first] - position[second], axis=1) - radii[first] - radii[second]
+    near = gap <= reach + _rounding(radii, reach)
+    return first[near], second[near]
+
+
+def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], reach: float) -> list[tuple[int, Wall]]:
+    """Bodies and walls with (x - x_w)·n - r ≤ ``reach``.
+
+    Parameters
+    ----------
+    position : (n, d) array
+        Centres [length].
+    radii : (n,) array
+        Radii [length].
+    walls : sequence of Wall
+        Flat walls.
+    reach : float
+        Largest gap, may be infinite [length].
+
+    Returns
+    -------
+    list of (int, Wall)
+        Sorted by body; pairs that rounding puts just beyond are among them.
+    """
+    slack = reach + _rounding(radii, reach)
+    near = [(position - wall.point) @ wall.normal - radii <= slack for wall in walls]
+    return [(body, wall) for body in range(len(radii)) for wall, close in zip(walls, near, strict=True) if close[body]]
+
+
+def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -> FloatArray:
+    """Lower bound of each ball's nearest gap, min(|x - x'| - r - max r, (x - x_w)·n - r) with x' its nearest neighbour.
+
+    Parameters
+    ----------
+    position : (n, d) array
+        Centres [length].
+    radii : (n,) array
+        Radii [length].
+    walls : sequence of Wall
+        Flat walls.
+
+    Returns
+    -------
+    (n,) array
+        May be negative, is infinite for a ball alone without walls [length].
+    """
+    from scipy.spatial import cKDTree
+
+    least = np.full(len(radii), np.inf)
+    if len(radii) > 1:
+        nearest = np.asarray(cKDTree(position).query(position, k=2)[0])
+        least = nearest[:, 1] - radii - radii.max()
+    for wall in walls:
+        least = np.minimum(least, (position - wall.point) @ wall.normal - radii)
+    return least
+
+
+def _candidates(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
+    if len(radii) < 2 or not np.isfinite(reach):
+        first, second = np.triu_indices(len(radii), k=1)
+        return first.astype(np.int64), second.astype(np.int64)
+    from scipy.spatial import cKDTree
+
+    span = max(reach + 2 * float(radii.max()), 0.0)
+    tree = cKDTree(position, compact_nodes=False, balanced_tree=False)
+    pairs = tree.query_pairs(span + _rounding(radii, reach), output_type="ndarray")
+    return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
+
+
+def _rounding(radii: FloatArray, reach: float) -> float:
+    return 1e-12 * (float(radii.max(initial=0.0)) + abs(reach))

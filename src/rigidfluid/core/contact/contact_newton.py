@@ -1,0 +1,166 @@
+"""The contact forces of one implicit step, found by Newton's method where gaps depend on them linearly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import spsolve
+
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.errors import StepRejected
+
+MOST_ITERATIONS = 100
+"""A law that no iteration tames by then asks for a shorter step."""
+
+MOST_DENSE = 200
+"""Up to so many contacts a full matrix is faster than a sparse one."""
+
+_ROUNDING = 1e-13
+_NARROW = 2e-5
+_SHRINK = 0.1
+_FLATTER = 0.5
+_HALVINGS = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Find f = s φ(g) - c (g + o), where the gaps at the end of the step are g = ``free`` + ``compliance`` f.
+
+    φ is the discrete gradient -[U(g) - U(g₀)]/(g - g₀) of the law's energy, with g₀ the gaps of the contacts at
+    ``start`` of the step. ``free`` (m,) [length], ``compliance`` (m, m), dense or sparse [length/force], ``scale`` s
+    (m,) [1], ``drag`` c (m,) [force/length], ``offset`` o (m,): g + o is the way along the normal in the step [length].
+    """
+
+    law: ForceLaw
+    start: Contacts
+    free: FloatArray
+    compliance: Any
+    scale: FloatArray
+    drag: FloatArray
+    offset: FloatArray
+
+    def push(self, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What f should be at this gap (m,) [force], and by how much it falls with the gap (m,) [force/length]."""
+        force, slope = discrete_gradient(self.law, self.start, gap)
+        return self.scale * force - self.drag * (gap + self.offset), self.scale * slope + self.drag
+
+
+def discrete_gradient(law: ForceLaw, start: Contacts, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The force that does the work -ΔU on the way from one gap to another, φ = -[U(g) - U(g₀)]/(g - g₀), F if g ≈ g₀.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        Gives U and F.
+    start : Contacts
+        The m contacts at g₀.
+    gap : (m,) array
+        g, positive [length].
+
+    Returns
+    -------
+    force, slope : (m,) array
+        φ [force], and -dφ/dg, not below zero [force/length].
+
+    Notes
+    -----
+    Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162.
+    """
+    end, middle = replace(start, gap=gap), replace(start, gap=0.5 * (gap + start.gap))
+    change = gap - start.gap
+    narrow = np.abs(change) <= _NARROW * np.minimum(gap, start.gap)
+    width = np.where(narrow, 1.0, change)
+    mean = np.where(narrow, _along(law, middle), (law.energy(start) - law.energy(end)) / width)
+    slope = np.where(narrow, 0.5 * law.stiffness(middle), (mean - _along(law, end)) / width)
+    return mean, np.maximum(slope, 0.0)
+
+
+def contact_forces(problem: Problem, force: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Newton's method with a line search that keeps all gaps open.
+
+    With a law that grows steadily the solution is the minimum of a convex function of the bodies' ways: so there is one
+    only, and the search follows that function's slope. The start may be any force with any open gaps: what they lack to
+    fit each other is taken back bit by bit.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is to be solved.
+    force : (m,) array
+        First guess [force].
+    gap : (m,) array
+        Positive gaps to start from [length].
+
+    Returns
+    -------
+    force, gap : (m,) array
+        f [force] and g, positive [length].
+
+    Raises
+    ------
+    StepRejected
+        If there is none, or it is not found.
+    """
+    lacking = gap - (problem.free + problem.compliance @ force)
+    lacking = np.where(np.abs(lacking) <= _tolerance(problem), 0.0, lacking)
+    for _ in range(MOST_ITERATIONS):
+        push, slope = problem.push(gap)
+        rest = force - push
+        step = _solved(problem.compliance, slope, slope * lacking - rest)
+        moved = problem.compliance @ step - lacking
+        if np.all(np.abs(moved) <= _tolerance(problem)) and np.all(gap + moved > 0.0):
+            return force + step, gap + moved
+        part = _open_part(gap, moved)
+        if not lacking.any():
+            part = _searched(problem, force, gap, step, moved, part)
+        lacking = (1.0 - part) * lacking
+        force = force + part * step
+        gap = gap + part * moved
+    raise StepRejected(
+        "the implicit contact step",
+        f"no forces after {MOST_ITERATIONS} iterations",
+        "forces that keep all gaps open",
+        "Strengthen the contact force, widen contact.range or shorten the step.",
+    )
+
+
+def _tolerance(problem: Problem) -> FloatArray:
+    return _ROUNDING * (problem.law.range + np.abs(problem.free) + problem.start.gap)
+
+
+def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
+    return np.asarray(np.sum(law.force(contacts) * contacts.normal, axis=1))
+
+
+def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray:
+    """(1 + slope · compliance)⁻¹ right."""
+    if isinstance(compliance, np.ndarray):
+        return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+    matrix = sparse.eye(len(slope)) + sparse.diags(slope) @ compliance
+    return np.asarray(spsolve(matrix.tocsc(), right))
+
+
+def _open_part(gap: FloatArray, moved: FloatArray) -> float:
+    """The most of a move, all of it if that may be, that leaves a tenth of each gap."""
+    closing = moved < 0.0
+    return float(np.min((1.0 - _SHRINK) * gap[closing] / -moved[closing], initial=1.0))
+
+
+def _searched(
+    problem: Problem, force: FloatArray, gap: FloatArray, step: FloatArray, moved: FloatArray, part: float
+) -> float:
+    """The part of a step at which the convex function no longer rises half as steeply as it falls at the start."""
+
+    def slope(part: float) -> float:
+        return float(moved @ (force + part * step - problem.push(gap + part * moved)[0]))
+
+    steepest = -slope(0.0)
+    for _ in range(_HALVINGS):
+        if slope(part) <= _FLATTER * steepest:
+            break
+        part *= 0.5
+    return part

@@ -1,0 +1,371 @@
+"""The bodies' way through one step: where their contacts take them between two solutions of the fluid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.contact.detection import detect
+from rigidfluid.core.contact.followed import FollowedContacts
+from rigidfluid.core.contact.implicit_contacts import cross_contacts
+from rigidfluid.core.contact.proximity import arms, may_repel, refuse_overlap
+from rigidfluid.core.contact.redetected import RedetectedContacts
+from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
+from rigidfluid.core.mechanics.movement import FreeMovement, Movement
+from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotation_matrices
+from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.setup.system import System
+from rigidfluid.errors import StepRejected
+
+MOST_SUBSTEPS = 100_000
+"""More of them in one step are refused."""
+
+HOPELESS = 1_000 * MOST_SUBSTEPS
+"""If a plan asks for more than this, none is walked: what flies apart needs fewer in the end, but not by so much."""
+
+IMPLICIT_PARTS = 8
+"""Of a step in a fluid, each an implicit step of the bodies."""
+
+RESOLVED = 8.0
+"""A step of so many substeps, or less, resolves its contacts: all forces then vary within it."""
+
+MOST_ALIKE = 1_000
+"""After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
+
+ROUNDING = 1e-9
+"""What is left of a step below this part of it is the rounding of sums."""
+
+
+M = TypeVar("M", bound=Movement)
+
+
+@dataclass(frozen=True, slots=True)
+class BodiesPath:
+    """Where the bodies are at the end of a step, and what the contacts did to them on the way.
+
+    ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
+    them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies
+    [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without contacts.
+    """
+
+    pose: Pose
+    twist: Twist
+    impulse: Wrench
+    dissipated: float
+    held: float
+    substeps: int
+    friction: float = 0.0
+    coupling: Coupling | None = None
+
+
+def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodiesPath:
+    """Follow the bodies through one step, kicked by their contacts in velocity Verlet substeps.
+
+    Without a fluid the substeps are the whole motion. In a fluid they take the place of the fluid's own small steps:
+    the bodies near contacts answer with the mass and the friction that the fluid has shown, and the fluid then answers
+    to the impulse. Where nothing can touch in the step, poses come from Adams–Bashforth 2 as one formula.
+    With ``implicit`` contacts implicit steps take the place of the substeps.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, law, detector.
+    state : State
+        At the start of the step.
+    start, size : float
+        When it starts and how long it is [time].
+    coupling : Coupling or None
+        With the fluid in this step; None where nothing can touch, see `near_contacts`.
+
+    Returns
+    -------
+    BodiesPath
+        Of all bodies.
+
+    Raises
+    ------
+    StepRejected
+        If bodies overlap on the way, or a contact is too stiff to be followed.
+    """
+    if not system.backend.needs_mesh:
+        return _follow_free(system, state, start, size)
+    if coupling is None or system.law is None:
+        pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
+        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
+    return _follow_coupled(system, system.law, state, size, coupling)
+
+
+def first_step_again(state: State, end_twist: Twist, size: float) -> BodiesPath:
+    """The first step of bodies that touch nothing, once more: by the mean of the twists at its start and its end."""
+    pose = start_pose(state.pose, state.twist, end_twist, size)
+    return BodiesPath(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
+
+
+def near_contacts(system: System, state: State, size: float) -> Contacts:
+    """Contacts in range, or that may come into it in a step of this ``size``: at twice the speed of their surfaces
+    now, and all that acceleration can add."""
+    contacts = state.contacts
+    if system.law is None or len(contacts) == 0:
+        return select(contacts, np.zeros(len(contacts), dtype=bool))
+    speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
+    pull = np.append(np.linalg.norm(_accelerations(system, state), axis=1), 0.0)
+    both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
+    return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
+
+
+def _follow_free(system: System, state: State, start: float, size: float) -> BodiesPath:
+    movement = FreeMovement(
+        state.pose,
+        state.twist,
+        system.mass,
+        system.inertia,
+        system.weight,
+        system.controlled,
+        lambda elapsed: system.controlled_twist(start + elapsed),
+    )
+    if system.law is None:
+        return _coast(movement, size)
+    if system.implicit:
+        return _cross_free(system, system.law, movement, size)
+    reach, span = _horizon(system, movement, size)
+    return _resolve(system, system.law, movement, _detected(system, reach), size, span)
+
+
+def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodiesPath:
+    movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
+    if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
+        movement.vary_load(size)
+    if system.implicit:
+        path = _cross_coupled(system, law, movement, near, size)
+    else:
+        contacts_at: Callable[[Pose], Contacts]
+        if system.detector.needs_mesh:
+            contacts_at, span = FollowedContacts(near, state.pose).at, size
+        else:
+            reach, span = _horizon(system, movement, size)
+            contacts_at = _detected(system, reach)
+        path = _resolve(system, law, movement, contacts_at, size, span)
+        path = replace(path, friction=movement.friction_loss)
+    return replace(path, coupling=coupling)
+
+
+def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: float) -> BodiesPath:
+    """One implicit step; contacts are foreseen at four times the fastest speed, as blows may double that of both."""
+    reach = law.range + 4.0 * _fastest(system, movement, size) * size
+    contacts = RedetectedContacts(system, movement.pose, reach)
+    if len(contacts.start) == 0:
+        return _coast(movement, size)
+    return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
+
+
+def _cross_coupled(system: System, law: ForceLaw, movement: CoupledMovement, near: Contacts, size: float) -> BodiesPath:
+    """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
+
+    In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
+    be too great for the fluid's mass.
+    """
+    part, impulse, lost, held = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
+    followed = FollowedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
+    for _ in range(IMPLICIT_PARTS):
+        if followed is not None:
+            start, contacts_at = followed.at(movement.pose), followed.at
+        else:
+            contacts = RedetectedContacts(system, movement.pose, reach)
+            start, contacts_at = contacts.start, contacts.at
+        if len(start) == 0:
+            _coast(movement, part)
+            continue
+        path, movement = _crossed(system, law, movement, start, contacts_at, part)
+        impulse = _added(impulse, path.impulse, 1.0)
+        lost, held = lost + path.dissipated, held + path.held
+    return BodiesPath(movement.pose, movement.twist, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
+
+
+def _crossed(
+    system: System,
+    law: ForceLaw,
+    movement: M,
+    start: Contacts,
+    contacts_at: Callable[[Pose], Contacts],
+    size: float,
+) -> tuple[BodiesPath, M]:
+    """One implicit step, and the movement at its end."""
+    end, wrench, lost = cross_contacts(law, movement, start, contacts_at, size)
+    impulse = Wrench(size * wrench.force, size * wrench.torque)
+    mean = Twist(
+        0.5 * (movement.twist.velocity + end.twist.velocity),
+        0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
+    )
+    held = -float(power(impulse, mean)[system.controlled].sum())
+    return BodiesPath(end.pose, end.twist, impulse, lost, held, 1), end
+
+
+def _horizon(system: System, movement: Movement, size: float) -> tuple[float, float]:
+    """Up to which gap contacts are foreseen [length], and for how long that is enough [time]."""
+    law_range = system.law.range if system.law else 0.0
+    if system.substeps:
+        return law_range, size
+    largest = max(body.bounding_radius for body in system.bodies)
+    fastest = _fastest(system, movement, size)
+    ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
+    return law_range + ahead, 0.5 * ahead / fastest if fastest > 0 else size
+
+
+def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
+    """The contacts of any pose, as a detector finds them that needs no mesh."""
+
+    def contacts_at(pose: Pose) -> Contacts:
+        near = detect(system, pose, None, reach)
+        chosen = may_repel(system, near)
+        return near if chosen.all() else select(near, chosen)
+
+    return contacts_at
+
+
+def _coupled(system: System, state: State, coupling: Coupling) -> CoupledMovement:
+    """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
+    linear, angular = _mobility(system, state)
+    rate = _accelerations(system, state)
+    return CoupledMovement(state.pose, state.twist, rate, linear, angular, coupling)
+
+
+def _accelerations(system: System, state: State) -> FloatArray:
+    """(n, d+k): those of the latest step without what its contacts gave; at the start what weight gives."""
+    linear, angular = _mobility(system, state)
+    if state.past is None:
+        fall = np.einsum("nij,nj->ni", linear, system.weight)
+        return np.concatenate([fall, np.zeros(angular.shape[:2])], axis=1)
+    wrench = state.contact_wrench
+    by_contact = Twist(np.einsum("nij,nj->ni", linear, wrench.force), np.einsum("nij,nj->ni", angular, wrench.torque))
+    return (flat(state.twist) - flat(state.past.twist)) / state.past.step - flat(by_contact)
+
+
+def _mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
+    """Inverse mass (n, d, d) of bodies with their added mass and inverse inertia (n, k, k), in the lab frame."""
+    orientation, eye = state.pose.orientation, np.eye(system.dimension)
+    rotation = rotation_matrices(orientation)
+    own = system.mass[:, None, None] * eye
+    mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
+    free = ~system.controlled[:, None, None]
+    return free * np.linalg.inv(mass), free * inverse_lab_inertia(system.inertia, orientation)
+
+
+def _coast(movement: Movement, size: float) -> BodiesPath:
+    none = nothing(movement.pose)
+    movement.kick(none, 0.5 * size)
+    movement.drift(size)
+    movement.kick(none, 0.5 * size)
+    return BodiesPath(movement.pose, movement.twist, none, 0.0, 0.0, 1)
+
+
+def _resolve(
+    system: System, law: ForceLaw, movement: Movement, contacts_at: Callable[[Pose], Contacts], size: float, span: float
+) -> BodiesPath:
+    """Velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+
+    Substeps are planned for a ``span`` [time] at a time, as far as contacts can be foreseen, and anew when the contacts
+    are over.
+    """
+    contacts = contacts_at(movement.pose)
+    impulse, dissipated, held, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
+    push = _push(system, law, contacts, movement)
+    planned, coast, substep = 0.0, 0.0, 0.0
+    while left > 0.0:
+        if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
+            planned = min(left, span)
+            coast, substep = _plan(system, law, contacts, movement, size, planned)
+            planned = min(planned, coast + MOST_ALIKE * substep)
+        part = min(coast or substep, left)
+        movement.kick(push.wrench, 0.5 * part)
+        movement.drift(part)
+        contacts = contacts_at(movement.pose)
+        _refuse_overlap(system, contacts)
+        before, push = push, _push(system, law, contacts, movement)
+        movement.kick(push.wrench, 0.5 * part)
+        impulse = _added(_added(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
+        dissipated += 0.5 * part * (before.loss + push.loss)
+        held += 0.5 * part * (before.held + push.held)
+        count, coast, planned = count + 1, 0.0, planned - part
+        left = left - part if left - part > ROUNDING * size else 0.0
+        if count == MOST_SUBSTEPS and left > 0.0:
+            raise _too_stiff(system, contacts, part)
+    return BodiesPath(movement.pose, movement.twist, impulse, dissipated, held, count)
+
+
+def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: Movement, size: float, span: float) -> Plan:
+    if system.substeps:
+        return Plan(0.0, size / system.substeps)
+    planned = plan(law, contacts, movement, _surfaces(system), size, span)
+    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.coast > HOPELESS * planned.substep:
+        raise _too_stiff(system, contacts, planned.substep)
+    return planned
+
+
+def _surfaces(system: System) -> Reach:
+    return Reach(arms(system), system.leverage)
+
+
+class _Push(NamedTuple):
+    """What the contacts do at one moment: their ``wrench``, the power that their dampers take and that hands give."""
+
+    wrench: Wrench
+    loss: float
+    held: float
+
+
+def _push(system: System, law: ForceLaw, contacts: Contacts, movement: Movement) -> _Push:
+    if len(contacts) == 0:
+        return _Push(nothing(movement.pose), 0.0, 0.0)
+    force, loss = law.force(contacts), 0.0
+    if law.dissipative:
+        motion = relative_motion(contacts, movement)
+        damping = law.damping(contacts, motion)
+        force, loss = force + damping, -float(np.sum(damping * motion.velocity))
+    wrench, held = contact_wrench(contacts, force, movement.pose), 0.0
+    if system.controlled.any():
+        held = -float(power(wrench, movement.twist)[system.controlled].sum())
+    return _Push(wrench, loss, held)
+
+
+def _refuse_overlap(system: System, contacts: Contacts) -> None:
+    if len(contacts) == 0 or contacts.gap.min() > 0.0:
+        return
+    worst = int(np.argmin(contacts.gap))
+    refuse_overlap(system.surfaces[contacts.body_a[worst]], float(contacts.gap[worst]))
+
+
+def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
+    subject = "the bodies"
+    if len(contacts):
+        subject = f"body {system.surfaces[contacts.body_a[int(np.argmin(contacts.gap))]]}"
+    return StepRejected(
+        subject,
+        f"a contact that needs substeps of {part:.1e}",
+        f"at most {MOST_SUBSTEPS} substeps in a step",
+        "Soften the contact force: raise contact.epsilon, or widen contact.range.",
+    )
+
+
+def _fastest(system: System, movement: Movement, size: float) -> float:
+    """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
+    twist = movement.twist
+    turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
+    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.pull(size)))
+
+
+def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:
+    """The total with so much of a wrench added in place."""
+    total.force[:] += factor * wrench.force
+    total.torque[:] += factor * wrench.torque
+    return total

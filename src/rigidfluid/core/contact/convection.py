@@ -1,0 +1,69 @@
+"""What convects follows bodies that contacts turn around within a step, as the mesh does."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact.answers import CHANGED
+from rigidfluid.core.contact.contact_path import BodiesPath
+from rigidfluid.core.mechanics.rigid import rotation_between
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import FloatArray, Pose, Step
+from rigidfluid.core.setup.system import System
+
+
+def turning(system: System, state: State, path: BodiesPath, step: Step) -> FloatArray:
+    """Impulses that give what convects the bodies' velocity on the mesh, (n, d+k) [force·time | force·length·time].
+
+    Extrapolated velocities do not know of an impact, but the mesh has gone with the bodies: fluid would seem to flow
+    through their surfaces, with up to twice their speed. On the surfaces of bodies near contacts both are made equal,
+    elsewhere the fluid follows as it does to an impact. Nothing is done where they agree, but for a hundredth of the
+    body in a step.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and fluid.
+    state : State
+        At the start of the step.
+    path : BodiesPath
+        The bodies' way through it, with its coupling.
+    step : Step
+        The weights of its time scheme.
+    """
+    none, coupling = np.zeros_like(step.load), path.coupling
+    if coupling is None or system.backend.problem is None or not system.backend.problem.inertia:
+        return none
+    change = _on_the_mesh(system, state, path, step) - _extrapolated(state, step)
+    reach = np.array([body.bounding_radius for body in system.bodies])[:, None]
+    way = np.abs(change) / step.derivative[0]
+    way[:, : system.dimension] /= reach
+    velocities = coupling.model.velocities
+    if not np.any(way.flat[velocities] > CHANGED):
+        return none
+    none.flat[velocities] = coupling.model.mass_times(change.flat[velocities])
+    return none
+
+
+def _on_the_mesh(system: System, state: State, path: BodiesPath, step: Step) -> FloatArray:
+    """Twists (n, d+k) by the poses, differenced as the mesh's velocity is; balls turn without it, as on their path."""
+    d0, _, d2 = step.derivative
+    found = d0 * _way(state.pose, path.pose)
+    if state.past is not None:
+        found = found - d2 * _way(state.past.pose, state.pose)
+    is_ball = np.array([body.radius is not None for body in system.bodies])
+    found[is_ball, system.dimension :] = path.twist.angular_velocity[is_ball]
+    return np.asarray(found)
+
+
+def _way(start: Pose, end: Pose) -> FloatArray:
+    """From pose to pose, (n, d+k) [length | rad]."""
+    turned = rotation_between(start.orientation, end.orientation)
+    return np.concatenate([end.position - start.position, turned], axis=1)
+
+
+def _extrapolated(state: State, step: Step) -> FloatArray:
+    """Twists (n, d+k) at the end of the step, from those before."""
+    e0, e1 = step.extrapolation
+    return np.asarray(e0 * flat(state.twist) + e1 * flat(state.twist if state.past is None else state.past.twist))

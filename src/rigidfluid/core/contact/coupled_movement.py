@@ -1,0 +1,160 @@
+"""How bodies in a fluid move between two of its solutions."""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import Self
+
+import numpy as np
+from scipy import sparse
+
+from rigidfluid.core.mechanics.movement import block_diagonal
+from rigidfluid.core.mechanics.rigid import rotate
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
+
+
+class CoupledMovement:
+    """dU/dt = A + M⁻¹F, and of the velocities in a `ReducedModel` dU/dt = M⁻¹ (Φ + F - R (U - Uⁿ)), in modes exactly.
+
+    Parameters
+    ----------
+    pose, twist : Pose, Twist
+        At the start.
+    rate : (n, d+k) array
+        A, the acceleration without contacts; of velocities in the model it is not read [length/time² | rad/time²].
+    linear, angular : (n, d, d) array, (n, k, k) array
+        M⁻¹ of bodies outside the model in the lab frame, zero for driven ones [1/mass | 1/(mass·length²)].
+    coupling : Coupling
+        The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
+    """
+
+    def __init__(
+        self,
+        pose: Pose,
+        twist: Twist,
+        rate: FloatArray,
+        linear: FloatArray,
+        angular: FloatArray,
+        coupling: Coupling,
+    ) -> None:
+        model, load = coupling.model, coupling.load
+        self.pose = pose
+        self._start = flat(twist)
+        self._velocity = self._start
+        self._model = model
+        self._own = linear, angular
+        self._rate = rate.copy()
+        self._rate.flat[model.velocities] = model.modes @ (model.modes.T @ load)
+        self._load, self._growth, self._time = model.modes.T @ load, np.zeros(len(load)), 0.0
+        self._lacking = np.where(np.isnan(coupling.load_before), 0.0, load - coupling.load_before)
+        self._modal = np.zeros(len(load))
+        self.mobility, self.inverse_inertia = self._blocks()
+        self._friction = _Friction(len(load))
+
+    def vary_load(self, time: float) -> None:
+        """From now on Φ grows linearly, from what it was before to what it is after so much ``time``."""
+        change = self._model.modes.T @ self._lacking
+        self._load, self._growth = self._load - change, change / time
+
+    @property
+    def twist(self) -> Twist:
+        d = self.pose.position.shape[1]
+        return Twist(self._velocity[:, :d], self._velocity[:, d:])
+
+    def copied(self) -> Self:
+        """Poses and velocities are never changed in place; what friction takes is."""
+        other = copy(self)
+        other._friction = copy(self._friction)
+        return other
+
+    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """That of the body alone, others held by nothing but the fluid."""
+        return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
+
+    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+        """M⁻¹ of all velocities, in the model X φ₁(λ time) Xᵀ: the mean answer to a force that lasts so long."""
+        width = self._velocity.shape[1]
+        outside = np.ones(self._velocity.size)
+        outside[self._model.velocities] = 0.0
+        own = sparse.diags(outside) @ block_diagonal(*self._own) @ sparse.diags(outside)
+        modes = self._model.modes
+        dense = (modes * _phi(self._model.decay * time)) @ modes.T
+        place = self._model.velocities
+        rows, columns = np.repeat(place, len(place)), np.tile(place, len(place))
+        inside = sparse.csr_matrix((dense.ravel(), (rows, columns)), shape=(width * len(self._velocity),) * 2)
+        return sparse.csr_matrix(own + inside)
+
+    def pull(self, time: float) -> FloatArray:
+        """|A|, or |M⁻¹Φ|, whatever the time."""
+        return np.asarray(np.linalg.norm(self._rate[:, : self.pose.position.shape[1]], axis=1))
+
+    def kick(self, wrench: Wrench, time: float) -> None:
+        """Change the velocities by all that acts for so long."""
+        d, model = wrench.force.shape[1], self._model
+        load, self._time = self._load + (self._time + 0.5 * time) * self._growth, self._time + time
+        velocity = self._velocity + time * self._rate
+        velocity[:, :d] += time * np.einsum("nij,nj->ni", self._own[0], wrench.force)
+        velocity[:, d:] += time * np.einsum("nij,nj->ni", self._own[1], wrench.torque)
+        force = load + model.modes.T @ flat(wrench).flat[model.velocities]
+        decay = model.decay * time
+        self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force
+        velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
+        self._velocity = velocity
+
+    def drift(self, time: float) -> None:
+        """Move and turn with the present twist."""
+        d = self.pose.position.shape[1]
+        position = self.pose.position + time * self._velocity[:, :d]
+        self.pose = Pose(position, rotate(self.pose.orientation, time * self._velocity[:, d:]))
+        self._friction.add(self._modal, time)
+
+    @property
+    def friction_loss(self) -> float:
+        """∫ (U - U_lin)ᵀ R (U - U_lin) dt with U_lin linear from start to end [energy]."""
+        return self._friction.beyond_linear(self._modal, self._model.decay)
+
+    def _blocks(self) -> tuple[FloatArray, FloatArray]:
+        """M⁻¹ of each body by itself, (n, d, d) and (n, k, k)."""
+        width, d = self._velocity.shape[1], self._own[0].shape[1]
+        linear, angular = self._own[0].copy(), self._own[1].copy()
+        body, component = np.divmod(self._model.velocities, width)
+        mobility = self._model.mobility
+        first, second = np.nonzero(body[:, None] == body[None, :])
+        straight = (component[first] < d) & (component[second] < d)
+        turning = (component[first] >= d) & (component[second] >= d)
+        i, j = first[straight], second[straight]
+        linear[body[i], component[i], component[j]] = mobility[i, j]
+        i, j = first[turning], second[turning]
+        angular[body[i], component[i] - d, component[j] - d] = mobility[i, j]
+        return linear, angular
+
+
+class _Friction:
+    """Integrals over time t of modes y that start at zero: ∫ dt, ∫ t y dt and ∫ y² dt."""
+
+    def __init__(self, count: int) -> None:
+        self._time = 0.0
+        self._moment = np.zeros(count)
+        self._square = np.zeros(count)
+
+    def add(self, modal: FloatArray, time: float) -> None:
+        """A drift with velocities ``modal`` (c,) for so long."""
+        self._moment = self._moment + (self._time + 0.5 * time) * time * modal
+        self._square = self._square + time * modal**2
+        self._time += time
+
+    def beyond_linear(self, end: FloatArray, decay: FloatArray) -> float:
+        """Σ λ ∫ (y - y_end t/T)² dt."""
+        if self._time == 0.0:
+            return 0.0
+        each = self._square - 2.0 * end * self._moment / self._time + end**2 * self._time / 3.0
+        return float(decay @ np.maximum(each, 0.0))
+
+
+def _phi(decay: FloatArray) -> FloatArray:
+    """φ₁ = (1 - e⁻ᶻ)/z, 1 at zero."""
+    small = decay < 1e-8
+    safe = np.where(small, 1.0, decay)
+    return np.where(small, 1.0 - 0.5 * decay, -np.expm1(-safe) / safe)

@@ -1,0 +1,161 @@
+"""What the fluid has to do with contacts in one step: its answers to impulses, and all other forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact.answers import updated_model
+from rigidfluid.core.contact.contact_path import BodiesPath, near_contacts
+from rigidfluid.core.mechanics.time_scheme import derivative_weights
+from rigidfluid.core.mechanics.wrenches import flat, nothing
+from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Step
+from rigidfluid.core.run.step import step_to
+from rigidfluid.core.setup.system import System
+
+SETTLED = 1e-3
+"""A step is followed again until the bodies' velocities change by less than this part of them."""
+
+SETTLED_SHARED = 1e-2
+"""The same where bodies share questions, whose answers are no better."""
+
+
+def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
+    """The coupling of a step from what was before it; None where nothing can touch.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, law, backend.
+    state : State
+        At the start of the step; its model is used where it has one.
+    time, size : float
+        When the step starts and how long it is [time].
+
+    Returns
+    -------
+    Coupling or None
+        With the present mesh, and the latest step's loads.
+    """
+    if not system.backend.needs_mesh:
+        return None
+    near = near_contacts(system, state, size)
+    if len(near) == 0:
+        return None
+    velocities = _velocities(system, near)
+    step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
+    known = None if state.coupling is None else state.coupling.model
+    model = updated_model(system, state, step, state.contacts, flat(state.twist), velocities, known)
+    before = _load_before(state, model)
+    return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
+
+
+def shown_coupling(system: System, state: State, candidate: State, path: BodiesPath, step: Step) -> Coupling:
+    """The coupling that the solution of a step has shown: answers on the mesh at its end, and loads in it.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, backend.
+    state, candidate : State
+        At the start of the step and at its end.
+    path : BodiesPath
+        The path that led to the candidate.
+    step : Step
+        What was solved.
+
+    Returns
+    -------
+    Coupling
+        Of the same velocities.
+    """
+    assert path.coupling is not None
+    used = path.coupling
+    twist, velocities = flat(candidate.twist), used.model.velocities
+    model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
+    past = state.past_twist or state.twist
+    twists = tuple(_of(model, flat(twist)) for twist in (candidate.twist, state.twist, past))
+    before = flat(state.contact_wrench) * (state.past_step or 0.0)
+    impulses = _of(model, step.impulse), _of(model, before)
+    load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
+    missed = _of(model, flat(path.twist)) - twists[0]
+    return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
+
+
+def unforeseen(system: System, state: State, candidate: State) -> bool:
+    """Whether a contact is in range at the end of a step that was out of the detector's sight at its start.
+
+    A detector that needs no mesh is asked on the way, and misses none.
+    """
+    if system.law is None or not system.detector.needs_mesh:
+        return False
+    found, count = candidate.contacts, len(system.surfaces)
+    seen = state.contacts.body_a * count + state.contacts.body_b
+    new = np.isin(found.body_a * count + found.body_b, seen, invert=True)
+    return bool(np.any(new & (found.gap < system.law.range)))
+
+
+def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
+    """(d₀M + R) times the velocities that the solution ``missed`` (c,), where the fluid has no inertia."""
+    problem = system.backend.problem
+    if problem is None or problem.inertia:
+        return np.zeros_like(missed)
+    return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
+
+
+def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -> bool:
+    """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else."""
+    assert path.coupling is not None
+    used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
+    if len(model.velocities) == 0:
+        return True
+    impulse = _of(model, flat(path.impulse))
+    gained, d0 = model.mobility @ impulse, derivative_weights(size, state.past_step)[0]
+    before, after = (_of(model, flat(twist)) for twist in (state.twist, candidate.twist))
+    by_load = size * (model.mobility @ found.load - used.model.mobility @ used.load)
+    by_answer = gained - used.model.mobility @ impulse
+    missed = model.answer(d0, found.correction - used.correction) / d0
+    scale = max(map(np.linalg.norm, (before, after, gained)))
+    enough = SETTLED_SHARED if model.shared else SETTLED
+    return bool(max(map(np.linalg.norm, (by_load, by_answer, missed))) <= enough * scale)
+
+
+def _velocities(system: System, near: Contacts) -> IntArray:
+    """Numbers of the velocity components of free bodies that contacts can change: balls turn by friction alone."""
+    count, d = len(system.bodies), system.dimension
+    width = d + (1 if d == 2 else 3)
+    touching = np.zeros(count, dtype=bool)
+    touching[near.body_a] = True
+    touching[near.body_b[near.body_b < count]] = True
+    moves = np.repeat((touching & ~system.controlled)[:, None], width, axis=1)
+    if system.law is not None and not system.law.dissipative:
+        moves[np.array([body.radius is not None for body in system.bodies]), d:] = False
+    return np.flatnonzero(moves)
+
+
+def _load_before(state: State, model: ReducedModel) -> FloatArray:
+    """Φ at the start of a step: at the end of the one before, less the friction that came up in that step."""
+    before = np.full(len(model.velocities), np.nan)
+    if state.coupling is None or state.past is None:
+        return before
+    latest = state.coupling.model.velocities
+    _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
+    change = flat(state.twist) - flat(state.past.twist)
+    slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
+    before[here] = (state.coupling.load - slowed)[there]
+    return before
+
+
+def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
+    if state.past is None:
+        weight = np.concatenate([system.weight, np.zeros_like(state.twist.angular_velocity)], axis=1)
+        return _of(model, weight)
+    change = _of(model, flat(state.twist) - flat(state.past.twist))
+    impulse = _of(model, flat(state.contact_wrench)) * state.past.step
+    return expected_load(model, change, impulse, state.past.step)
+
+
+def _of(model: ReducedModel, field: FloatArray) -> FloatArray:
+    """The model's components (c,) of a field (n, d+k)."""
+    return np.asarray(field.ravel()[model.velocities])

@@ -1,0 +1,82 @@
+"""Contacts between two detections: their points move with the bodies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Pose
+
+
+class FollowedContacts:
+    """Contacts of one pose, carried along by the bodies' rigid motion.
+
+    Between balls, and of balls with flat walls, gap and normal are exact. Other surfaces are followed by their points,
+    along the normal that was found: the gap is then right to first order in the motion since.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        As detected.
+    pose : Pose
+        Where the n bodies were then.
+    """
+
+    def __init__(self, contacts: Contacts, pose: Pose) -> None:
+        self._contacts = contacts
+        self._pose = pose
+        self._round = np.isfinite(contacts.radius_a) & np.isfinite(contacts.radius_b)
+        turned_back = np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
+        self._arm_a = _arms(contacts.body_a, contacts.point_a, pose, turned_back)
+        self._arm_b = _arms(contacts.body_b, contacts.point_b, pose, turned_back)
+
+    def at(self, pose: Pose) -> Contacts:
+        """The same contacts when the bodies are at ``pose``."""
+        rotation = rotation_matrices(pose.orientation)
+        old, normal = self._contacts, self._contacts.normal.copy()
+        ball_a = np.isfinite(old.radius_a)
+        point_a = _moved(old.body_a, self._arm_a, old.point_a, self._pose, pose, rotation, ball_a)
+        point_b = _moved(old.body_b, self._arm_b, old.point_b, self._pose, pose, rotation, np.isfinite(old.radius_b))
+        gap = np.sum((point_a - point_b) * normal, axis=1)
+        on_wall = old.body_b >= len(pose.position)
+        point_b[on_wall] = point_a[on_wall] - gap[on_wall, None] * normal[on_wall]
+        if self._round.any():
+            self._measure_balls(pose, point_a, point_b, normal, gap)
+        return replace(old, point_a=point_a, point_b=point_b, normal=normal, gap=gap)
+
+    def _measure_balls(
+        self, pose: Pose, point_a: FloatArray, point_b: FloatArray, normal: FloatArray, gap: FloatArray
+    ) -> None:
+        """In place, for pairs of balls: gap = |x_a - x_b| - r_a - r_b along the line of centres."""
+        which, old = self._round, self._contacts
+        a, b = pose.position[old.body_a[which]], pose.position[old.body_b[which]]
+        distance = np.linalg.norm(a - b, axis=1)
+        normal[which] = (a - b) / distance[:, None]
+        point_a[which] = a - old.radius_a[which, None] * normal[which]
+        point_b[which] = b + old.radius_b[which, None] * normal[which]
+        gap[which] = distance - old.radius_a[which] - old.radius_b[which]
+
+
+def _arms(body: IntArray, point: FloatArray, pose: Pose, turned_back: FloatArray) -> FloatArray:
+    """From the centre of mass to the point in the body's frame; of walls the point itself."""
+    count = len(pose.position)
+    arm = point.copy()
+    on_body = body < count
+    index = body[on_body]
+    arm[on_body] = np.einsum("nij,nj->ni", turned_back[index], point[on_body] - pose.position[index])
+    return arm
+
+
+def _moved(
+    body: IntArray, arm: FloatArray, point: FloatArray, old: Pose, pose: Pose, rotation: FloatArray, ball: BoolArray
+) -> FloatArray:
+    """Where the points are now; those of a ball do not turn with it, as its nearest point does not."""
+    moved = arm.copy()
+    on_body = body < len(pose.position)
+    index, turning = body[on_body], ~ball[on_body, None]
+    turned = pose.position[index] + np.einsum("nij,nj->ni", rotation[index], arm[on_body])
+    shifted = point[on_body] + pose.position[index] - old.position[index]
+    moved[on_body] = np.where(turning, turned, shifted)
+    return moved

@@ -1,0 +1,205 @@
+"""One step of the bodies through their contacts that is stable at any stiffness and keeps the energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
+from rigidfluid.core.contact.delassus import delassus
+from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.mechanics.movement import Movement
+from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, FloatArray, Motion, Pose, Wrench
+from rigidfluid.errors import StepRejected
+
+MOST_UPDATES = 40
+"""How often normals, points and gaps are taken anew at most."""
+
+MOST_FORCE_UPDATES = 20
+"""From then on dampers, and the scale that makes the work exact, are as they were: a damper that switches on at the
+range, or a way that is nearly none, may have no value that fits."""
+
+TOLERANCE = 1e-10
+"""How far, over the range, the surfaces may end from where the forces take them."""
+
+_SCALES = 0.5, 2.0
+_STILL = 1e-6
+_ROUNDING = 1e-14
+
+
+M = TypeVar("M", bound=Movement)
+
+
+class Crossing(NamedTuple, Generic[M]):
+    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``."""
+
+    movement: M
+    wrench: Wrench
+    lost: float
+
+
+def cross_contacts(
+    law: ForceLaw, movement: M, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
+) -> Crossing[M]:
+    """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
+
+    f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
+    the way of the surfaces past each other, n and the points are those in mid-step. Dampers act with the mean velocity,
+    across the surfaces implicitly, along them with that of the iteration before. Second order where the step resolves
+    the contact. The energy is kept in steps of any length, but for bodies in 3D that are no balls: there to second
+    order.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        Gives force, energy, stiffness and damping.
+    movement : Movement
+        The n bodies at the start; left as it is.
+    start : Contacts
+        The m contacts there that may come into range in the step.
+    contacts_at : callable
+        The same contacts, in the same order, at another pose.
+    size : float
+        Δt [time].
+
+    Returns
+    -------
+    Crossing
+        Of all bodies.
+
+    Raises
+    ------
+    StepRejected
+        If bodies would overlap, or no forces are found.
+
+    Notes
+    -----
+    Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162; Simo, Tarnow & Wong, Comput. Methods Appl. Mech.
+    Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z.
+    """
+    look = _straight_on(movement, start, size)
+    force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, look, size)
+    for update in range(MOST_UPDATES):
+        offset, free = look.way - look.gap, look.gap - look.compliance @ force
+        problem = Problem(law, start, free, look.compliance, look.scale, dampers.across, offset)
+        force, gap = contact_forces(problem, force, gap)
+        spring = (force + dampers.across * (gap + offset)) / look.scale
+        push = force[:, None] * look.middle.normal + dampers.along
+        before = look
+        look = _looked(law, movement, start, contacts_at, contact_wrench(look.middle, push, look.pose), size)
+        used = dampers
+        if update < MOST_FORCE_UPDATES:
+            dampers = _dampers(law, look, size)
+        else:
+            look = look._replace(scale=before.scale)
+        wanted = (look.scale * spring - dampers.across * look.way)[:, None] * look.middle.normal + dampers.along
+        if _settled(law, look, gap, wanted - push):
+            return _crossing(look, used, size)
+        gap = look.gap
+    raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
+
+
+class _Look(NamedTuple, Generic[M]):
+    """Where some forces take the bodies.
+
+    ``movement`` at the end; ``pose``, contacts and mean motion in mid-step; ``way`` n·Δx and ``gap`` at the end (m,)
+    [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force]; the ``wrench``.
+    """
+
+    movement: M
+    pose: Pose
+    middle: Contacts
+    motion: Motion
+    way: FloatArray
+    gap: FloatArray
+    scale: FloatArray
+    compliance: Any
+    wrench: Wrench
+
+
+class _Dampers(NamedTuple):
+    """``across``: force over way along the normal (m,) [force/length]; ``along``: force in the surfaces (m, d)."""
+
+    across: FloatArray
+    along: FloatArray
+
+
+def _straight_on(movement: M, start: Contacts, size: float) -> _Look[M]:
+    """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
+    trial, none = movement.copied(), nothing(movement.pose)
+    trial.kick(none, 0.5 * size)
+    motion = relative_motion(start, trial)
+    way = size * _normal_part(motion.velocity, start)
+    scale, compliance = np.ones(len(start)), _compliance(start, movement, size)
+    return _Look(trial, movement.pose, start, motion, way, start.gap + way, scale, compliance, none)
+
+
+def _looked(
+    law: ForceLaw,
+    movement: M,
+    start: Contacts,
+    contacts_at: Callable[[Pose], Contacts],
+    wrench: Wrench,
+    size: float,
+) -> _Look[M]:
+    trial = movement.copied()
+    trial.kick(wrench, 0.5 * size)
+    trial.drift(0.5 * size)
+    pose, middle = trial.pose, contacts_at(trial.pose)
+    motion, compliance = relative_motion(middle, trial), _compliance(middle, trial, size)
+    trial.drift(0.5 * size)
+    trial.kick(wrench, 0.5 * size)
+    gap = contacts_at(trial.pose).gap
+    if np.any(gap <= 0.0):
+        raise _rejected("an overlap where they take the bodies")
+    way = size * _normal_part(motion.velocity, middle)
+    moves = np.abs(way) > _STILL * law.range
+    scale = np.divide(gap - start.gap, way, out=np.ones_like(way), where=moves)
+    return _Look(trial, pose, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
+
+
+def _compliance(contacts: Contacts, movement: Movement, size: float) -> Any:
+    matrix = 0.5 * size**2 * delassus(contacts, movement, 0.5 * size)
+    return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
+
+
+def _dampers(law: ForceLaw, look: _Look[M], size: float) -> _Dampers:
+    if not law.dissipative:
+        return _Dampers(np.zeros_like(look.way), np.zeros_like(look.middle.normal))
+    speed, normal = _normal_part(look.motion.velocity, look.middle), look.middle.normal
+    speed = np.where(speed == 0.0, 1.0, speed)
+    straight = law.damping(look.middle, replace(look.motion, velocity=speed[:, None] * normal))
+    whole = law.damping(look.middle, look.motion)
+    along = whole - _normal_part(whole, look.middle)[:, None] * normal
+    return _Dampers(-_normal_part(straight, look.middle) / speed / size, along)
+
+
+def _settled(law: ForceLaw, look: _Look[M], gap: FloatArray, missing: FloatArray) -> bool:
+    """Whether gaps are as foreseen, and what the forces still lack moves nothing."""
+    enough = TOLERANCE * law.range + _ROUNDING * np.abs(look.pose.position).max()
+    moved = look.compliance.diagonal() * np.linalg.norm(missing, axis=1)
+    return bool(np.all(np.abs(look.gap - gap) <= enough) and np.all(moved <= enough))
+
+
+def _crossing(look: _Look[M], dampers: _Dampers, size: float) -> Crossing[M]:
+    """The step is done, unless dampers that were not renewed to the end would give energy."""
+    lost = float(np.sum(dampers.across * look.way**2) - size * np.sum(dampers.along * look.motion.velocity))
+    if lost < 0.0:
+        raise _rejected("dampers that would give energy")
+    return Crossing(look.movement, look.wrench, lost)
+
+
+def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:
+    return np.asarray(np.sum(vector * contacts.normal, axis=1))
+
+
+def _rejected(found: str) -> StepRejected:
+    allowed = "forces that keep all surfaces apart"
+    return StepRejected(
+        "the implicit contact step", found, allowed, "Shorten the step, or set contact.stepping to substeps."
+    )

@@ -1,0 +1,90 @@
+"""Who may meet whom: a few bodies that stand for all, and contacts of them that are made up to question a law."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from rigidfluid.core.contact.proximity import may_repel
+from rigidfluid.core.mechanics.shapes import shape_key
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.types import Contacts, FloatArray, Wall
+from rigidfluid.core.setup.system import System
+
+MOST = 40
+"""More bodies than that do not stand for all: then those with the extremes of all that counts do."""
+
+
+def kinds(system: System) -> tuple[tuple[int, ...], ...]:
+    """Bodies of one shape, mass, weight and freedom, each kind in the order of the expected speed."""
+    found = defaultdict(list)
+    for i in np.argsort(system.loads.speed, kind="stable").tolist():
+        body = shape_key(system.bodies[i]), float(system.mass[i]), *system.weight[i].tolist()
+        found[(*body, bool(system.controlled[i]))].append(i)
+    return tuple(map(tuple, found.values()))
+
+
+def representatives(system: System) -> tuple[int, ...]:
+    """Numbers of the bodies that stand for all: of each kind the two slowest and fastest, the least and most stacked.
+
+    Those with the extremes of mass, weight, size, speed and stack, if these are too many.
+    """
+    loads = system.loads
+    stacks = loads.stacked_weight, loads.stacked_energy
+    chosen = sorted({i for kind in kinds(system) for i in _extremes(kind, (loads.speed, *stacks))})
+    if len(chosen) <= MOST:
+        return tuple(chosen)
+    size = np.array([body.bounding_radius for body in system.bodies])
+    weight = np.linalg.norm(system.weight, axis=1)
+    return tuple(sorted(_extremes(chosen, (system.mass, weight, size, loads.speed, *stacks))))
+
+
+def _extremes(bodies: Sequence[int], columns: Sequence[FloatArray]) -> set[int]:
+    """Those of ``bodies`` with the two least and the two greatest values in each of the columns (n,)."""
+    orders = (np.argsort(column[list(bodies)], kind="stable") for column in columns)
+    return {bodies[i] for order in orders for i in (*order[:2], *order[-2:])}
+
+
+def wall_meetings(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:
+    """A contact of each of ``bodies`` with its wall, one of ``walls`` for each, gap zero."""
+    normals = np.array([wall.normal for wall in walls]).reshape(-1, system.dimension)
+    return _touching(system, bodies, [wall.surface for wall in walls], normals)
+
+
+def free(system: System, bodies: Sequence[int]) -> list[int]:
+    """Those of ``bodies`` whose twist is not given."""
+    return [i for i in bodies if not system.controlled[i]]
+
+
+def body_meetings(system: System, bodies: Sequence[int]) -> Contacts:
+    """A contact of each pair of ``bodies`` that may repel and of which one is free, gap zero."""
+    pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
+    first, second = [a for a, _ in pairs], [b for _, b in pairs]
+    met = _touching(system, first, second, np.eye(system.dimension)[0])
+    return select(met, may_repel(system, met))
+
+
+def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:
+    """Each of m contacts at each of its gaps (m, G), as m · G contacts."""
+    many = select(contacts, np.repeat(np.arange(len(contacts)), gaps.shape[1]))
+    gap = gaps.ravel()
+    return replace(many, gap=gap, point_a=many.point_b + gap[:, None] * many.normal)
+
+
+def _touching(system: System, a: Sequence[int], b: Sequence[int], normal: FloatArray) -> Contacts:
+    count, points = len(system.bodies), np.zeros((len(a), system.dimension))
+    radius = [np.nan if body.radius is None else body.radius for body in system.bodies]
+    return Contacts(
+        body_a=np.array(a, dtype=np.int64),
+        body_b=np.array(b, dtype=np.int64),
+        point_a=points,
+        point_b=points,
+        normal=points + normal,
+        gap=np.zeros(len(a)),
+        radius_a=np.array([radius[i] for i in a]),
+        radius_b=np.array([np.inf if i >= count else radius[i] for i in b]),
+    )

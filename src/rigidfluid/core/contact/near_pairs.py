@@ -1,0 +1,86 @@
+"""Verlet's neighbour list: which balls are near each other, searched for only now and then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from rigidfluid.core.contact.broad_phase import near_pairs
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+SKIN = 0.6
+"""How far beyond the reach `NearPairs` looks, over the mean radius."""
+
+_LISTS = 2
+_ALL_PAIRS = 32
+
+
+@dataclass(frozen=True, slots=True)
+class PairList:
+    """Pairs a < b within ``reach`` [length] when the balls were at ``position`` (n, d), sorted by (a, b).
+
+    Those of ball a are ``second[start[a]:start[a + 1]]``.
+    """
+
+    start: IntArray
+    second: IntArray
+    position: FloatArray
+    reach: float
+
+    def holds(self, position: FloatArray, reach: float) -> bool:
+        """Whether no other pair can have come within ``reach``, since nothing has moved far enough."""
+        spare = 0.5 * (self.reach - reach)
+        return spare > 0.0 and (np.isinf(spare) or bool(_all_near(position, self.position, spare)))
+
+
+class NearPairs:
+    """Verlet's neighbour list: pairs a little further apart than asked for, kept as long as no other can come near.
+
+    It decides how often pairs are searched for, and never which contacts are found.
+
+    Parameters
+    ----------
+    radii : (n,) array
+        Radii of the balls [length].
+
+    Notes
+    -----
+    Verlet 1967, DOI 10.1103/PhysRev.159.98.
+    """
+
+    def __init__(self, radii: FloatArray) -> None:
+        self._radii = radii
+        self._skin = SKIN * float(radii.mean()) if len(radii) else 0.0
+        self._lists: list[PairList] = []
+
+    def within(self, position: FloatArray, reach: float) -> PairList:
+        """All pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
+        for found in self._lists:
+            # a list that looks much too far would be right, but slow
+            if found.reach <= reach + 2.0 * self._skin and found.holds(position, reach):
+                return found
+        made = self._made(position, reach)
+        self._lists = [made, *self._lists[: _LISTS - 1]]
+        return made
+
+    def _made(self, position: FloatArray, reach: float) -> PairList:
+        count = len(self._radii)
+        wide = np.inf if count <= _ALL_PAIRS else reach + self._skin
+        first, second = near_pairs(position, self._radii, wide)
+        order = np.lexsort((second, first))
+        start = np.searchsorted(first[order], np.arange(count + 1))
+        return PairList(start, second[order], position.copy(), wide)
+
+
+@njit(cache=True, nogil=True)
+def _all_near(position, before, distance):  # type: ignore[no-untyped-def]
+    """Whether every point is less than a distance from where it was."""
+    for i in range(len(position)):
+        square = 0.0
+        for k in range(position.shape[1]):
+            square += (position[i, k] - before[i, k]) ** 2
+        if not square < distance**2:
+            return False
+    return True

@@ -1,0 +1,67 @@
+"""How near the bodies are to anything: contacts of one pose, and each body's nearest gap."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact import broad_phase
+from rigidfluid.core.contact.detection import detect
+from rigidfluid.core.mechanics.rigid import angle_between
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.setup.system import System
+from rigidfluid.errors import StepRejected
+
+
+def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
+    """The contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
+
+    Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
+    """
+    count = len(system.bodies)
+    near = detect(system, pose, mesh, system.reach)
+    gaps = np.full(count, np.inf)
+    np.minimum.at(gaps, near.body_a, near.gap)
+    paired = near.body_b < count
+    np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
+    return select(near, may_repel(system, near)), gaps
+
+
+def may_repel(system: System, contacts: Contacts) -> BoolArray:
+    """Which contacts (m,) are not between parts of one articulated body."""
+    count = len(system.bodies)
+    other = system.assembly[np.minimum(contacts.body_b, count - 1)]
+    return np.asarray((contacts.body_b >= count) | (system.assembly[contacts.body_a] != other))
+
+
+def refuse_overlap(surface: str, gap: float) -> None:
+    """Raise StepRejected if the ``gap`` of a body [length] is none."""
+    if not gap > 0.0:
+        raise StepRejected(
+            f"body {surface}",
+            f"a gap of {gap:.3e}",
+            "a positive gap to every other surface",
+            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
+        )
+
+
+def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
+    """Each body's nearest gap (n,), and where it is not measured the most that is known to be free [length]."""
+    beyond = ~np.isfinite(gaps)
+    if not beyond.any():
+        return gaps
+    bounds = np.array([body.bounding_radius for body in system.bodies])
+    free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), system.reach)
+    return np.where(beyond, free, gaps)
+
+
+def travel(system: System, start: Pose, end: Pose) -> FloatArray:
+    """How far any surface point of each body can move from one pose to another, |Δx| + R Δθ (n,) [length]."""
+    moved = np.linalg.norm(end.position - start.position, axis=1)
+    return np.asarray(moved + arms(system) * angle_between(start.orientation, end.orientation))
+
+
+def arms(system: System) -> FloatArray:
+    """How far the surface of each body reaches from its centre of mass, zero for balls, which turn in their place (n,)
+    [length]."""
+    return np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])

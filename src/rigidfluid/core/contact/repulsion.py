@@ -1,0 +1,118 @@
+"""What the laws with a stiffness parameter share: a law gives its formulas for ε = 1, and this divides by ε."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+
+from rigidfluid.core.contact.balls import on_wall
+from rigidfluid.core.contact.loads import require_loads, work_to_stop
+from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.types import Contacts, FloatArray, Loads
+
+AUTO: Literal["auto"] = "auto"
+"""What a scene says that leaves ε to the loads."""
+
+
+def _one_complaint(value: object, validate: ValidatorFunctionWrapHandler) -> object:
+    """One sentence in place of one for each kind of value."""
+    try:
+        return validate(value)
+    except ValidationError:
+        raise ValueError('a valid number greater than 0, or "auto"') from None
+
+
+Epsilon = Annotated[Annotated[float, Field(gt=0)] | Literal["auto"], WrapValidator(_one_complaint)]
+
+
+class RepulsionOptions(PartOptions):
+    """Keys of the ``[contact]`` table that the laws with a stiffness parameter share.
+
+    ``epsilon``: stiffness parameter ε; the smaller, the stiffer. ``epsilon_wall``: the same at walls.
+    """
+
+    epsilon: Epsilon = Field(
+        description="Stiffness parameter ε, smaller is stiffer; `auto`: from the loads [length^p/force]"
+    )
+    epsilon_wall: Epsilon | None = Field(
+        default=None, description="The same against walls; epsilon if not given [length^p/force]"
+    )
+
+
+class Repulsion(ForceLaw):
+    """F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
+
+    With ``auto``, ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a dry head-on impact
+    of the expected energy E, that the weight W still pushes on, ends at the smallest gap.
+
+    Parameters
+    ----------
+    options : RepulsionOptions
+        ``epsilon`` and ``epsilon_wall``.
+    range : float
+        The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold; needed by ``auto``.
+
+    Raises
+    ------
+    SceneError
+        If ``auto`` cannot be computed from the loads.
+    """
+
+    Options: ClassVar[type[PartOptions]] = RepulsionOptions
+    options: RepulsionOptions
+
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        super().__init__(options, range, loads)
+        if AUTO in (self.options.epsilon, self.options.epsilon_wall):
+            self.loads = require_loads(loads, range)
+
+    @abstractmethod
+    def unit_force(self, contacts: Contacts) -> FloatArray:
+        """F₁ along the normal, (m,) [force · ε]."""
+
+    @abstractmethod
+    def unit_energy(self, contacts: Contacts) -> FloatArray:
+        """U₁, (m,) [energy · ε]."""
+
+    @abstractmethod
+    def unit_stiffness(self, contacts: Contacts) -> FloatArray:
+        """k₁ = -dF₁/dgap, (m,) [force/length · ε]."""
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        """F₁/ε along the normal on ``body_a``, (m, d) [force]."""
+        return (self.unit_force(contacts) / self.epsilon(contacts))[:, None] * contacts.normal
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """U₁/ε, (m,) [energy]."""
+        return self.unit_energy(contacts) / self.epsilon(contacts)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """k₁/ε, (m,) [force/length]."""
+        return self.unit_stiffness(contacts) / self.epsilon(contacts)
+
+    def epsilon(self, contacts: Contacts) -> FloatArray:
+        """ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of given twist."""
+        between, at_walls = self.options.epsilon, self.options.epsilon_wall
+        if at_walls is None:
+            return self._epsilon(between, contacts)
+        return np.where(on_wall(contacts), self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
+
+    def closeness(self, contacts: Contacts) -> FloatArray:
+        """w = max(range - gap, 0), (m,) [length]."""
+        return np.maximum(self.range - contacts.gap, 0.0)
+
+    def _epsilon(self, wanted: float | Literal["auto"], contacts: Contacts) -> FloatArray:
+        if wanted != AUTO:
+            return np.full(len(contacts), wanted)
+        loads = require_loads(self.loads, self.range)
+        held = work_to_stop(contacts, loads, self.range)
+        stored = self.unit_energy(replace(contacts, gap=np.full(len(contacts), loads.smallest_gap)))
+        epsilon = np.full(len(contacts), np.inf)
+        np.divide(stored, held, out=epsilon, where=held > 0.0)
+        return epsilon

@@ -1,0 +1,80 @@
+"""Loads that add up in stacks and heaps: what the bodies above a body put on it, besides its own."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+
+def stacked(
+    own: FloatArray, weight: FloatArray, position: FloatArray, radius: FloatArray, box: FloatArray
+) -> FloatArray:
+    """The loads of each body together with those of the bodies that may come to press on it.
+
+    A body presses in the direction of its weight: heavy ones downward, buoyant ones upward. It presses on those that
+    start ahead of it: with all of its load where the two overlap, seen along the weight, and else with 1/N of it, where
+    N of the largest bodies fit side by side into the box. Of what presses from above and from below the larger counts.
+    In a heap of equal disks the bodies that overlap one of them are two columns, so that it gets twice the mean load.
+
+    Parameters
+    ----------
+    own : (n, c) array
+        c loads of each body, zero where it presses on nothing.
+    weight : (n, d) array
+        Submerged weights, all along one line [force].
+    position : (n, d) array
+        Of the centres at the start [length].
+    radius : (n,) array
+        Of the bounding balls [length].
+    box : (d,) array
+        Lengths of the box's sides [length].
+
+    Returns
+    -------
+    (n, c) array
+        Loads, ``own`` where there is no weight.
+    """
+    heaviest = weight[np.argmax(np.linalg.norm(weight, axis=1))]
+    if not heaviest.any():
+        return own
+    direction = heaviest / np.linalg.norm(heaviest)
+    pairs, share = _overlapping(direction, position, radius), 1.0 / _side_by_side(direction, radius, box)
+    pressing = []
+    for ahead in (direction, -direction):
+        pressed = np.where((weight @ ahead > 0.0)[:, None], own, 0.0)
+        depth = position @ ahead
+        column = _behind_in_pairs(pressed, depth, pairs)
+        pressing.append(column + share * (_behind(pressed, depth) - column))
+    return own + np.maximum(*pressing)
+
+
+def _overlapping(direction: FloatArray, position: FloatArray, radius: FloatArray) -> IntArray:
+    """The p pairs of bodies that overlap, seen along ``direction`` (d,), (p, 2)."""
+    shadow = position - np.outer(position @ direction, direction)
+    pairs = cKDTree(shadow).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+    distance = np.linalg.norm(shadow[pairs[:, 0]] - shadow[pairs[:, 1]], axis=1)
+    return np.asarray(pairs[distance < radius[pairs].sum(axis=1)])
+
+
+def _side_by_side(direction: FloatArray, radius: FloatArray, box: FloatArray) -> float:
+    """How many of the largest bodies fit side by side across ``direction`` (d,), at least one."""
+    across = np.prod(box) * np.sum(np.abs(direction) / box)
+    return max(float(across // (2.0 * radius.max()) ** (len(box) - 1)), 1.0)
+
+
+def _behind_in_pairs(load: FloatArray, depth: FloatArray, pairs: IntArray) -> FloatArray:
+    """Of each body the sum of the loads (n, c) of its partners in ``pairs`` (p, 2) at a smaller ``depth`` (n,)."""
+    total = np.zeros_like(load)
+    for behind, ahead in (pairs.T, pairs.T[::-1]):
+        pressing = depth[behind] < depth[ahead]
+        np.add.at(total, ahead[pressing], load[behind[pressing]])
+    return total
+
+
+def _behind(load: FloatArray, depth: FloatArray) -> FloatArray:
+    """Of each body the sum of the loads (n, c) of all at a smaller ``depth`` (n,)."""
+    order = np.argsort(depth)
+    sums = np.vstack([np.zeros_like(load[:1]), np.cumsum(load[order], axis=0)])
+    return np.asarray(sums[np.searchsorted(depth[order], depth, side="left")])

@@ -1,0 +1,64 @@
+"""Which stiffness `auto` has chosen, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_weight
+from rigidfluid.core.contact.meetings import body_meetings, free, representatives, wall_meetings
+from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.setup.system import System
+
+
+def chosen_strengths(system: System) -> list[dict[str, Any]]:
+    """The ε that `auto` has computed: the largest and the smallest at walls, and the same between bodies.
+
+    Parameters
+    ----------
+    system : System
+        With its law and loads.
+
+    Returns
+    -------
+    list of dict
+        Each with ``between`` (two names), ``epsilon``, ``impact_speed``, ``impact_energy``, ``weight_work`` and
+        ``smallest_gap``; empty where the scene gives numbers.
+    """
+    law = system.law
+    if not isinstance(law, Repulsion):
+        return []
+    between, at_walls = law.options.epsilon, law.options.epsilon_wall
+    bodies, rows = representatives(system), []
+    if system.walls and (at_walls or between) == AUTO:
+        moving = free(system, bodies)
+        rows += list(_extremes(system, law, wall_meetings(system, moving, [system.walls[0]] * len(moving))))
+    if between == AUTO:
+        rows += list(_extremes(system, law, body_meetings(system, bodies)))
+    return rows
+
+
+def _extremes(system: System, law: Repulsion, contacts: Contacts) -> Iterator[dict[str, Any]]:
+    if len(contacts) == 0:
+        return
+    epsilon = law.epsilon(contacts)
+    speed, energy = closing_speed(contacts, system.loads), impact_energy(contacts, system.loads)
+    work = stacked_weight(contacts, system.loads) * (law.range - system.loads.smallest_gap)
+    for i in sorted({int(np.argmax(epsilon)), int(np.argmin(epsilon))}):
+        yield {
+            "between": [system.surfaces[contacts.body_a[i]], _other(system, contacts, i)],
+            "epsilon": float(epsilon[i]),
+            "impact_speed": float(speed[i]),
+            "impact_energy": float(energy[i]),
+            "weight_work": float(work[i]),
+            "smallest_gap": system.loads.smallest_gap,
+        }
+
+
+def _other(system: System, contacts: Contacts, i: int) -> str:
+    """All walls are alike."""
+    b = int(contacts.body_b[i])
+    return system.surfaces[b] if b < len(system.bodies) else "wall"

@@ -1,0 +1,259 @@
+"""How long substeps must be so that contacts are met and resolved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil, log2
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.stiffness import greatest_stiffness, on_the_way
+from rigidfluid.core.mechanics.movement import Movement
+from rigidfluid.core.mechanics.rigid import cross
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.part_results import refuse_no_number
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
+
+RESOLUTION = 0.1
+"""Substep times the highest contact frequency: some sixty substeps in a period."""
+
+FADED = 8.0
+"""The frequency of balls that part is taken for no more than so many times the highest that is still to come."""
+
+_HALVINGS = 30
+
+
+class Reach(NamedTuple):
+    """How far the surface of each body reaches from its centre of mass, ``arms`` (n,) [length], and how easily it gives
+    way there, ``leverage`` (n,) [1], see `most_leverage`; zero for balls, which turn in their place."""
+
+    arms: FloatArray
+    leverage: FloatArray
+
+
+class Plan(NamedTuple):
+    """``coast``: for how long nothing can touch [time]; ``substep``: what resolves the contacts from then on [time]."""
+
+    coast: float
+    substep: float
+
+
+def plan(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach, size: float, span: float) -> Plan:
+    """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
+
+    Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
+    constant through a collision, and so is h, also where each of many steps plans anew. Substeps of equal length keep
+    the energy; each change costs some. h is the step halved a whole number of times, so that other bodies seldom
+    change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        Gives energy, stiffness and damping.
+    contacts : Contacts
+        All that may come into range in the span.
+    movement : Movement
+        The n bodies as they move now.
+    reach : Reach
+        Of the bodies' surfaces.
+    size, span : float
+        Of the whole step, and how far contacts are foreseen [time].
+
+    Returns
+    -------
+    Plan
+        For the span.
+    """
+    if len(contacts) == 0:
+        return Plan(span, span)
+    pulled = _of_both(movement.pull(span), contacts).sum(axis=1)
+    approach = _approach(law, contacts, movement, reach)
+    speed = approach.fastest + span * pulled
+    first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
+    halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
+    substep = size / 2.0 ** ceil(halvings)
+    coast = min(float(first.min()), span)
+    return Plan(coast if coast > substep else 0.0, substep)
+
+
+class _Approach(NamedTuple):
+    """Of the m contacts: no two points are ``fastest`` to meet [length/time]; ``energy``: what they have to meet with;
+    ``inverse`` (m, 2): 1/m_a and 1/m_b, as much as they can be where the contact may wander [1/mass]; ``parting``:
+    which are balls in range that part."""
+
+    fastest: FloatArray
+    energy: FloatArray
+    inverse: FloatArray
+    parting: BoolArray
+
+
+def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach) -> _Approach:
+    """Normals of balls turn with the line of centres; those of other shapes may turn anywhere."""
+    twist, arm = movement.twist, _of_both(reach.arms, contacts)
+    spin = _of_both(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
+    velocity = _relative(twist.velocity, contacts)
+    opening = np.sum(velocity * contacts.normal, axis=1)
+    inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
+    energy = _radial_energy(contacts, movement, velocity, opening, inside)
+    if tumbling.any():
+        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], reach)
+    inverse = _inverse_masses(contacts, movement) * (1.0 + _of_both(reach.leverage, contacts))
+    fastest = np.linalg.norm(velocity, axis=1) + spin.sum(axis=1)
+    return _Approach(fastest, energy, inverse, ~tumbling & (inside > 0.0) & (opening > 0.0))
+
+
+def _radial_energy(
+    contacts: Contacts, movement: Movement, velocity: FloatArray, opening: FloatArray, inside: FloatArray
+) -> FloatArray:
+    """Of two balls, m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins [energy].
+
+    With the energy of the contact that is constant while they touch, as v_t r is. Out of range, balls that part have
+    none.
+    """
+    mass = relative_motion(contacts, movement).mass
+    distance = np.linalg.norm(_relative(movement.pose.position, contacts), axis=1)
+    on_body = contacts.body_b < len(movement.pose.position)
+    turned = np.where(on_body, 1.0 - (distance / (distance + inside)) ** 2, 0.0)
+    sliding = np.sum(velocity**2, axis=1) - opening**2
+    square = np.where(inside > 0.0, opening**2 + sliding * turned, np.minimum(opening, 0.0) ** 2)
+    return np.asarray(0.5 * mass * square)
+
+
+def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArray, reach: Reach) -> FloatArray:
+    """As if all mass had the speed that the kinetic energy can give to the fastest point of a free body, (m,) [energy].
+
+    Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A driven body is
+    not stopped; so its fastest point counts.
+    """
+    arms, spin, inverse = reach.arms, movement.twist.angular_velocity, movement.inverse_inertia
+    free, turning = inverse.any(axis=(1, 2)), np.zeros(len(arms))
+    own = free & (arms > 0.0)
+    turning[own] = 0.5 * np.einsum("ni,nij,nj->n", spin[own], np.linalg.inv(inverse[own]), spin[own])
+    driven = np.where(free, 0.0, arms * np.linalg.norm(spin, axis=1))
+    speed = np.linalg.norm(velocity, axis=1) + _of_both(driven, contacts).sum(axis=1)
+    lightness: FloatArray = np.asarray(np.linalg.eigvalsh(movement.mobility)[:, 0], dtype=np.float64)
+    mass = _reciprocal(_of_both(lightness, contacts).sum(axis=1))
+    kinetic = 0.5 * mass * speed**2 + _of_both(turning, contacts).sum(axis=1)
+    return np.asarray((1.0 + _of_both(reach.leverage, contacts).max(axis=1)) * kinetic)
+
+
+def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _Approach, pull: FloatArray) -> float:
+    """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time]."""
+    stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
+    inverse = approach.inverse
+    rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
+    refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
+    return RESOLUTION / rate if rate > 0 else np.inf
+
+
+def _reached(
+    law: ForceLaw, contacts: Contacts, motion: Motion, approach: _Approach, pull: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The greatest stiffness and damping coefficient (m,) that count.
+
+    A law may be far stiffer where bodies start than on their way apart. Their substeps grow there, but only where the
+    contact is so soft that the change costs next to no energy.
+    """
+    stored, force = law.energy(contacts), motion.mass * pull
+    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, approach.energy + stored, force))
+    if approach.parting.any():
+        left = _greatest(law, contacts, motion, _deepest(law, contacts, stored, force))
+        stiffness = np.where(approach.parting, np.minimum(stiffness, FADED**2 * left[0]), stiffness)
+        damping = np.where(approach.parting, np.minimum(damping, FADED * left[1]), damping)
+    return stiffness, damping
+
+
+def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: FloatArray) -> FloatArray:
+    """The gap (m,) at which the law has stored this ``energy`` (m,) and what ``force`` (m,) adds on the way [length].
+
+    Zero where it never can.
+    """
+    start = np.minimum(contacts.gap, law.range)
+    low, high = np.zeros(len(contacts)), start
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        enough = law.energy(replace(contacts, gap=middle)) >= energy + force * (start - middle)
+        low, high = np.where(enough, middle, low), np.where(enough, high, middle)
+    return high
+
+
+def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The greatest stiffness and damping coefficient (m,) between the deepest gap and the range."""
+    damping = np.zeros(len(contacts))
+    if law.dissipative:
+        unit = replace(motion, velocity=contacts.normal)
+        for there in on_the_way(law, contacts, deepest):
+            damping = np.maximum(damping, -np.sum(law.damping(there, unit) * contacts.normal, axis=1))
+    return greatest_stiffness(law, contacts, deepest), damping
+
+
+def relative_motion(contacts: Contacts, movement: Movement) -> Motion:
+    """Velocity of a relative to b half-way between the contact points, and the effective mass of the pair,
+    zero where both are driven.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        m contacts.
+    movement : Movement
+        The n bodies as they move now; walls rest, and are heavy beyond measure.
+
+    Returns
+    -------
+    Motion
+        Of the m contacts.
+    """
+    velocity = relative_velocity(contacts, movement.pose, movement.twist)
+    on_body = contacts.body_b < len(movement.pose.position)
+    inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
+    inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
+    return Motion(velocity, _reciprocal(inverse))
+
+
+def _reciprocal(inverse: FloatArray) -> FloatArray:
+    """Zero where ``inverse`` is."""
+    return np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+
+
+def _relative(quantity: FloatArray, contacts: Contacts) -> FloatArray:
+    """What ``quantity`` (n, d) is of a less what it is of b, zero for walls, (m, d)."""
+    extended = np.vstack([quantity, np.zeros_like(quantity[:1])])
+    return np.asarray(extended[contacts.body_a] - extended[np.minimum(contacts.body_b, len(quantity))])
+
+
+def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
+    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time]."""
+    point = 0.5 * (contacts.point_a + contacts.point_b)
+    velocity = _point_velocity(pose, twist, contacts.body_a, point)
+    on_body = contacts.body_b < len(pose.position)
+    velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
+    return velocity
+
+
+def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray) -> FloatArray:
+    return twist.velocity[body] + cross(twist.angular_velocity[body], point - pose.position[body])
+
+
+def _inverse_masses(contacts: Contacts, movement: Movement) -> FloatArray:
+    """1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
+    inverse = np.zeros((len(contacts), 2))
+    for side, body in enumerate([contacts.body_a, contacts.body_b]):
+        on_body = body < len(movement.pose.position)
+        inverse[on_body, side] = movement.inverse_mass(body[on_body], contacts.normal[on_body])
+    return inverse
+
+
+def _of_both(column: FloatArray, contacts: Contacts) -> FloatArray:
+    """What ``column`` (n,) says of a and of b, zero for walls, (m, 2)."""
+    extended = np.append(column, 0.0)
+    return np.column_stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])
+
+
+def _highest_sum(coefficient: FloatArray, contacts: Contacts, inverse: FloatArray) -> float:
+    """Bound of the largest eigenvalue of M⁻¹K: the sums of k/m over the contacts of a body, of both in each contact."""
+    total = np.zeros(int(contacts.body_b.max(initial=0)) + 1 + int(contacts.body_a.max(initial=0)))
+    np.add.at(total, contacts.body_a, coefficient * inverse[:, 0])
+    np.add.at(total, contacts.body_b, coefficient * inverse[:, 1])
+    return float((total[contacts.body_a] + total[contacts.body_b]).max())

@@ -1,0 +1,1 @@
+"""Rigid bodies, without knowing why they move."""

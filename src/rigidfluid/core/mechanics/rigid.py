@@ -1,0 +1,187 @@
+"""Rotations, cross products and inertia of rigid bodies, the same calls in 2D and in 3D.
+
+An orientation has one component in 2D, an angle, and four in 3D, a scalar-first unit quaternion; a rotational
+quantity (angular velocity, torque) has k = 1 component in 2D and k = 3 in 3D. Everything is right-handed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+
+
+def rotation_matrices(orientation: FloatArray) -> FloatArray:
+    """Matrices R that turn vectors of the bodies' frames into the lab frame, x_lab = R x_body.
+
+    Parameters
+    ----------
+    orientation : (n, q) array
+        Angles, counter-clockwise [rad] (q = 1), or scalar-first unit quaternions [1] (q = 4).
+
+    Returns
+    -------
+    (n, d, d) array
+        Proper rotation matrices [1].
+    """
+    if orientation.shape[-1] == 1:
+        return _planar_matrices(orientation[:, 0])
+    return _quaternion_matrices(orientation)
+
+
+def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
+    """Orientation after a further rotation of the lab frame, R_new = exp([rotation_vector]×) R.
+
+    In 2D the angles add, so that whole turns are kept; in 3D the quaternion is normalised again.
+
+    Parameters
+    ----------
+    orientation : (n, q) array
+        Orientation before [rad | 1].
+    rotation_vector : (n, k) array
+        Axis times angle, in the lab frame [rad].
+
+    Returns
+    -------
+    (n, q) array
+        Orientation after [rad | 1].
+    """
+    if orientation.shape[-1] == 1:
+        return orientation + rotation_vector
+    product = _quaternion_product(_quaternion_exponential(rotation_vector), orientation)
+    return np.asarray(product / np.linalg.norm(product, axis=-1, keepdims=True))
+
+
+def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Angle of the rotation that leads from one orientation to another.
+
+    Parameters
+    ----------
+    start, end : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n,) array
+        Angle, in 2D whole turns included [rad].
+    """
+    if start.shape[-1] == 1:
+        return np.abs(end - start)[:, 0]
+    opposite = np.minimum(np.linalg.norm(end - start, axis=1), np.linalg.norm(end + start, axis=1))
+    return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * opposite, 1.0)))
+
+
+def rotation_between(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Rotation vector of the rotation of the lab frame that leads from one orientation to another, the inverse of
+    `rotate`.
+
+    Parameters
+    ----------
+    start, end : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n, k) array
+        Axis times angle, in 2D whole turns included, in 3D at most half a turn [rad].
+    """
+    if start.shape[-1] == 1:
+        return end - start
+    turn = _quaternion_product(end, start * [1.0, -1.0, -1.0, -1.0])
+    turn = np.where(turn[:, :1] < 0.0, -turn, turn)
+    sine = np.linalg.norm(turn[:, 1:], axis=1, keepdims=True)
+    half = np.arctan2(sine, turn[:, :1])
+    return np.asarray(2.0 * turn[:, 1:] / np.sinc(half / np.pi))
+
+
+def cross(angular_velocity: FloatArray, arm: FloatArray) -> FloatArray:
+    """Velocity that a rotation gives to a point, ω × r.
+
+    Parameters
+    ----------
+    angular_velocity : (..., k) array
+        Angular velocity ω, counter-clockwise in 2D [rad/time].
+    arm : (..., d) array
+        Vector r from the centre of mass to the point [length].
+
+    Returns
+    -------
+    (..., d) array
+        Velocity [length/time].
+    """
+    if arm.shape[-1] == 2:
+        return angular_velocity * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+    return np.cross(angular_velocity, arm)
+
+
+def moment(arm: FloatArray, force: FloatArray) -> FloatArray:
+    """Moment of a force about the centre of mass, r × F.
+
+    Parameters
+    ----------
+    arm : (..., d) array
+        Vector r from the centre of mass to where the force acts [length].
+    force : (..., d) array
+        Force F [force].
+
+    Returns
+    -------
+    (..., k) array
+        Moment, counter-clockwise in 2D [force·length].
+    """
+    if arm.shape[-1] == 2:
+        return np.asarray(arm[..., :1] * force[..., 1:] - arm[..., 1:] * force[..., :1])
+    return np.cross(arm, force)
+
+
+def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
+    """Inertia tensors in the lab frame, R I Rᵀ; in 2D the scalar does not change.
+
+    Parameters
+    ----------
+    inertia : (n, k, k) array
+        Inertia I in each body's frame [mass·length²].
+    orientation : (n, q) array
+        Orientation of the bodies [rad | 1].
+
+    Returns
+    -------
+    (n, k, k) array
+        Inertia in the lab frame [mass·length²].
+    """
+    if orientation.shape[-1] == 1:
+        return inertia
+    rotation = rotation_matrices(orientation)
+    return np.asarray(rotation @ inertia @ np.swapaxes(rotation, -1, -2))
+
+
+def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
+    """Inverse inertia in the lab frame, (R I Rᵀ)⁻¹ = R I⁻¹ Rᵀ, (n, k, k), arguments as for `lab_inertia`."""
+    return lab_inertia(np.asarray(np.linalg.inv(inertia), dtype=np.float64), orientation)
+
+
+def _planar_matrices(angle: FloatArray) -> FloatArray:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)
+
+
+def _quaternion_matrices(quaternion: FloatArray) -> FloatArray:
+    w, x, y, z = quaternion.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _quaternion_exponential(rotation_vector: FloatArray) -> FloatArray:
+    half = 0.5 * rotation_vector
+    angle = np.linalg.norm(half, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(angle), np.sinc(angle / np.pi) * half], axis=-1)
+
+
+def _quaternion_product(left: FloatArray, right: FloatArray) -> FloatArray:
+    scalar = left[:, :1] * right[:, :1] - np.sum(left[:, 1:] * right[:, 1:], axis=-1, keepdims=True)
+    vector = left[:, :1] * right[:, 1:] + right[:, :1] * left[:, 1:] + np.cross(left[:, 1:], right[:, 1:])
+    return np.concatenate([scalar, vector], axis=-1)

@@ -1,0 +1,26 @@
+"""What any shape says of itself beyond its interface: how round it is, and whether two are the same."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.interfaces import Body
+
+
+def shape_key(body: Body) -> tuple[str, str]:
+    """Equal for bodies of the same shape: the type's name and its options as text."""
+    return body.name, body.options.model_dump_json()
+
+
+def inscribed_radius(body: Body) -> float:
+    """Radius of the largest ball about the centre of mass inside the shape [length]."""
+    if body.radius is not None:
+        return body.radius
+    return -float(body.signed_distance(np.zeros((1, body.dimension)))[0])
+
+
+def equal_volume_radius(body: Body) -> float:
+    """Radius of the ball that has the body's volume, √(V/π) in 2D, ∛(3V/4π) in 3D [length]."""
+    if body.dimension == 2:
+        return float(np.sqrt(body.volume / np.pi))
+    return float(np.cbrt(0.75 * body.volume / np.pi))

@@ -1,0 +1,177 @@
+"""Second-order time stepping with a variable step: BDF2 for velocities, Adams–Bashforth 2 for poses.
+
+For a spring at constant step the pair is the Störmer–Verlet method in disguise: with the force taken at the new pose
+the positions obey xⁿ⁺¹ - (2 - k²) xⁿ + xⁿ⁻¹ = 0, k = ωΔt, so that nothing is damped and nothing grows while k < 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.mechanics.rigid import lab_inertia, rotate
+from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+
+
+def derivative_weights(step: float, previous_step: float | None) -> FloatArray:
+    """Weights of the backward difference ∂u/∂t(tⁿ⁺¹) ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹.
+
+    d = (1 + 2r, -(1 + r)², r²) / ((1 + r) Δt) with r = step / previous_step: BDF2, exact for parabolas; without a
+    previous step (1, -1, 0) / Δt: BDF1.
+
+    Parameters
+    ----------
+    step : float
+        Δt from tⁿ to tⁿ⁺¹ [time].
+    previous_step : float or None
+        Step from tⁿ⁻¹ to tⁿ [time]; None where there is none.
+
+    Returns
+    -------
+    (3,) array
+        The weights, newest first [1/time].
+    """
+    if previous_step is None:
+        return np.array([1.0, -1.0, 0.0]) / step
+    ratio = step / previous_step
+    return np.array([1 + 2 * ratio, -((1 + ratio) ** 2), ratio**2]) / ((1 + ratio) * step)
+
+
+def extrapolation_weights(step: float, previous_step: float | None) -> FloatArray:
+    """Weights of the linear extrapolation uⁿ⁺¹ ≈ (1 + r) uⁿ - r uⁿ⁻¹, r = step / previous_step.
+
+    Parameters
+    ----------
+    step : float
+        Δt from tⁿ to tⁿ⁺¹ [time].
+    previous_step : float or None
+        Step from tⁿ⁻¹ to tⁿ [time]; None where there is none, and then uⁿ⁺¹ ≈ uⁿ.
+
+    Returns
+    -------
+    (2,) array
+        The weights, newest first [1].
+    """
+    ratio = 0.0 if previous_step is None else step / previous_step
+    return np.array([1 + ratio, -ratio])
+
+
+def predict_pose(
+    pose: Pose, twist: Twist, previous_twist: Twist | None, step: float, previous_step: float | None
+) -> Pose:
+    """Pose at the new time by Adams–Bashforth 2, xⁿ⁺¹ = xⁿ + Δt[(1 + r/2) Uⁿ - (r/2) Uⁿ⁻¹], r = step / previous_step.
+
+    The orientation is turned by the exponential of the same combination of the angular velocities. Without a
+    previous twist or step: forward Euler.
+
+    Parameters
+    ----------
+    pose : Pose
+        Pose at tⁿ.
+    twist : Twist
+        Twist at tⁿ.
+    previous_twist : Twist or None
+        Twist at tⁿ⁻¹; None at the start.
+    step : float
+        Δt from tⁿ to tⁿ⁺¹ [time].
+    previous_step : float or None
+        Step from tⁿ⁻¹ to tⁿ [time]; None at the start.
+
+    Returns
+    -------
+    Pose
+        Pose at tⁿ⁺¹.
+    """
+    mean = twist
+    if previous_twist is not None and previous_step is not None:
+        mean = _mean(twist, previous_twist, step / previous_step)
+    return Pose(pose.position + step * mean.velocity, rotate(pose.orientation, step * mean.angular_velocity))
+
+
+def start_pose(pose: Pose, twist: Twist, end_twist: Twist, step: float) -> Pose:
+    """Pose at the end of the first step, where the twist there is known: x¹ = x⁰ + Δt (U⁰ + U¹)/2.
+
+    With BDF1 for a fluid at rest this keeps the balance of energy, where forward Euler leaves out half of the fall.
+
+    Parameters
+    ----------
+    pose : Pose
+        Pose at t⁰.
+    twist, end_twist : Twist
+        Twists at t⁰ and t¹.
+    step : float
+        Δt [time].
+
+    Returns
+    -------
+    Pose
+        Pose at t¹.
+    """
+    velocity = 0.5 * (twist.velocity + end_twist.velocity)
+    spin = 0.5 * (twist.angular_velocity + end_twist.angular_velocity)
+    return Pose(pose.position + step * velocity, rotate(pose.orientation, step * spin))
+
+
+def newton_euler(
+    mass: FloatArray,
+    inertia: FloatArray,
+    pose: Pose,
+    poses: Sequence[Pose],
+    twists: Sequence[Twist],
+    weights: FloatArray,
+    wrench: Wrench,
+) -> tuple[FloatArray, FloatArray]:
+    """The bodies' equations of motion in discrete form, mass_matrix · twist = load (+ the fluid's wrench).
+
+    Differenced is the momentum (mU, R I Rᵀω), each time with its own orientation: mass_matrix = d₀ diag(m, R I Rᵀ) at
+    the new pose, load = -d₁ momentumⁿ - d₂ momentumⁿ⁻¹ + wrench; so angular momentum is kept, gyroscopic terms and all.
+
+    Parameters
+    ----------
+    mass : (n,) array
+        Masses [mass].
+    inertia : (n, k, k) array
+        Inertia in each body's frame [mass·length²].
+    pose : Pose
+        Pose at tⁿ⁺¹.
+    poses, twists : sequences of Pose and of Twist
+        The past, newest first: those at tⁿ and, where ``weights`` needs it, those at tⁿ⁻¹.
+    weights : (3,) array
+        From `derivative_weights` [1/time].
+    wrench : Wrench
+        What acts besides the fluid: weight, contact.
+
+    Returns
+    -------
+    mass_matrix : (n, d+k, d+k) array
+        Block-diagonal [mass/time | mass·length²/time].
+    load : (n, d+k) array
+        Right-hand side [force | force·length].
+    """
+    load = np.concatenate([wrench.force, wrench.torque], axis=1)
+    for weight, old_pose, old_twist in zip(weights[1:], poses, twists, strict=False):
+        load = load - weight * _momentum(mass, inertia, old_pose, old_twist)
+    return weights[0] * _generalised_mass(mass, inertia, pose), load
+
+
+def _mean(twist: Twist, previous: Twist, ratio: float) -> Twist:
+    new, old = 1 + ratio / 2, -ratio / 2
+    return Twist(
+        new * twist.velocity + old * previous.velocity,
+        new * twist.angular_velocity + old * previous.angular_velocity,
+    )
+
+
+def _momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
+    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
+    return np.concatenate([mass[:, None] * twist.velocity, spin], axis=1)
+
+
+def _generalised_mass(mass: FloatArray, inertia: FloatArray, pose: Pose) -> FloatArray:
+    count, dimension = pose.position.shape
+    size = dimension + inertia.shape[-1]
+    matrix = np.zeros((count, size, size))
+    matrix[:, :dimension, :dimension] = mass[:, None, None] * np.eye(dimension)
+    matrix[:, dimension:, dimension:] = lab_inertia(inertia, pose.orientation)
+    return matrix

@@ -1,0 +1,88 @@
+"""The only place where action = reaction and the moment arm are applied."""
+
+# numba compiles for the types that come; annotations would be a second, unchecked signature.
+# mypy: disallow-untyped-defs=False
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from rigidfluid.core.model.part_results import refuse_lost_forces
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
+
+
+def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wrench:
+    """Net wrench of all contacts on each body, +F on a and -F on b, both at X = (X_a + X_b)/2, torque (X - x) × F.
+
+    At one point, so that forces along the surfaces as well leave the total angular momentum as it is.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        The m contacts.
+    force_on_a : (m, d) array
+        Force F on ``body_a`` [force].
+    pose : Pose
+        Pose of the n bodies, x the positions.
+
+    Returns
+    -------
+    Wrench
+        Force and torque on the n bodies; what a wall takes is dropped.
+
+    Raises
+    ------
+    PluginError, StepRejected
+        If the force has another shape, or is no number.
+    """
+    wrench = nothing(pose)
+    if len(contacts):
+        refuse_lost_forces(contacts, force_on_a)
+        a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
+        _accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
+    return wrench
+
+
+def nothing(pose: Pose) -> Wrench:
+    """The wrench of no contact at all on bodies at ``pose``."""
+    count, dimension = pose.position.shape
+    return Wrench(np.zeros((count, dimension)), np.zeros((count, 1 if dimension == 2 else 3)))
+
+
+def flat(record: Wrench | Twist) -> FloatArray:
+    """Force and torque, or velocity and angular velocity, side by side, (n, d+k)."""
+    pair = (record.force, record.torque) if isinstance(record, Wrench) else (record.velocity, record.angular_velocity)
+    return np.concatenate(pair, axis=1)
+
+
+def power(wrench: Wrench, twist: Twist) -> FloatArray:
+    """F·U + T·ω of each body, (n,) [energy/time]."""
+    return np.asarray(
+        np.sum(wrench.force * twist.velocity, axis=1) + np.sum(wrench.torque * twist.angular_velocity, axis=1)
+    )
+
+
+@njit(cache=True)
+def _accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_on_a):
+    """Add +F at a, then -F at b, in the order of the contacts, so that a sum does not depend on how it is made."""
+    for side in range(2):
+        sign = 1.0 if side == 0 else -1.0
+        for i in range(len(body_a)):
+            body = body_a[i] if side == 0 else body_b[i]
+            if body >= len(position):
+                continue
+            x = 0.5 * (point_a[i, 0] + point_b[i, 0]) - position[body, 0]
+            y = 0.5 * (point_a[i, 1] + point_b[i, 1]) - position[body, 1]
+            u, v = sign * force_on_a[i, 0], sign * force_on_a[i, 1]
+            force[body, 0] += u
+            force[body, 1] += v
+            turning = x * v - y * u
+            if position.shape[1] == 2:
+                torque[body, 0] += turning
+            else:
+                z, w = 0.5 * (point_a[i, 2] + point_b[i, 2]) - position[body, 2], sign * force_on_a[i, 2]
+                force[body, 2] += w
+                torque[body, 0] += y * w - z * v
+                torque[body, 1] += z * u - x * w
+                torque[body, 2] += turning

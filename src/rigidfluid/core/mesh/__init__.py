@@ -1,0 +1,1 @@
+"""The fluid's mesh from birth to re-birth."""

@@ -1,0 +1,134 @@
+"""Cuts a mesh into a part for each rank, and puts the parts together again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, MeshPart
+
+
+def partition(mesh: Mesh, parts: int) -> IntArray:
+    """Part of each cell, by halving the cells' centres across their longest extent until there are enough parts.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The whole.
+    parts : int
+        How many parts; they differ by one cell at most for each halving.
+
+    Returns
+    -------
+    (M,) array
+        Numbers from 0 to ``parts`` - 1.
+
+    Notes
+    -----
+    Recursive coordinate bisection, Berger and Bokhari (1987), DOI 10.1109/TC.1987.1676942.
+    """
+    owner = np.zeros(len(mesh.cells), dtype=np.int64)
+    _halve(mesh.points[mesh.cells].mean(axis=1), np.arange(len(mesh.cells)), 0, parts, owner)
+    return owner
+
+
+def distributed(mesh: Mesh | None, ranks: Ranks) -> Mesh:
+    """This rank's part of a mesh; alone, the very mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh or None
+        The whole, on the root; of the others None.
+    ranks : Ranks
+        Who gets a part.
+
+    Returns
+    -------
+    Mesh
+        Own cells and all their vertices, both in the order of the whole.
+    """
+    if ranks.size == 1:
+        assert mesh is not None
+        return mesh
+    part = ranks.scattered(None if mesh is None else _parts(mesh, ranks.size))
+    assert part.part is not None
+    return replace(part, part=replace(part.part, ranks=ranks))
+
+
+def whole(mesh: Mesh) -> Mesh | None:
+    """The mesh that the parts were cut from, with the points where they are now, on the root; None for the others."""
+    if mesh.part is None:
+        return mesh
+    part = mesh.part
+    own = part.owned
+    sent = (part.vertices[own], mesh.points[own], part.cells, part.vertices[mesh.cells])
+    pieces = part.ranks.collected((*sent, part.facets, part.vertices[mesh.facets], mesh.markers))
+    if pieces is None:
+        return None
+    vertices, points, cells, corners, facets, facet_corners, markers = map(np.concatenate, zip(*pieces, strict=True))
+    vertex, cell, facet = np.argsort(vertices), np.argsort(cells), np.argsort(facets)
+    return Mesh(points[vertex], corners[cell], facet_corners[facet], markers[facet])
+
+
+def surface_vertices(mesh: Mesh, surface: int) -> IntArray:
+    """Own numbers of the vertices on a surface, (s,), ascending; also where the facet is in another rank's part."""
+    own: IntArray = np.unique(mesh.facets[mesh.markers == surface])
+    if mesh.part is None:
+        return own
+    anywhere = np.concatenate(mesh.part.ranks.gathered(mesh.part.vertices[own]))
+    return np.flatnonzero(np.isin(mesh.part.vertices, anywhere))
+
+
+def _halve(centres: FloatArray, cells: IntArray, first: int, parts: int, owner: IntArray) -> None:
+    """Number the ``cells`` of ``owner`` from ``first`` on."""
+    owner[cells] = first
+    if parts > 1:
+        axis = int(np.argmax(np.ptp(centres[cells], axis=0)))
+        along, half = cells[np.argsort(centres[cells, axis], kind="stable")], parts // 2
+        cut = len(cells) * half // parts
+        _halve(centres, along[:cut], first, half, owner)
+        _halve(centres, along[cut:], first + half, parts - half, owner)
+
+
+def _parts(mesh: Mesh, count: int) -> list[Mesh]:
+    """All parts, in the order of ranks, for ranks yet to be named."""
+    owner = partition(mesh, count)
+    facet_owner = owner[_cells_of_facets(mesh)]
+    vertices = [np.unique(mesh.cells[owner == rank]) for rank in range(count)]
+    lowest = np.empty(len(mesh.points), dtype=np.int64)
+    for rank in reversed(range(count)):
+        lowest[vertices[rank]] = rank
+    return [
+        _part(mesh, vertices[rank], np.flatnonzero(owner == rank), np.flatnonzero(facet_owner == rank), lowest == rank)
+        for rank in range(count)
+    ]
+
+
+def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, owned: BoolArray) -> Mesh:
+    counts = np.array([len(mesh.points), len(mesh.cells), len(mesh.facets)])
+    return Mesh(
+        points=mesh.points[vertices],
+        cells=np.searchsorted(vertices, mesh.cells[cells]),
+        facets=np.searchsorted(vertices, mesh.facets[facets]),
+        markers=mesh.markers[facets],
+        part=MeshPart(ALONE, vertices, cells, facets, owned[vertices], counts),
+    )
+
+
+def _cells_of_facets(mesh: Mesh) -> IntArray:
+    """The cell that each boundary facet belongs to, (F,): the one that has all of its vertices."""
+    cells, facets = (_incidence(simplices, len(mesh.points)) for simplices in (mesh.cells, mesh.facets))
+    common = (facets @ cells.T).tocoo()
+    whole_facet = common.data == mesh.facets.shape[1]
+    found = np.empty(len(mesh.facets), dtype=np.int64)
+    found[common.coords[0][whole_facet]] = common.coords[1][whole_facet]
+    return found
+
+
+def _incidence(simplices: IntArray, vertices: int) -> csr_array:
+    """1 where a simplex has a vertex, (simplices, vertices)."""
+    start = np.arange(0, simplices.size + 1, simplices.shape[1])
+    return csr_array((np.ones(simplices.size), simplices.ravel(), start), shape=(len(simplices), vertices))

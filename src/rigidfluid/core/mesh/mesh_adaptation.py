@@ -1,0 +1,151 @@
+"""Decides when a mesh that only moves must be made anew, and carries the fluid over.
+
+The root makes each mesh and holds it whole meanwhile; every rank moves its own part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.core.setup.system import System
+from rigidfluid.errors import MeshError, StepRejected
+
+TANGLED = 0.02
+"""A mesh with a cell below this quality is not solved on."""
+
+NEARLY_TANGLED = 2.0 * TANGLED
+"""A moved mesh is made anew before a cell tangles, however low a quality is asked for."""
+
+
+class Mover:
+    """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, walls and backend.
+    sizes : Sizes or None
+        Wanted cell sizes; None without a fluid, and then there is no mesh.
+    quality : float
+        A moved mesh whose worst cell falls below this, or is nearly tangled, and below half of what it was when made,
+        is re-made.
+    pause : int
+        For so many ticks after a mesh could not be made, none is tried unless a cell is nearly tangled.
+    """
+
+    def __init__(self, system: System, sizes: Sizes | None, quality: float, pause: int) -> None:
+        self._system = system
+        self._sizes = sizes
+        self._quality = quality
+        self._pause = pause
+        self._motion: MeshMotion | None = None
+        self._reference: Reference | None = None
+        self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
+
+    def first_mesh(self) -> Mesh | None:
+        """The mesh around the bodies' initial pose."""
+        if self._sizes is None:
+            return None
+        s, ranks = self._system, self._system.backend.ranks
+        with ranks.together():
+            args = s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes
+            mesh = initial_mesh(*args) if ranks.is_root else None
+        return distributed(mesh, ranks)
+
+    def moved(self, state: State, pose: Pose) -> Mesh | None:
+        """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
+        if state.reference is None:
+            return None
+        points, worst = self._placed(state.reference, pose)
+        if worst < TANGLED:
+            raise StepRejected(
+                "mesh",
+                f"a cell of quality {worst:.3f}",
+                f"at least {TANGLED}",
+                "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
+            )
+        return replace(state.reference.mesh, points=points)
+
+    def adapted(self, state: State, pose: Pose) -> State:
+        """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
+        if state.reference is None or state.reference.tick == state.tick:
+            return state
+        if self._waits(state.reference, state, pose) or not self._asks(state, pose):
+            return state
+        assert state.mesh is not None
+        try:
+            mesh = self._remade(state.mesh, state.pose)
+        except MeshError:  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
+            return replace(state, remesh_failed=state.tick)
+        fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
+        return replace(
+            state,
+            mesh=mesh,
+            reference=reference_of(mesh, state.pose, state.gaps, state.tick),
+            fluid=fluid,
+            ledger=state.ledger.after_transfer(loss),
+            remesh_failed=None,
+        )
+
+    def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
+        assert self._sizes is not None
+        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        with ranks.together():
+            made = None if present is None else remesh(present, s.bodies, pose, s.walls, self._sizes)
+        return distributed(made, ranks)
+
+    def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
+        """Whether a mesh that could not be made shortly before is not worth another try."""
+        failed = state.remesh_failed
+        if failed is None or state.tick >= failed + self._pause:
+            return False
+        return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
+
+    def _asks(self, state: State, pose: Pose) -> bool:
+        assert state.reference is not None
+        if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
+            return True
+        _, worst = self._placed(state.reference, pose)
+        return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
+
+    def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
+        """Vertices (N, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of the
+        latest pose are kept, as a step asks for them several times."""
+        if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
+            points = self._map(reference).move(pose)
+            self._latest = reference, pose, points, worst_quality(reference.mesh, points)
+        return self._latest[2:]
+
+    def _map(self, reference: Reference) -> MeshMotion:
+        if self._motion is None or self._reference is not reference:
+            s = self._system
+            self._motion = MeshMotion(reference.mesh, s.bodies, reference.pose, s.backend.extension)
+            self._reference = reference
+        return self._motion
+
+
+def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
+    """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
+    return Reference(mesh, pose, gaps, worst_quality(mesh, mesh.points), tick)
+
+
+def worst_quality(mesh: Mesh, points: FloatArray) -> float:
+    """Quality of the worst cell of the whole mesh, with its vertices at ``points`` (N, d) [1]."""
+    return float(mesh.ranks.least(cell_quality(points, mesh.cells).min()))
+
+
+def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:
+    """Where a gap that the mesh must resolve has halved, or has opened to four times, since the mesh was made."""
+    assert sizes is not None
+    finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
+    ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
+    return (ratio < 0.5) | (ratio > 4.0)

@@ -1,0 +1,109 @@
+"""Moves a mesh with its bodies by the paper's harmonic map: factorised once for a reference mesh, one solve a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+
+MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
+
+
+def factorised(mesh: Mesh, matrix: csc_array, held: BoolArray) -> Extension:
+    """By factors, in one process."""
+    return FactorisedExtension(matrix, held)
+
+
+class MeshMotion:
+    """Harmonic map of a reference mesh, ∇·((1 + τ)∇x) = 0 with τ_e = (1 - V_min/V_max) / (V_e/V_max), P1.
+
+    Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
+    (of a ball only its translation); vertices on a face of the box slide along it, so their normal coordinate is fixed
+    and the natural condition holds along the face.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The reference: the mesh that the last re-meshing made.
+    bodies : sequence of Body
+        The shapes.
+    reference_pose : Pose
+        Where they are on the reference mesh.
+    extension : callable
+        Makes the solver from the mesh, its stiffness matrix and the held vertices of one component.
+
+    Notes
+    -----
+    Equation (ALE) of Van Landeghem et al., arXiv:2402.19093; τ after Kanchi and Masud, DOI 10.1002/fld.1512.
+    """
+
+    def __init__(
+        self, mesh: Mesh, bodies: Sequence[Body], reference_pose: Pose, extension: MakeExtension = factorised
+    ) -> None:
+        self._points = mesh.points
+        self._bodies = tuple(bodies)
+        self._pose = reference_pose
+        self._surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
+        self._held = held_components(mesh, len(bodies))
+        matrix = stiffness(mesh)
+        self._solves = [extension(mesh, matrix, held) for held in self._held.T]
+
+    def move(self, pose: Pose) -> FloatArray:
+        """Vertices of the mesh when the bodies are at ``pose``.
+
+        Parameters
+        ----------
+        pose : Pose
+            The new pose.
+
+        Returns
+        -------
+        (N, d) array
+            Vertices; those of a body lie on its surface [length].
+        """
+        displacement = np.zeros_like(self._points)
+        for i, body in enumerate(self._bodies):
+            displacement[self._surfaces[i]] = self._rigid_displacement(i, body, pose)
+        for k, extension in enumerate(self._solves):
+            extension.fill(displacement[:, k])
+        return self._points + displacement
+
+    def _rigid_displacement(self, i: int, body: Body, pose: Pose) -> FloatArray:
+        """x - X on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
+        if body.radius is not None:
+            shift = pose.position[i] - self._pose.position[i]
+            return np.broadcast_to(shift, (len(self._surfaces[i]), len(shift)))
+        reference = self._points[self._surfaces[i]]
+        turned: FloatArray = to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
+        return turned
+
+
+def held_components(mesh: Mesh, bodies: int) -> BoolArray:
+    """Which components of the displacement are given, (N, d): all on a body, the normal one on a face of the box."""
+    held = np.zeros(mesh.points.shape, dtype=bool)
+    for surface in range(bodies + 2 * mesh.points.shape[1]):
+        components = slice(None) if surface < bodies else (surface - bodies) // 2
+        held[surface_vertices(mesh, surface), components] = True
+    return held
+
+
+def stiffness(mesh: Mesh) -> csc_array:
+    """Matrix of ∫(1 + τ) ∇u·∇v for linear elements over this rank's cells, (N, N)."""
+    volume = np.abs(cell_volumes(mesh.points, mesh.cells))
+    smallest, largest = mesh.ranks.least(volume.min()), mesh.ranks.greatest(volume.max())
+    tau = (1.0 - smallest / largest) / (volume / largest)
+    corners = mesh.points[mesh.cells]
+    inner = np.linalg.inv(corners[:, 1:] - corners[:, :1])
+    gradients = np.concatenate([-inner.sum(axis=2, keepdims=True), inner], axis=2)
+    local = ((1.0 + tau) * volume)[:, None, None] * (gradients.swapaxes(1, 2) @ gradients)
+    rows, columns = np.broadcast_arrays(mesh.cells[:, :, None], mesh.cells[:, None, :])
+    count = len(mesh.points)
+    return csc_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count))

@@ -1,0 +1,82 @@
+"""Signed volume and shape quality of simplices, vectorised: called on the whole mesh at every step."""
+
+from __future__ import annotations
+
+from math import factorial, sqrt
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+
+def cell_volumes(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Signed volume of every simplex, V = det(x_1 - x_0, …, x_d - x_0) / d!.
+
+    Parameters
+    ----------
+    points : (N, d) array
+        Vertices [length].
+    cells : (M, d+1) array
+        Vertex numbers of each simplex.
+
+    Returns
+    -------
+    (M,) array
+        Area or volume, negative for an inverted simplex [length^d].
+    """
+    return _signed_volumes(_corners(points, cells))
+
+
+def cell_quality(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Shape of every simplex, q = (V / V_d)^(2/d) / mean(l²): 1 for a regular simplex, 0 for a flat or inverted one.
+
+    V_d = √(d+1) / (d! 2^(d/2)) is the volume of the regular simplex of unit edges; the mean goes over all edges.
+
+    Parameters
+    ----------
+    points : (N, d) array
+        Vertices [length].
+    cells : (M, d+1) array
+        Vertex numbers of each simplex.
+
+    Returns
+    -------
+    (M,) array
+        Quality in [0, 1].
+
+    Notes
+    -----
+    The mean-ratio measure of Liu and Joe (1994), DOI 10.1007/BF01955874.
+    """
+    corners = _corners(points, cells)
+    d = points.shape[1]
+    regular = sqrt(d + 1) / (factorial(d) * 2 ** (d / 2))
+    relative = np.maximum(_signed_volumes(corners), 0.0) / regular
+    power = relative if d == 2 else np.cbrt(relative) ** 2
+    quality: FloatArray = power / _mean_square_edge(corners)
+    return quality
+
+
+def _corners(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Coordinates by corner and component, (d+1, d, M), each a contiguous row."""
+    return np.ascontiguousarray(points.T)[:, cells.T].swapaxes(0, 1)
+
+
+def _signed_volumes(corners: FloatArray) -> FloatArray:
+    edges = corners[1:] - corners[0]
+    if len(edges) == 2:
+        (ax, ay), (bx, by) = edges
+        area: FloatArray = 0.5 * (ax * by - ay * bx)
+        return area
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = edges
+    volume: FloatArray = (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0
+    return volume
+
+
+def _mean_square_edge(corners: FloatArray) -> FloatArray:
+    first, second = np.triu_indices(len(corners), 1)
+    total = np.zeros(corners.shape[2])
+    for a, b in zip(first, second, strict=True):
+        for component in corners[a] - corners[b]:
+            total += component * component
+    return total / len(first)

@@ -1,0 +1,142 @@
+"""Bisects edges on the bodies that are too long for the gap they face; new vertices lie on the exact surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose, Wall
+
+LONGEST = 1.5
+"""An edge on a body is bisected when it is longer than this many times the wanted size."""
+
+FLAT = 1e-3
+"""Quality that a bisected cell must exceed."""
+
+
+def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+    """Bisect body edges, longest first, until none is longer than LONGEST times the wanted size at its middle.
+
+    Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay, and so do
+    those whose bisection would flatten or invert a cell: in a gap a vertex may be nearer to a facet than the surface
+    above it. Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the
+    polygon's error stays far below the gap.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Mesh whose body vertices lie on the bodies at ``pose``.
+    bodies : sequence of Body
+        The shapes.
+    pose : Pose
+        Where they are.
+    walls : sequence of Wall
+        The walls whose gaps are resolved.
+    sizes : Sizes
+        The wanted size.
+
+    Returns
+    -------
+    Mesh
+        The same mesh if no edge is too long.
+    """
+    refused: set[tuple[int, int]] = set()
+    while True:
+        edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes, LONGEST)
+        left = np.array([(a, b) not in refused for a, b in edges.tolist()], dtype=bool)
+        if not left.any():
+            return mesh
+        edges, middles = edges[left], middles[left]
+        length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+        chosen = one_per_cell(mesh.cells, edges, length, len(mesh.points))
+        edges, middles = edges[chosen], middles[chosen]
+        fits = spares_cells(mesh, edges, middles)
+        refused |= {(a, b) for a, b in edges[~fits].tolist()}
+        if fits.any():
+            mesh = bisect(mesh, edges[fits], middles[fits])
+
+
+def long_edges(
+    mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes, longest: float
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Body edges (E, 2) longer than ``longest`` times the wanted size; on the surface above their middles (E, d), the
+    points and the size wanted there (E,)."""
+    edges, owner = body_edges(mesh, len(bodies))
+    middles = mesh.points[edges].mean(axis=1)
+    wanted = wanted_size(middles, bodies, pose, walls, sizes)
+    long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
+    edges, owner, middles = edges[long], owner[long], middles[long]
+    for i in np.unique(owner):
+        local = to_body_frame(pose, i, middles[owner == i])
+        middles[owner == i] = to_world(pose, i, bodies[i].closest_point(local))
+    return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
+
+
+def body_edges(mesh: Mesh, count: int) -> tuple[IntArray, IntArray]:
+    """Edges (E, 2) of the bodies' facets, each once with ascending vertex numbers, and their body's number (E,)."""
+    facets, markers = mesh.facets[mesh.markers < count], mesh.markers[mesh.markers < count]
+    pairs = [list(pair) for pair in combinations(range(mesh.facets.shape[1]), 2)]
+    edges = np.sort(np.concatenate([facets[:, pair] for pair in pairs]), axis=1)
+    edges, index = np.unique(edges, axis=0, return_index=True)
+    return edges, np.tile(markers, len(pairs))[index]
+
+
+def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:
+    """Which edges (E,) to bisect now: those that are the longest of the given ones in every cell they belong to."""
+    rank = np.empty(len(edges), dtype=np.int64)
+    rank[np.argsort(length, kind="stable")] = np.arange(len(edges))
+    highest = np.full(len(cells), -1)
+    found = [edge_numbers(cells, pair, edges, vertices) for pair in combinations(range(cells.shape[1]), 2)]
+    for number in found:
+        np.maximum(highest, np.where(number >= 0, rank[number], -1), out=highest)
+    chosen = np.ones(len(edges), dtype=bool)
+    for number in found:
+        chosen[number[(number >= 0) & (rank[number] < highest)]] = False
+    return chosen
+
+
+def spares_cells(mesh: Mesh, edges: IntArray, middles: FloatArray) -> BoolArray:
+    """Which of ``edges`` (E, 2), of which no cell has two, can be bisected with all cells above FLAT (E,)."""
+    cells, _ = halved(mesh.cells, edges, len(mesh.points))
+    cut = cells[cells.max(axis=1) >= len(mesh.points)]
+    flat = cell_quality(np.concatenate([mesh.points, middles]), cut) <= FLAT
+    spares = np.ones(len(edges), dtype=bool)
+    spares[cut[flat].max(axis=1) - len(mesh.points)] = False
+    return spares
+
+
+def bisect(mesh: Mesh, edges: IntArray, middles: FloatArray) -> Mesh:
+    """The mesh with a vertex put at ``middles`` (E, d) into each of ``edges`` (E, 2), of which no cell has two."""
+    vertices = len(mesh.points)
+    cells, _ = halved(mesh.cells, edges, vertices)
+    facets, parent = halved(mesh.facets, edges, vertices)
+    return Mesh(np.concatenate([mesh.points, middles]), cells, facets, mesh.markers[parent])
+
+
+def halved(simplices: IntArray, edges: IntArray, vertices: int) -> tuple[IntArray, IntArray]:
+    """Simplices with those that hold one of ``edges`` cut in two at vertex ``vertices`` + edge number; and parents."""
+    first, second, parent = simplices.copy(), [simplices], [np.arange(len(simplices))]
+    for a, b in combinations(range(simplices.shape[1]), 2):
+        number = edge_numbers(simplices, (a, b), edges, vertices)
+        cut = np.flatnonzero(number >= 0)
+        other = simplices[cut]
+        first[cut, a] = other[:, b] = vertices + number[cut]
+        second.append(other)
+        parent.append(cut)
+    second[0] = first
+    return np.concatenate(second), np.concatenate(parent)
+
+
+def edge_numbers(simplices: IntArray, pair: tuple[int, int], edges: IntArray, vertices: int) -> IntArray:
+    """Number of each simplex's edge between two of its corners in a sorted list of ``edges``, -1 if not in it, (M,)."""
+    low, high = np.sort(simplices[:, pair], axis=1).T
+    keys = edges[:, 0] * vertices + edges[:, 1]
+    wanted = low * vertices + high
+    place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    return np.where(keys[place] == wanted, place, -1)

@@ -1,0 +1,68 @@
+"""Facets and boundary of a mesh of simplices, and the checks that every new mesh must pass."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.errors import MeshError
+
+REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."
+
+
+def boundary_facets(cells: IntArray) -> IntArray:
+    """Facets that belong to one cell only, (F, d), vertex numbers ascending, rows in lexicographic order.
+
+    Parameters
+    ----------
+    cells : (M, d+1) array
+        Vertex numbers of each simplex.
+
+    Returns
+    -------
+    (F, d) array
+        Vertex numbers of each boundary facet.
+    """
+    corners = np.sort(cells, axis=1)
+    picks = np.array(list(combinations(range(cells.shape[1]), cells.shape[1] - 1)))
+    facets = corners[:, picks].reshape(-1, cells.shape[1] - 1)
+    unique, count = np.unique(facets, axis=0, return_counts=True)
+    boundary: IntArray = unique[count == 1]
+    return boundary
+
+
+def orient(mesh: Mesh) -> Mesh:
+    """The same mesh with two vertices exchanged in every cell of negative volume."""
+    cells = mesh.cells.copy()
+    inverted = cell_volumes(mesh.points, cells) < 0.0
+    cells[inverted, :2] = cells[inverted, 1::-1]
+    return Mesh(mesh.points, cells, mesh.facets, mesh.markers)
+
+
+def check_mesh(mesh: Mesh, quality: float) -> None:
+    """Refuse a mesh that is not closed by its marked facets or has a cell below a quality.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh to check.
+    quality : float
+        Lowest quality allowed, at least 0 (inverted cells are always refused).
+
+    Raises
+    ------
+    MeshError
+        When the listed facets are not exactly the boundary of the cells, or the worst cell is too bad.
+    """
+    listed = np.unique(np.sort(mesh.facets, axis=1), axis=0)
+    boundary = boundary_facets(mesh.cells)
+    if len(listed) != len(mesh.facets) or not np.array_equal(listed, boundary):
+        found = f"{len(mesh.facets)} marked facets around cells with {len(boundary)} boundary facets"
+        raise MeshError("mesh", found, "the same facets in both", REMEDY)
+    cell = int(np.argmin(worst := cell_quality(mesh.points, mesh.cells)))
+    if worst[cell] <= quality:
+        where = np.array2string(mesh.points[mesh.cells[cell]].mean(axis=0), precision=4)
+        raise MeshError(f"mesh near {where}", f"a cell of quality {worst[cell]:.3g}", f"more than {quality:g}", REMEDY)

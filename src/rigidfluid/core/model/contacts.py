@@ -1,0 +1,44 @@
+"""Rows of contacts: a choice of them, and several parts in one, sorted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.model.types import BoolArray, Contacts, IntArray
+
+
+def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
+    """The contacts in the rows ``chosen``.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        m of them.
+    chosen : (k,) array of int or (m,) array of bool
+        Which, in the order wanted.
+
+    Returns
+    -------
+    Contacts
+        k of them.
+    """
+    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
+
+
+def in_order(parts: Sequence[Contacts]) -> Contacts:
+    """All contacts of several parts, sorted by (body_a, body_b).
+
+    Parameters
+    ----------
+    parts : sequence of Contacts
+        At least one.
+
+    Returns
+    -------
+    Contacts
+        As many as in all parts.
+    """
+    merged = Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+    return select(merged, np.lexsort((merged.body_b, merged.body_a)))

@@ -1,0 +1,39 @@
+"""Extends a field that is given at some vertices of a mesh to all of them."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from rigidfluid.core.model.types import BoolArray, FloatArray
+
+
+class Extension(Protocol):
+    """Solves A_ff u_f = -A_fh u_h, f the free vertices and h those where u is given."""
+
+    def fill(self, values: FloatArray) -> None:
+        """Overwrite the free entries of ``values`` (N,)."""
+
+
+class FactorisedExtension:
+    """By factors of A_ff, made once.
+
+    Parameters
+    ----------
+    matrix : (N, N) sparse array
+        Symmetric stiffness matrix.
+    held : (N,) array of bool
+        Where values are given; at least one.
+    """
+
+    def __init__(self, matrix: csc_array, held: BoolArray) -> None:
+        self._held, self._free = np.flatnonzero(held), np.flatnonzero(~held)
+        rows = matrix.tocsr()[self._free].tocsc()
+        self._coupling = rows[:, self._held].tocsr()
+        self._factor = splu(rows[:, self._free], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+    def fill(self, values: FloatArray) -> None:
+        values[self._free] = self._factor.solve(-(self._coupling @ values[self._held]))

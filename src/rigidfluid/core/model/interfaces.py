@@ -1,0 +1,248 @@
+"""The four replaceable parts: what a fluid backend, a detector, a force law and a body type must do.
+
+Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
+keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+from scipy.sparse import csc_array
+
+from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.types import (
+    Advance,
+    BoolArray,
+    Contacts,
+    Fields,
+    FloatArray,
+    FluidProblem,
+    FluidState,
+    Loads,
+    Mesh,
+    Motion,
+    Pose,
+    Response,
+    Step,
+    Twist,
+    Wall,
+)
+
+
+class PartOptions(BaseModel):
+    """The keys that an implementation reads from its table of the scene file; this one reads none."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Part(ABC):
+    """What the four kinds have in common."""
+
+    name: ClassVar[str]
+    requires: ClassVar[Mapping[str, str]] = {}
+    Options: ClassVar[type[PartOptions]] = PartOptions
+
+
+class Body(Part):
+    """A rigid shape in its own frame, its centre of mass at the origin.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The type's own keys of the ``[[body]]`` table.
+    dimension : int
+        2 or 3.
+    """
+
+    def __init__(self, options: PartOptions, dimension: int) -> None:
+        self.options = options
+        self.dimension = dimension
+
+    @property
+    @abstractmethod
+    def volume(self) -> float:
+        """Exact volume of the shape (area in 2D) [length^d]."""
+
+    @property
+    @abstractmethod
+    def gyration(self) -> FloatArray:
+        """Inertia over mass, ∫(|r|² I - r rᵀ) / volume, shape (k, k) [length²]."""
+
+    @property
+    @abstractmethod
+    def bounding_radius(self) -> float:
+        """Radius of the smallest ball about the origin that holds the shape [length]."""
+
+    @property
+    def radius(self) -> float | None:
+        """The radius if the shape is a ball, else None [length]."""
+        return None
+
+    @property
+    def semi_axes(self) -> FloatArray | None:
+        """Semi-axes (d,) along the axes of its frame if the shape is an ellipsoid or a ball, else None [length]."""
+        return None if self.radius is None else np.full(self.dimension, self.radius)
+
+    @abstractmethod
+    def closest_point(self, points: FloatArray) -> FloatArray:
+        """Nearest points of the surface, (N, d) for ``points`` (N, d) [length]."""
+
+    @abstractmethod
+    def signed_distance(self, points: FloatArray) -> FloatArray:
+        """Distance to the surface, (N,), > 0 outside the shape, for ``points`` (N, d) [length]."""
+
+    @abstractmethod
+    def sample_surface(self, count: int) -> FloatArray:
+        """About ``count`` points spread over the surface, (N, d) [length]."""
+
+    @abstractmethod
+    def cad_shape(self) -> Any:
+        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator."""
+
+
+class Detector(Part):
+    """Finds which surfaces are near each other.
+
+    With ``needs_mesh`` it is never asked without a mesh.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The detector's own keys of the ``[contact]`` table.
+    bodies : sequence of Body
+        The shapes, in the scene's order.
+    walls : sequence of Wall
+        The walls that repel.
+    """
+
+    needs_mesh: ClassVar[bool] = False
+
+    def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        self.options = options
+        self.bodies = tuple(bodies)
+        self.walls = tuple(walls)
+
+    def sight(self, law_range: float) -> float:
+        """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""
+        return math.inf
+
+    @abstractmethod
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b); reach may be infinite."""
+
+
+class ForceLaw(Part):
+    """A short-range force between two surfaces: one that an energy gives, and one that takes energy out.
+
+    All forces act on ``body_a``, half-way between the contact points; ``core/mechanics/wrenches`` applies the reaction.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The law's own keys of the ``[contact]`` table.
+    range : float
+        The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold, for laws that choose their strength by it.
+    """
+
+    balls_only: ClassVar[bool] = False
+    conservative: ClassVar[bool] = True
+    """Whether it has an energy; else force, energy and stiffness are zero."""
+    dissipative: ClassVar[bool] = False
+    """Whether it has damping; else damping is zero."""
+    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "repels"
+    """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
+    StepRejected."""
+    loads: Loads | None = None
+    """What its strength follows from, in a law that sets it by them; bodies of equal loads then meet alike."""
+
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        self.options = options
+        self.range = range
+
+    @abstractmethod
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Force F = -dU/dgap · n on ``body_a``, (m, d) [force]."""
+
+    @abstractmethod
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Potential energy U of each contact, (m,), zero at range [energy]."""
+
+    @abstractmethod
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """-d(F·n)/dgap of each contact, (m,) [force/length]."""
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
+        return np.zeros_like(contacts.normal)
+
+
+class FluidBackend(Part):
+    """Moves fluid and bodies together over one step.
+
+    With several ``ranks`` each process has a backend and a part of each mesh; all methods are called on all ranks
+    together, and results that are not fields are the same on all.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The backend's own keys of the ``[fluid]`` table.
+    problem : FluidProblem or None
+        The fluid's equations and boundary conditions; None where there is no fluid.
+    """
+
+    needs_mesh: ClassVar[bool] = True
+    ranks: Ranks = ALONE
+    """The processes that share the run."""
+
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
+        self.options = options
+        self.problem = problem
+
+    def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
+        """What solves Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
+
+        ``stiffness`` (N, N) is symmetric and has this rank's cells alone.
+        """
+        return FactorisedExtension(stiffness, held)
+
+    @abstractmethod
+    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        """The fluid that was at rest when its bodies were set in motion with ``twist``, and its kinetic energy."""
+
+    @abstractmethod
+    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+        """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+
+    @abstractmethod
+    def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
+        """How the twists answer in this ``step`` to each of c ``impulses`` (c, n, d+k) on the free bodies
+        [force·time | force·length·time]; asked of backends with a mesh alone."""
+
+    @abstractmethod
+    def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
+        """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
+
+    @abstractmethod
+    def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
+        """Velocity and pressure for output."""
+
+    @abstractmethod
+    def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
+
+    @abstractmethod
+    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+        """How many unknowns one step solves for on this mesh, with these bodies' twists given."""
+
+    @abstractmethod
+    def forget(self) -> None:
+        """Drop every cache, so that the next step depends on the given state alone (called at each checkpoint)."""

@@ -1,0 +1,175 @@
+"""How a few bodies in a fluid answer to their contacts within a step: with a mass matrix and a friction matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """When the bodies of some velocities were asked for their answers: ``tightness`` (c,) of their contacts [1], and
+    the ``velocity`` (c,) itself."""
+
+    tightness: FloatArray
+    velocity: FloatArray
+
+    @property
+    def arrays(self) -> tuple[FloatArray, FloatArray]:
+        """Both."""
+        return self.tightness, self.velocity
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedModel:
+    """M dU/dt + R (U - Uⁿ) = Φ + F of some velocities U among those of all bodies.
+
+    M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
+    known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
+    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``asked``: how it was when their
+    bodies were asked. ``shared``: whether far bodies shared questions.
+    """
+
+    velocities: IntArray
+    modes: FloatArray
+    decay: FloatArray
+    asked: Asked
+    shared: bool
+
+    @property
+    def mobility(self) -> FloatArray:
+        """M⁻¹ = X Xᵀ, (c, c) [1/mass]."""
+        return self.modes @ self.modes.T
+
+    def mass_times(self, velocity: FloatArray) -> FloatArray:
+        """M U for U (c,)."""
+        inverse = np.linalg.inv(self.modes)
+        return np.asarray(inverse.T @ (inverse @ velocity))
+
+    def answer(self, d0: float, impulse: FloatArray) -> FloatArray:
+        """d₀ (d₀M + R)⁻¹ J for J (c, …): velocities that impulses give, at the end of a BDF step."""
+        share = 1.0 / (1.0 + self.decay / d0)
+        return np.asarray((self.modes * share) @ (self.modes.T @ impulse))
+
+    def friction_times(self, velocity: FloatArray) -> FloatArray:
+        """R U for U (c,)."""
+        inverse = np.linalg.inv(self.modes)
+        return np.asarray(inverse.T @ (self.decay * (inverse @ velocity)))
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
+    ``load`` (c,), its Φ at the end of the step [force | force·length].
+
+    ``load_before`` (c,) is Φ at its start, NaN where it is not known. ``correction`` (c,): of a fluid without inertia,
+    what takes its answer to the end of the path; it answers to the force there, and not to the mean of the step.
+    """
+
+    model: ReducedModel
+    load: FloatArray
+    load_before: FloatArray
+    correction: FloatArray
+
+
+def reduced_model(
+    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, asked: Asked, shared: bool
+) -> ReducedModel:
+    """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
+
+    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer. Both are made symmetric, which
+    W_s is not where the fluid convects; where R would be negative it is zero.
+
+    Parameters
+    ----------
+    velocities : (c,) array
+        Numbers of the components that the matrices are of.
+    by_mass, by_step : (c, c) array
+        W_i and W_s, twists by unit impulses [1/mass].
+    d0 : float
+        Weight of the newest velocity in the step's time derivative [1/time].
+    asked : Asked
+        How it was when the bodies were asked.
+    shared : bool
+        Whether far bodies shared questions: then their errors may leave modes no answer at all, or a negative one.
+
+    Returns
+    -------
+    ReducedModel
+        In its modes.
+    """
+    mass_modes = _root(0.5 * (by_mass + by_mass.T), shared)  # L Lᵀ = W_i: XᵀMX = 1 for X = L
+    answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
+    share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
+    floor = _LEAST_SHARE * float(np.min(by_step.diagonal() / by_mass.diagonal())) if shared else _LEAST
+    decay = d0 * np.maximum(1.0 / np.maximum(share, floor) - 1.0, 0.0)
+    return ReducedModel(velocities, mass_modes @ turn, decay, asked, shared)
+
+
+def _root(matrix: FloatArray, shared: bool) -> FloatArray:
+    """L with L Lᵀ the matrix."""
+    value, vector = np.linalg.eigh(matrix)
+    floor = _LEAST_SHARE * float(matrix.diagonal().min()) if shared else _LEAST * value.max()
+    return np.asarray(vector * np.sqrt(np.maximum(value, floor)))
+
+
+_LEAST = 1e-12
+"""Less of the inviscid answer than this is the rounding of none."""
+
+_LEAST_SHARE = 0.1
+"""Of the least answer of a single velocity, what a mode of many has at least where questions were shared."""
+
+
+def load_within(
+    model: ReducedModel,
+    derivative: FloatArray,
+    twists: tuple[FloatArray, FloatArray, FloatArray],
+    impulses: tuple[FloatArray, FloatArray],
+) -> FloatArray:
+    """Φ = M (d₀Uⁿ⁺¹ + d₁Uⁿ + d₂Uⁿ⁻¹) + R (Uⁿ⁺¹ - Uⁿ) - d₀Jⁿ⁺¹ + d₂Jⁿ, all but the contacts, read from a solved step.
+
+    The fluid's Uⁿ⁺¹ is linear in J by W_s, so that Φ does not depend on J.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        With M and R at the end of the step.
+    derivative : (3,) array
+        d₀, d₁, d₂ [1/time].
+    twists : arrays (c,)
+        The model's velocities Uⁿ⁺¹, Uⁿ, Uⁿ⁻¹.
+    impulses : arrays (c,)
+        Jⁿ⁺¹, Jⁿ.
+
+    Returns
+    -------
+    (c,) array
+        Φ [force | force·length].
+    """
+    d0, d1, d2 = derivative
+    new, now, past = twists
+    inertia = model.mass_times(d0 * new + d1 * now + d2 * past)
+    return np.asarray(inertia + model.friction_times(new - now) - d0 * impulses[0] + d2 * impulses[1])
+
+
+def expected_load(model: ReducedModel, change: FloatArray, impulse: FloatArray, step: float) -> FloatArray:
+    """Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 as it was in the latest step, before there is a better one.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Now.
+    change, impulse : (c,) array
+        Uⁿ - Uⁿ⁻¹, and what contacts gave then.
+    step : float
+        Δt of that step [time].
+
+    Returns
+    -------
+    (c,) array
+        Φ [force | force·length].
+    """
+    return np.asarray((model.mass_times(change) - impulse) / step - 0.5 * model.friction_times(change))

@@ -1,0 +1,68 @@
+"""All that a run remembers between two steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.types import Contacts, FloatArray, FluidState, Mesh, Pose, Twist, Wrench
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The mesh that the last re-meshing made: the domain of the mesh map, with the ``pose`` and nearest ``gaps`` (n,)
+    of the bodies there, its worst cell's ``quality``, and the ``tick`` when it was made."""
+
+    mesh: Mesh
+    pose: Pose
+    gaps: FloatArray
+    quality: float
+    tick: int
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """One step earlier: what second order in time needs."""
+
+    pose: Pose
+    twist: Twist
+    step: float
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """An accepted state.
+
+    ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
+    a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
+    wrenches are those that led to the present twist. ``remesh_failed``: the tick at which this mesh could not be made
+    anew, None if it has not been tried.
+    """
+
+    tick: int
+    count: int
+    level: int | None
+    pose: Pose
+    twist: Twist
+    past: Past | None
+    mesh: Mesh | None
+    reference: Reference | None
+    fluid: FluidState
+    coupling: Coupling | None
+    contacts: Contacts
+    gaps: FloatArray
+    hydrodynamic_wrench: Wrench
+    contact_wrench: Wrench
+    ledger: Ledger
+    remesh_failed: int | None = None
+
+    @property
+    def past_twist(self) -> Twist | None:
+        """Twist one step earlier, None at the start."""
+        return None if self.past is None else self.past.twist
+
+    @property
+    def past_step(self) -> float | None:
+        """Size of the latest step [time], None at the start."""
+        return None if self.past is None else self.past.step

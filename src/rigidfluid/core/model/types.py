@@ -1,0 +1,252 @@
+"""The data that travels through the loop: frozen records of arrays.
+
+Shapes: ``n`` bodies, ``d`` space dimensions, ``k`` rotational degrees of freedom (1 in 2D, 3 in 3D),
+``m`` contacts, ``q`` components of an orientation (1, an angle, in 2D; 4, a scalar-first unit quaternion, in 3D).
+Surfaces are numbered through: bodies 0 … n-1, then the faces of the domain n, n+1, …
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidfluid.core.model.ranks import ALONE, Ranks
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+FluidState = Mapping[str, FloatArray]
+"""What a fluid backend remembers between steps, as named arrays, so that a checkpoint can hold it as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where the bodies are: ``position`` (n, d) [length], ``orientation`` (n, q) [rad | 1]."""
+
+    position: FloatArray
+    orientation: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Twist:
+    """How the bodies move: ``velocity`` (n, d) [length/time], ``angular_velocity`` (n, k) [rad/time]."""
+
+    velocity: FloatArray
+    angular_velocity: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Wrench:
+    """What acts on the bodies: ``force`` (n, d) [force], ``torque`` (n, k) about the centre of mass [force·length]."""
+
+    force: FloatArray
+    torque: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """Pairs of surfaces near each other; ``normal`` points from b to a, so ``point_a = point_b + gap * normal``.
+
+    ``body_a`` (m,) is always a body, ``body_b`` (m,) a body or a wall (its surface number);
+    ``point_a``, ``point_b``, ``normal`` (m, d); ``gap`` (m,) [length], negative where they overlap;
+    ``radius_a``, ``radius_b`` (m,) radii of curvature [length], infinite on a flat wall, NaN where not known.
+    """
+
+    body_a: IntArray
+    body_b: IntArray
+    point_a: FloatArray
+    point_b: FloatArray
+    normal: FloatArray
+    gap: FloatArray
+    radius_a: FloatArray
+    radius_b: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.gap)
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How the surfaces of each contact move, for forces that depend on it.
+
+    ``velocity`` (m, d) of a relative to b, both as rigid bodies, half-way between the contact points [length/time];
+    ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass].
+    """
+
+    velocity: FloatArray
+    mass: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Loads:
+    """What the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
+
+    Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
+    submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
+    ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
+    where its twist is given.
+    """
+
+    mass: FloatArray
+    weight: FloatArray
+    speed: FloatArray
+    stacked_weight: FloatArray
+    stacked_energy: FloatArray
+    smallest_gap: float
+
+
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """A flat wall that repels: ``surface`` number, a ``point`` (d,) on it, unit ``normal`` (d,) into the fluid."""
+
+    surface: int
+    name: str
+    point: FloatArray
+    normal: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class MeshPart:
+    """Where the part of a mesh that one process holds stands in the whole.
+
+    A part has cells of its own and all their vertices; those on a border are in several parts, and ``owned`` (N,) by
+    the one of lowest rank. ``vertices`` (N,), ``cells`` (M,), ``facets`` (F,): numbers in the whole mesh;
+    ``counts`` (3,): how many vertices, cells and facets that has. ``ranks``: the processes that hold the parts.
+    """
+
+    ranks: Ranks
+    vertices: IntArray
+    cells: IntArray
+    facets: IntArray
+    owned: BoolArray
+    counts: IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Straight simplices: ``points`` (N, d) [length], ``cells`` (M, d+1), boundary ``facets`` (F, d) and
+    ``markers`` (F,), the number of the surface that each facet lies on. ``part`` is None where it is the whole mesh."""
+
+    points: FloatArray
+    cells: IntArray
+    facets: IntArray
+    markers: IntArray
+    part: MeshPart | None = None
+
+    @property
+    def ranks(self) -> Ranks:
+        """The processes that hold the whole mesh together."""
+        return ALONE if self.part is None else self.part.ranks
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryCondition:
+    """What holds on one face of the domain.
+
+    ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity; ``slip``: no flow through, no
+    traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress is -p, no flow along the face.
+    ``normal`` (d,) points into the fluid.
+    """
+
+    surface: int
+    name: str
+    type: Literal["wall", "velocity", "slip", "pressure"]
+    normal: FloatArray
+    value: Callable[[float, FloatArray], FloatArray] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FluidProblem:
+    """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
+
+    With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` face the pressure has zero mean.
+    ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions.
+    """
+
+    dimension: int
+    bodies: int
+    density: float
+    dynamic_viscosity: float
+    inertia: bool
+    conditions: tuple[BoundaryCondition, ...]
+    source: Callable[[float, FloatArray], FloatArray] | None = None
+
+    @property
+    def inert_density(self) -> float:
+        """The density in the left side: 0 in Stokes flow."""
+        return self.density if self.inertia else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """All that a backend needs to go one step on; the time scheme is in the weights, not in the backend.
+
+    ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
+    uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
+    ``points`` (N, d): the mesh at the new time; None without a mesh, and for responses on the present one.
+    Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
+    wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
+    In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
+    [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
+    What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
+    convects; it is zero but for steps in which contacts turn bodies around.
+    """
+
+    time: float
+    derivative: FloatArray
+    extrapolation: FloatArray
+    pose: Pose
+    points: FloatArray | None
+    mass_matrix: FloatArray
+    load: FloatArray
+    controlled: BoolArray
+    controlled_twist: FloatArray
+    impulse: FloatArray
+    load_scale: float
+    turning: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """How the twists of all bodies answer to impulses on them, (c, n, d+k) each for c impulses.
+
+    ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end
+    of a step, by its own matrix, viscosity in it.
+    """
+
+    by_mass: FloatArray
+    by_step: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Advance:
+    """What a backend returns from one step: its candidate state, the bodies' twist, and the fluid's own figures.
+
+    ``hydrodynamic_wrench`` is the fluid's force and torque alone, without buoyancy, weight or contact.
+    ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
+    [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's faces [energy/time].
+    """
+
+    fluid: FluidState
+    twist: Twist
+    hydrodynamic_wrench: Wrench
+    kinetic_energy: float
+    dissipation: float
+    dissipation_midway: float
+    boundary_power: float
+
+
+@dataclass(frozen=True, slots=True)
+class Fields:
+    """Nodal fields for output: ``points`` (N, d), quadratic ``cells`` (M, 6 | 10) in VTK's order, ``velocity`` (N, d),
+    ``pressure`` (N,)."""
+
+    points: FloatArray
+    cells: IntArray
+    velocity: FloatArray
+    pressure: FloatArray

@@ -1,0 +1,121 @@
+"""A state on disk: every array of the record tree, by its path, in one HDF5 file that is replaced as a whole.
+
+Each rank has a file of its own. The ranks themselves are not stored: who reads a part of a mesh names them.
+"""
+
+from __future__ import annotations
+
+import io
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.state import State
+from rigidfluid.core.output.extremes import Extremes
+from rigidfluid.errors import OutputError
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """What a rank of a run needs to go on: its ``state``, the ``scene`` as JSON, the ``times`` of its outputs, the
+    ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
+
+    state: State
+    scene: str
+    times: tuple[float, ...]
+    lengths: Mapping[str, int]
+    seconds: Mapping[str, float]
+    rejected: int
+    unsettled: int
+    remeshes: int
+    failed_remeshes: int
+    elapsed: float
+    extremes: Extremes
+    ranks: int
+
+
+def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Write beside ``path``, so that a run killed in the middle leaves the checkpoint before.
+
+    The file is made in memory: on a full disk HDF5's own writing does not fail, it crashes.
+    """
+    image = io.BytesIO()
+    with h5py.File(image, "w") as file:
+        _store(file, checkpoint)
+    _staged(path).write_bytes(image.getbuffer())
+
+
+def adopt_checkpoint(path: Path) -> None:
+    """Put what was staged in the place of the checkpoint before."""
+    _staged(path).replace(path)
+
+
+def read_staged(path: Path, ranks: Ranks) -> Checkpoint:
+    """What was staged for ``path`` and not put in its place; raises OutputError as read_checkpoint does."""
+    return read_checkpoint(_staged(path), ranks)
+
+
+def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
+    """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
+    if not path.is_file():
+        raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
+    try:
+        with h5py.File(path, "r") as file:
+            checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
+    except (OSError, AttributeError, TypeError) as error:
+        raise OutputError(
+            str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
+        ) from error
+    return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def _staged(path: Path) -> Path:
+    return path.with_name(path.name + ".part")
+
+
+def _with_shared_cells(state: State) -> State:
+    """A moved mesh has the very cells of its reference: backends know a topology by its array."""
+    if state.mesh is None or state.reference is None:
+        return state
+    return replace(state, mesh=replace(state.reference.mesh, points=state.mesh.points))
+
+
+def _store(group: h5py.Group, record: Any) -> None:
+    names = record if isinstance(record, Mapping) else [field.name for field in fields(record)]
+    for name in names:
+        value = record[name] if isinstance(record, Mapping) else getattr(record, name)
+        if is_dataclass(value) or isinstance(value, Mapping):
+            _store(group.create_group(name), value)
+        elif value is not None and not isinstance(value, Ranks):
+            group.create_dataset(name, data=value)
+
+
+def _load(group: h5py.Group, kind: Any, ranks: Ranks) -> Any:
+    hints = typing.get_type_hints(kind)
+    return kind(**{name: _value(group.get(name), hint, ranks) for name, hint in hints.items()})
+
+
+def _value(stored: Any, hint: Any, ranks: Ranks) -> Any:
+    if hint is Ranks:
+        return ranks
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        if stored is None:
+            return None
+        hint = next(option for option in typing.get_args(hint) if option is not type(None))
+    if is_dataclass(hint):
+        return _load(stored, hint, ranks)
+    if typing.get_origin(hint) is not None and issubclass(typing.get_origin(hint), Mapping):
+        inner = typing.get_args(hint)[1]
+        return {name: _value(item, inner, ranks) for name, item in stored.items()}
+    if hint is str:
+        return stored.asstr()[()]
+    if typing.get_origin(hint) is tuple:
+        return tuple(stored[()].tolist())
+    return hint(stored[()]) if hint in (int, float, bool) else np.asarray(stored[()])

@@ -1,0 +1,101 @@
+"""The results of a run: tables and summary, the same in memory and on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidfluid.core.output.records import Records, Row, columns
+from rigidfluid.core.output.tables import read_columns, read_rows, table_path
+from rigidfluid.errors import OutputError
+
+
+class History:
+    """Tables ``bodies``, ``contacts``, ``energy`` and ``probes``, and the ``summary`` of summary.json.
+
+    Parameters
+    ----------
+    dimension : int
+        2 or 3; it decides the columns.
+    records : Records, optional
+        Rows to start with.
+    folder : Path, optional
+        Where a run writes its tables. No row is then held in memory: each table is read when it is asked for, and a
+        later run in the same folder replaces it.
+    """
+
+    def __init__(self, dimension: int, records: Records | None = None, folder: Path | None = None) -> None:
+        self.dimension = dimension
+        self.summary: dict[str, Any] = {}
+        self._rows: Records = records or {}
+        self._folder = folder
+
+    @property
+    def records(self) -> Records:
+        """All rows by table name; raises OutputError as `table` does."""
+        if self._folder is None:
+            return self._rows
+        return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension)}
+
+    def extend(self, records: Records) -> None:
+        """Append the rows of one state, unless a writer puts them on disk."""
+        if self._folder is None:
+            for name, rows in records.items():
+                self._rows.setdefault(name, []).extend(rows)
+
+    def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
+        """One table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
+
+        Raises
+        ------
+        OutputError
+            If the table is on disk and cannot be read.
+        """
+        names = columns(self.dimension)[name]
+        wanted = tuple(names if only is None else only)
+        if self._folder is not None:
+            path = table_path(self._folder, name)
+            with _reading(path):
+                return read_columns(path, wanted)
+        rows = self._rows.get(name, [])
+        return {column: np.array([row[i] for row in rows]) for i, column in enumerate(names) if column in wanted}
+
+    @property
+    def bodies(self) -> dict[str, NDArray[Any]]:
+        """The table of bodies.csv: a row per body and accepted step."""
+        return self.table("bodies")
+
+    @property
+    def contacts(self) -> dict[str, NDArray[Any]]:
+        """The table of contacts.csv: a row per contact within range."""
+        return self.table("contacts")
+
+    @property
+    def energy(self) -> dict[str, NDArray[Any]]:
+        """The table of energy.csv: a row per accepted step."""
+        return self.table("energy")
+
+    @property
+    def probes(self) -> dict[str, NDArray[Any]]:
+        """The table of probes.csv: a row per probe and accepted step."""
+        return self.table("probes")
+
+
+def _rows(path: Path) -> list[Row]:
+    with _reading(path):
+        return read_rows(path)
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a table into an OutputError that names the file."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        remedy = "Restore the file, or run the scene anew."
+        raise OutputError(str(path), error, "a table as a run has written it", remedy) from error

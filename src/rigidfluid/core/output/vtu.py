@@ -1,0 +1,168 @@
+"""Fields for ParaView: one VTU file per output time on the mesh of that time, and a PVD file that lists them.
+
+Where ranks share the mesh, each writes a VTU file of its cells, and a PVTU file lists those of one time.
+"""
+
+from __future__ import annotations
+
+import base64
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidfluid.core.model.types import Fields
+from rigidfluid.errors import OutputError
+
+_QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
+_DIMENSIONS = {6: 2, 10: 3}
+_TYPES = {"f4": "Float32", "f8": "Float64", "i8": "Int64", "u1": "UInt8"}
+_HEADER = 8  # bytes that say how long an array is
+
+
+def write_vtu(path: Path, fields: Fields) -> None:
+    """Write quadratic cells with ``velocity`` (3 components) and ``pressure`` at their nodes."""
+    nodes, cells = len(fields.points), len(fields.cells)
+    root = ET.Element(
+        "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
+    )
+    piece = ET.SubElement(
+        ET.SubElement(root, "UnstructuredGrid"), "Piece", NumberOfPoints=str(nodes), NumberOfCells=str(cells)
+    )
+    _array(ET.SubElement(piece, "Points"), "points", _in_space(fields.points).astype("<f8"))
+    topology = ET.SubElement(piece, "Cells")
+    width = fields.cells.shape[1]
+    _array(topology, "connectivity", fields.cells.astype("<i8").ravel())
+    _array(topology, "offsets", np.arange(width, width * cells + 1, width, dtype="<i8"))
+    _array(topology, "types", np.full(cells, _QUADRATIC[width], dtype="u1"))
+    data = ET.SubElement(piece, "PointData", Vectors="velocity", Scalars="pressure")
+    _array(data, "velocity", _in_space(fields.velocity).astype("<f4"))
+    _array(data, "pressure", fields.pressure.astype("<f4"))
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def write_pvtu(path: Path, pieces: Sequence[str]) -> None:
+    """List the VTU files of one time, their names relative to this one's folder."""
+    root = ET.Element(
+        "VTKFile", type="PUnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
+    )
+    grid = ET.SubElement(root, "PUnstructuredGrid", GhostLevel="0")
+    points = ET.SubElement(grid, "PPoints")
+    ET.SubElement(points, "PDataArray", type="Float64", Name="points", NumberOfComponents="3")
+    data = ET.SubElement(grid, "PPointData", Vectors="velocity", Scalars="pressure")
+    ET.SubElement(data, "PDataArray", type="Float32", Name="velocity", NumberOfComponents="3")
+    ET.SubElement(data, "PDataArray", type="Float32", Name="pressure")
+    for piece in pieces:
+        ET.SubElement(grid, "Piece", Source=piece)
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
+    """List VTU or PVTU files with their times; ParaView opens them as one series, the mesh changing in time."""
+    root = ET.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
+    collection = ET.SubElement(root, "Collection")
+    for time, file in zip(times, files, strict=True):
+        ET.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=file)
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def read_vtu(path: Path) -> Fields:
+    """Read back what `write_vtu` has written; velocity and pressure are as precise as on disk, 7 digits.
+
+    The pieces that a PVTU file lists become one mesh.
+
+    Raises
+    ------
+    OutputError
+        Where the file is missing or is not of that kind.
+    """
+    if path.suffix == ".pvtu":
+        with _reading(path):
+            pieces = [path.parent / piece.attrib["Source"] for piece in ET.parse(path).iter("Piece")]
+        return _joined([read_vtu(piece) for piece in pieces])
+    with _reading(path):
+        arrays = {array.get("Name"): _values(array) for array in ET.parse(path).iter("DataArray")}
+        nodes, cells = len(arrays["points"]), len(arrays["types"])
+        connectivity = arrays["connectivity"].reshape(cells, -1).astype(np.int64)
+        dimension = _DIMENSIONS[connectivity.shape[1]]
+        return Fields(
+            points=arrays["points"][:, :dimension].astype(np.float64),
+            cells=connectivity,
+            velocity=arrays["velocity"].reshape(nodes, 3)[:, :dimension].astype(np.float64),
+            pressure=arrays["pressure"].reshape(nodes).astype(np.float64),
+        )
+
+
+def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
+    """Times and files of a series, in order.
+
+    Raises
+    ------
+    OutputError
+        Where the list is missing or cannot be read.
+    """
+    with _reading(path):
+        sets = list(ET.parse(path).iter("DataSet"))
+        return tuple((float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in sets)
+
+
+def _joined(pieces: Sequence[Fields]) -> Fields:
+    """One mesh, with a single node where several pieces have the same to rounding."""
+    from scipy.spatial import cKDTree
+
+    points = np.concatenate([piece.points for piece in pieces])
+    first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
+    cells = np.concatenate([piece.cells + start for piece, start in zip(pieces, first[:-1], strict=True)])
+    same = cKDTree(points).query_pairs(1e-9 * float(np.ptp(points)), output_type="ndarray")
+    stands_for = np.arange(len(points))
+    np.minimum.at(stands_for, same[:, 1], same[:, 0])
+    kept, number = np.unique(stands_for, return_inverse=True)
+    return Fields(
+        points=points[kept],
+        cells=number[cells],
+        velocity=np.concatenate([piece.velocity for piece in pieces])[kept],
+        pressure=np.concatenate([piece.pressure for piece in pieces])[kept],
+    )
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a file into an OutputError that names it."""
+    try:
+        yield
+    except (OSError, ET.ParseError, KeyError, ValueError) as error:
+        raise OutputError(
+            str(path),
+            f"a file that cannot be read ({type(error).__name__}: {error})",
+            "a file that rigidfluid has written",
+            "Run the scene again, or go on with --resume.",
+        ) from error
+
+
+def _values(element: ET.Element) -> NDArray[Any]:
+    """The numbers of one inline binary array, (N,) or (N, components)."""
+    raw = base64.b64decode(element.text or "", validate=True)
+    if len(raw) < _HEADER or len(raw) != _HEADER + int.from_bytes(raw[:_HEADER], "little"):
+        raise ValueError(f"array {element.get('Name')} is cut off")
+    kind = {vtk: numpy for numpy, vtk in _TYPES.items()}[element.attrib["type"]]
+    values = np.frombuffer(raw, dtype="<" + kind, offset=_HEADER)
+    components = element.get("NumberOfComponents")
+    return values if components is None else values.reshape(-1, int(components))
+
+
+def _array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
+    kind = _TYPES[values.dtype.str[1:]]
+    element = ET.SubElement(parent, "DataArray", type=kind, Name=name, format="binary")
+    if values.ndim == 2:
+        element.set("NumberOfComponents", str(values.shape[1]))
+    raw = np.ascontiguousarray(values).tobytes()
+    element.text = base64.b64encode(len(raw).to_bytes(_HEADER, "little") + raw).decode("ascii")
+
+
+def _in_space(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """ParaView's points and vectors have three components."""
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))

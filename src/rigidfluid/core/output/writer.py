@@ -1,0 +1,206 @@
+"""Puts a run on disk as it goes: tables each step, fields and a checkpoint each output, the summary at the end.
+
+Of a run that ranks share each writes its part of the fields and its checkpoint, and the root all that is there once.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any, TextIO
+
+from rigidfluid.core.model.ranks import ROOT, Ranks
+from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.checkpoint import (
+    Checkpoint,
+    adopt_checkpoint,
+    read_checkpoint,
+    read_staged,
+    stage_checkpoint,
+)
+from rigidfluid.core.output.records import Records, columns
+from rigidfluid.core.output.run_folder import clear, locked, refuse_foreign
+from rigidfluid.core.output.tables import Table, table_path
+from rigidfluid.core.output.vtu import write_pvd, write_pvtu, write_vtu
+from rigidfluid.errors import OutputError
+
+CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
+
+
+class Writer:
+    """The files of one run; every method is called by all ranks together.
+
+    Parameters
+    ----------
+    out : Path
+        Their folder; made if it is not there.
+    dimension : int
+        2 or 3.
+    resumed : Checkpoint or None
+        Where an earlier run is taken up; None starts all files anew.
+    ranks : Ranks
+        Who shares the run.
+
+    Raises
+    ------
+    OutputError
+        From every method, where the disk refuses; on all ranks if it does on one. At the start also where another run
+        is writing there, or files of these names are not a run's.
+    """
+
+    def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None, ranks: Ranks) -> None:
+        self.out, self._ranks = out, ranks
+        self._tables: dict[str, Table] = {}
+        self._mark: TextIO | None = None
+        with ExitStack() as undo:
+            undo.callback(self.close)
+            self._start(dimension, resumed)
+            undo.pop_all()
+
+    def _start(self, dimension: int, resumed: Checkpoint | None) -> None:
+        out, lengths = self.out, {} if resumed is None else resumed.lengths
+        with self._writing_once(out) as is_mine:
+            if is_mine:
+                self._mark = _taken(out, anew=resumed is None)
+        for name, names in columns(dimension).items():
+            path = table_path(out, name)
+            with self._writing_once(path) as is_mine:
+                if is_mine:
+                    self._tables[name] = Table(path, names, lengths.get(name))
+
+    @property
+    def lengths(self) -> dict[str, int]:
+        """Bytes in each table; the root has them all."""
+        return {name: table.length for name, table in self._tables.items()}
+
+    def extend(self, records: Records) -> None:
+        """Append the rows of one state."""
+        with self._ranks.together():
+            for name, table in self._tables.items():
+                with writing(table_path(self.out, name)):
+                    table.extend(records[name])
+
+    def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
+        """Write the fields of the last of ``times``, and the series of all of them."""
+        if self._ranks.size == 1:
+            names, pieces = [f"{FIELDS}/{i:06d}.vtu" for i in range(len(times))], []
+            own = names[-1]
+        else:
+            names = [f"{FIELDS}/{i:06d}.pvtu" for i in range(len(times))]
+            pieces = [f"{len(times) - 1:06d}.{rank}.vtu" for rank in range(self._ranks.size)]
+            own = f"{FIELDS}/{pieces[self._ranks.rank]}"
+        with self._ranks.together(), writing(self.out / own):
+            write_vtu(self.out / own, fields)
+        with self._writing_once(self.out / names[-1]) as is_mine:
+            if is_mine and pieces:
+                write_pvtu(self.out / names[-1], pieces)
+            if is_mine:
+                write_pvd(self.out / SERIES, times, names)
+
+    def checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Replace the checkpoint, no rank before all have written theirs."""
+        path = self.out / checkpoint_name(self._ranks.rank)
+        for work in (partial(stage_checkpoint, path, checkpoint), partial(adopt_checkpoint, path)):
+            with self._ranks.together(), writing(path):
+                work()
+
+    def summary(self, summary: dict[str, Any]) -> None:
+        """Write the summary."""
+        with self._writing_once(self.out / SUMMARY) as is_mine:
+            if is_mine:
+                (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+
+    def close(self) -> None:
+        """Let other runs write to the folder."""
+        if self._mark is not None:
+            self._mark.close()
+
+    @property
+    def files(self) -> list[str]:
+        """The files of a finished run; those with fields are listed in the series."""
+        checkpoints = [checkpoint_name(rank) for rank in range(self._ranks.size)]
+        names = [*(f"{name}.csv" for name in self._tables), SERIES, *checkpoints]
+        present = [str(self.out / name) for name in names if (self.out / name).exists()]
+        return self._ranks.shared([*present, str(self.out / SUMMARY)])
+
+    @contextmanager
+    def _writing_once(self, path: Path) -> Iterator[bool]:
+        """Whether this rank is to write a file that is there once; its failure is everyone's."""
+        with self._ranks.together(), writing(path):
+            yield self._ranks.is_root
+
+
+def _taken(out: Path, anew: bool) -> TextIO:
+    """The folder's lock; of an earlier run there only what is not to be written ``anew`` is left."""
+    if anew:
+        refuse_foreign(out)
+    (out / FIELDS).mkdir(parents=True, exist_ok=True)
+    mark = locked(out)
+    if anew:
+        clear(out)
+    return mark
+
+
+def checkpoint_name(rank: int) -> str:
+    """The file of one rank's checkpoint."""
+    return CHECKPOINT if rank == ROOT else f"state.{rank}.h5"
+
+
+def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
+    """This rank's checkpoint of the run in a folder; called by all ranks together.
+
+    Raises
+    ------
+    OutputError
+        Where there is none, it was written by another number of ranks, or the ranks' files are not of one time.
+    """
+    path = out / checkpoint_name(ranks.rank)
+    for my_turn in (ranks.is_root, not ranks.is_root):
+        with ranks.together():
+            if my_turn:
+                checkpoint = read_checkpoint(path, ranks)
+                _refuse_other_ranks(out, checkpoint.ranks, ranks.size)
+    latest = int(ranks.greatest(checkpoint.state.tick))
+    with ranks.together():
+        return checkpoint if checkpoint.state.tick == latest else _caught_up(path, checkpoint.state.tick, latest, ranks)
+
+
+def _caught_up(path: Path, tick: int, latest: int, ranks: Ranks) -> Checkpoint:
+    """The ``latest`` of a run killed while its ranks replaced their checkpoints; all had staged it before one did."""
+    try:
+        staged = read_staged(path, ranks)
+    except OutputError:
+        staged = None
+    if staged is None or staged.state.tick != latest:
+        found = f"checkpoints of different times, {tick} and {latest} shortest steps after the start"
+        raise OutputError(str(path.parent), found, "one time in the files of all processes", "Run without --resume.")
+    with writing(path):
+        adopt_checkpoint(path)
+    return staged
+
+
+def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
+    if found != now:
+        raise OutputError(
+            str(out),
+            f"a run of {found} {'process' if found == 1 else 'processes'}",
+            f"a run of {now}, as many as there are now",
+            f"Resume it with {found}, or run without --resume.",
+        )
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn the operating system's refusal into an OutputError that names the file."""
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(
+            str(path),
+            error.strerror or str(error),
+            "a folder that can be written to, on a disk with room",
+            "Choose another --out, or make room and go on with --resume.",
+        ) from error

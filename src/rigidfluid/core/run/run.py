@@ -1,0 +1,85 @@
+"""Runs a scene from its start, or from a checkpoint, to its end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing, suppress
+from pathlib import Path
+
+from rigidfluid.core.model.foreign import no_exit
+from rigidfluid.core.output.history import History
+from rigidfluid.core.run.simulation import Progress, Simulation
+from rigidfluid.core.run.threads import one_openblas_thread
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.errors import OutputError, RigidfluidError
+
+__all__ = ["Progress", "run"]
+
+
+def run(
+    scene: Scene,
+    out: Path | None = None,
+    *,
+    resume: bool = False,
+    progress: Callable[[Progress], None] | None = None,
+    processes: int | None = None,
+    finished: Callable[[History], None] | None = None,
+) -> History:
+    """Run a scene to its end.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `load_scene` or `Scene.from_dict`.
+    out : Path or None
+        Folder for the results; None keeps them in memory alone.
+    resume : bool
+        Go on from the checkpoint in ``out``; the result equals that of an uninterrupted run to the last bit, unless
+        several processes share the run and its backend's factors depend on the order of their messages.
+    progress : callable or None
+        Called after each accepted step.
+    processes : int or None
+        How many processes were started to share the run, each calling this; a backend that cannot share it among so
+        many is refused. None takes the backend's word.
+    finished : callable or None
+        Called with the results once they are summed up, also where the run then raises what stopped it.
+
+    Returns
+    -------
+    History
+        Tables and summary, the same that ``out`` holds, and read from there when they are asked for; also where the run
+        is shared, on all ranks.
+
+    Raises
+    ------
+    SceneError, PluginError, MeshError
+        Before anything is written; PluginError also where a part gives what cannot be, or exits.
+    OutputError
+        Where the disk refuses, there is nothing to resume, or ``out`` is another run's or not a run's.
+    StepError
+        Where even the shortest step fails; what was computed stays, and can be resumed.
+
+    Any other error, as that of a plug-in, leaves a summary too.
+    """
+    folder = None if out is None else Path(out)
+    with one_openblas_thread(), no_exit(), closing(Simulation(scene, folder, resume, processes)) as simulation:
+        told = finished or (lambda _: None)
+        try:
+            with no_exit():
+                simulation.go(progress)
+        except BaseException as error:
+            if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
+                with suppress(OutputError):  # a full disk has been reported once
+                    simulation.finish(status=_status(error))
+                told(simulation.history)
+            raise
+        simulation.finish(status="complete")
+        told(simulation.history)
+    return simulation.history
+
+
+def _status(error: BaseException) -> str:
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted"
+    kind = "" if isinstance(error, RigidfluidError) else f"{type(error).__name__}: "
+    return f"stopped: {kind}{error}"

@@ -1,0 +1,159 @@
+"""One attempted step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.contact.contact_path import BodiesPath
+from rigidfluid.core.contact.convection import turning
+from rigidfluid.core.contact.proximity import refuse_overlap, surroundings
+from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
+from rigidfluid.core.mechanics.wrenches import flat, power
+from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.model.energy import Power, Work, kinetic_energy
+from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
+from rigidfluid.core.model.state import Past, State
+from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.stopwatch import Stopwatch
+from rigidfluid.core.setup.system import System
+
+CLOSEST_APPROACH = 0.5
+"""A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
+
+WIDEST_OPENING = 2.0
+"""A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
+
+
+def attempt(
+    system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int, path: BodiesPath
+) -> tuple[State, Step]:
+    """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
+
+    Raises
+    ------
+    StepRejected
+        When bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
+    """
+    size = clock.size(level)
+    time = clock.time(state.tick + clock.ticks(level))
+    pose = path.pose
+    refuse_lost_pose(system.surfaces, pose)
+    with watch("move mesh"):
+        mesh = mover.moved(state, pose)
+    with watch("detect"):
+        contacts, gaps = surroundings(system, pose, mesh)
+        nearest = int(np.argmin(gaps))
+        refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
+    with watch("advance"), system.backend.ranks.together():
+        step = step_to(system, state, time, size, pose, path.impulse, mesh)
+        if path.coupling is not None:
+            step.load.flat[path.coupling.model.velocities] += path.coupling.correction
+            step = replace(step, turning=turning(system, state, path, step))
+        advance = system.backend.advance(state.fluid, state.mesh, step)
+        refuse_lost_advance(system.surfaces, advance, state.pose)
+    candidate = State(
+        tick=state.tick + clock.ticks(level),
+        count=state.count + 1,
+        level=level,
+        pose=pose,
+        twist=advance.twist,
+        past=Past(state.pose, state.twist, size),
+        mesh=mesh,
+        reference=state.reference,
+        fluid=advance.fluid,
+        coupling=None,
+        contacts=contacts,
+        gaps=gaps,
+        hydrodynamic_wrench=advance.hydrodynamic_wrench,
+        contact_wrench=Wrench(path.impulse.force / size, path.impulse.torque / size),
+        ledger=state.ledger.after(
+            size,
+            _power(system, advance),
+            _work(system, state, path),
+            advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
+            contact_energy(system, contacts),
+        ),
+        remesh_failed=state.remesh_failed,
+    )
+    return candidate, step
+
+
+def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
+    """Kinetic energy of the free bodies; what a hand drives has no energy of its own in the balance."""
+    free = ~system.controlled
+    return kinetic_energy(system.mass * free, system.inertia * free[:, None, None], pose, twist)
+
+
+def contact_energy(system: System, contacts: Contacts) -> float:
+    """Stored in the contacts [energy]."""
+    if system.law is None or len(contacts) == 0:
+        return 0.0
+    energy = system.law.energy(contacts)
+    refuse_no_number("contacts", "energy", energy, "contact.law")
+    return float(np.sum(energy))
+
+
+def step_to(
+    system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
+) -> Step:
+    """The step of this ``size`` that ends at ``time`` with the bodies at ``pose``, after ``impulse`` by contacts."""
+    derivative = derivative_weights(size, state.past_step)
+    poses, twists = [state.pose], [state.twist]
+    if state.past is not None:
+        poses.append(state.past.pose)
+        twists.append(state.past.twist)
+    pushed = _mean_push(state, impulse, derivative)
+    wrench = Wrench(pushed.force + system.weight, pushed.torque)
+    mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
+    return Step(
+        time=time,
+        derivative=derivative,
+        extrapolation=extrapolation_weights(size, state.past_step),
+        pose=pose,
+        points=None if mesh is None else mesh.points,
+        mass_matrix=mass_matrix,
+        load=load,
+        controlled=system.controlled,
+        controlled_twist=system.controlled_twist(time),
+        impulse=flat(impulse),
+        load_scale=_load_scale(system, impulse, derivative),
+        turning=np.zeros_like(load),
+    )
+
+
+def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
+    """A hundredth of weight and contacts, which cancel each other at rest [force].
+
+    What remains of them is rounding, and no residual can be made small beside it.
+    """
+    free = ~system.controlled
+    pushed = derivative[0] * np.linalg.norm(impulse.force[free])
+    return float(0.01 * max(np.linalg.norm(system.weight[free]), pushed))
+
+
+def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
+    """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
+
+    It is what differencing momentum less the impulses received so far comes to: a blow shorter than the step changes
+    the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
+    """
+    latest, before = state.contact_wrench, state.past_step or 0.0
+    return Wrench(
+        derivative[0] * impulse.force - derivative[2] * before * latest.force,
+        derivative[0] * impulse.torque - derivative[2] * before * latest.torque,
+    )
+
+
+def _power(system: System, advance: Advance) -> Power:
+    """What enters by the faces, what drives bodies through the fluid, and what the fluid dissipates."""
+    driven = power(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
+    return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
+
+
+def _work(system: System, state: State, path: BodiesPath) -> Work:
+    """Of the submerged weight of the free bodies, of the hands against the contacts, and of dampers in contacts."""
+    fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
+    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)

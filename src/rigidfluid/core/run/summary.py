@@ -1,0 +1,113 @@
+"""The summary of a run: the figures that matter, and what they cost."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
+from rigidfluid.core.output.records import LEDGER_COLUMNS
+from rigidfluid.core.run.memory import peak_memory
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.system import System
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.simulation import Simulation
+
+_PACKAGES = (
+    *("rigidfluid", "numpy", "scipy", "numba", "scikit-fem", "pypardiso", "netgen-mesher", "mmgpy", "h5py"),
+    *("fenics-dolfinx", "petsc4py", "mpi4py", "ngsolve"),
+)
+FIGURES = (
+    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
+    *("failed_remeshes", "wall_time", "wall_time_per_stage"),
+    *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
+)
+"""Keys of summary.json that hold numbers of a run, or tables and lists of them."""
+ACCOUNT = ("put_in", "created", "lost", "unaccounted")
+ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
+"""Keys of its table ``energy``."""
+
+
+def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
+    """All of summary.json but the list of files."""
+    state, system, extremes = simulation.state, simulation.system, simulation.extremes
+    return {
+        "status": status,
+        "scene": simulation.scene.to_dict(),
+        "seed": simulation.scene.scene.seed,
+        "versions": versions(),
+        "time": simulation.clock.time(state.tick),
+        "unknowns": system.backend.unknowns(state.mesh, system.controlled),
+        "cells": 0 if state.mesh is None else _cells(state.mesh),
+        "ranks": system.backend.ranks.size,
+        "steps": state.count,
+        "rejected_steps": simulation.rejected,
+        "unsettled_steps": simulation.unsettled,
+        "remeshes": simulation.remeshes,
+        "failed_remeshes": simulation.failed_remeshes,
+        "wall_time": simulation.elapsed,
+        "wall_time_per_stage": simulation.watch.seconds,
+        "peak_memory": _of_all(system.backend.ranks, peak_memory()),
+        **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
+        "smallest_gap": _finite(extremes.smallest_gap),
+        "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
+        "energy": energy_balance(state.ledger, energy_account(simulation.history.energy)),
+        "auto_epsilon": chosen_strengths(system),
+    }
+
+
+def _cells(mesh: Mesh) -> int:
+    """Of the whole mesh."""
+    return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
+
+
+def _of_all(ranks: Ranks, memory: int | None) -> int | None:
+    """The sum over the processes, where each knows its own [byte]."""
+    each = [part for part in ranks.gathered(memory) if part is not None]
+    return sum(each) if len(each) == ranks.size else None
+
+
+def _finite(value: float) -> float | None:
+    """The number, or None where it is infinite: JSON knows no infinity."""
+    return float(value) if np.isfinite(value) else None
+
+
+def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[str, float | None]:
+    """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
+
+    ``speeds`` (n,) are the highest |v|. R is the radius of a ball, of other shapes that of the smallest ball around
+    them. None without a fluid.
+    """
+    if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
+        return {"reynolds_solid_density": None, "reynolds": None}
+    per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
+    solid = np.array([body.density for body in scene.body])
+    return {
+        "reynolds_solid_density": float(np.max(per_density * solid)),
+        "reynolds": float(np.max(per_density) * scene.fluid.density),
+    }
+
+
+def energy_balance(ledger: Ledger, account: EnergyAccount) -> dict[str, float]:
+    """What is stored, what came in, what went out [energy], and what of it came from nowhere or vanished (shares)."""
+    stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
+    return stored | {name: getattr(account, name) for name in ACCOUNT}
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that decide the results, where installed."""
+    found = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    return found

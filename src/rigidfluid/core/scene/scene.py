@@ -1,0 +1,290 @@
+"""What a scene file may say: one model per table, and how a file becomes a `Scene`.
+
+The description of each key ends with its unit in brackets where it has one; the scene reference is made from it.
+Units are free but must be consistent; ``d`` is the dimension.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
+
+from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.parts import resolve
+from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
+from rigidfluid.errors import SceneError
+
+Positive = Annotated[float, Field(gt=0)]
+Vector = tuple[float, ...]
+# In 2D an angular velocity is one number, which stands for a vector of one component.
+Angular = Annotated[
+    Vector,
+    BeforeValidator(
+        lambda value: tuple(value) if isinstance(value, list | tuple) else (value,),
+        json_schema_input_type=float | tuple[float, ...],
+    ),
+]
+Face = Literal["all", "left", "right", "bottom", "top", "back", "front"]
+Condition = Annotated[
+    Literal["wall", "velocity", "pressure", "slip", "symmetry"],
+    AfterValidator(lambda value: "slip" if value == "symmetry" else value),
+]
+
+
+class _Table(BaseModel):
+    """A table whose keys are all given here."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class _OpenTable(_Table):
+    """A table that also holds the keys of the part it names; `rigidfluid.core.setup.parts` validates those."""
+
+    model_config = ConfigDict(extra="allow")
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The keys that belong to the part."""
+        return dict(self.model_extra or {})
+
+
+class SceneTable(_Table):
+    """What the scene is called, and how many dimensions it has."""
+
+    name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the scene; results go to `out/<name>` by default")
+    dimension: Literal[2, 3] = Field(description="Number of space dimensions d")
+    seed: int = Field(default=0, ge=0, description="Seed of all random numbers")
+
+
+class FluidTable(_OpenTable):
+    """The fluid, and the backend that computes it."""
+
+    backend: str = Field(default="scikit-fem", description="Name of a fluid backend; `dry` leaves the fluid out")
+    model: Literal["navier-stokes", "stokes"] = Field(
+        default="navier-stokes", description="Equations of the fluid; `stokes` leaves out its inertia"
+    )
+    density: Positive | None = Field(
+        default=None, description="Density of the fluid; needed by backends with a mesh, else 0 [mass/length^d]"
+    )
+    viscosity: Positive | None = Field(
+        default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
+    )
+    gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+
+
+class DomainTable(_Table):
+    """The region that fluid and bodies share."""
+
+    type: Literal["box"] = Field(default="box", description="Shape of the domain")
+    lower: Vector = Field(description="Corner of the box with the smallest coordinates [length]")
+    upper: Vector = Field(description="Corner of the box with the largest coordinates [length]")
+
+
+class BoundaryTable(_Table):
+    """What holds on the faces of the domain; a later entry overrides an earlier one, unnamed faces are walls."""
+
+    on: Face = Field(description="Face of the box: left/right along x, bottom/top along y, back/front along z")
+    type: Condition = Field(
+        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`"
+    )
+    velocity: Vector | None = Field(default=None, description="Velocity on a `velocity` face, its peak [length/time]")
+    profile: Literal["uniform", "parabolic"] = Field(
+        default="uniform", description="How the velocity is spread over the face; `parabolic` is zero on its edges"
+    )
+    pressure: float | None = Field(default=None, description="Pressure on a `pressure` face [force/length^(d-1)]")
+
+
+class PrescribedTable(_Table):
+    """A motion that the fluid cannot change: velocity(t) = velocity + 2π·frequency·amplitude·cos(2π·frequency·t)."""
+
+    velocity: Vector | None = Field(default=None, description="Constant velocity; zero if not given [length/time]")
+    angular_velocity: Angular | None = Field(
+        default=None, description="Constant angular velocity; a number in 2D; zero if not given [rad/time]"
+    )
+    amplitude: Vector | None = Field(default=None, description="Amplitude of a sinusoidal displacement [length]")
+    frequency: Positive | None = Field(default=None, description="Frequency of the sinusoidal displacement [1/time]")
+
+
+class BodyTable(_OpenTable):
+    """One rigid body."""
+
+    name: str = Field(
+        default="",
+        pattern=r"^[^\x00-\x1f\x7f]*$",  # a control character would break the tables and plots that names stand in
+        description="Name in the results, without control characters; `body0`, `body1`, … if not given",
+    )
+    type: str = Field(description="Name of a body type")
+    density: Positive = Field(description="Density of the body [mass/length^d]")
+    position: Vector = Field(description="Initial position of the centre of mass [length]")
+    angle: float | None = Field(default=None, description="Initial angle, counter-clockwise; only in 2D [rad]")
+    orientation: tuple[float, float, float, float] | None = Field(
+        default=None, description="Initial orientation, a quaternion, scalar first; 3D only; normalised when read [1]"
+    )
+    velocity: Vector | None = Field(default=None, description="Initial velocity; zero if not given [length/time]")
+    angular_velocity: Angular | None = Field(
+        default=None, description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"
+    )
+    part_of: str | None = Field(
+        default=None, description="Name of the articulated body it is a part of; parts of one body do not repel"
+    )
+    fixed: bool = Field(default=False, description="Whether the body is held in place")
+    prescribed: PrescribedTable | None = Field(default=None, description="A motion that the fluid cannot change")
+
+
+class ContactTable(_OpenTable):
+    """How contacts are found, and what force they exert; without it there is no contact force."""
+
+    detector: str = Field(
+        default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
+    )
+    law: str | None = Field(default=None, description="Name of a force law; no contact force if not given")
+    range: Positive | None = Field(default=None, description="Gap above which the law is zero [length]")
+    smallest_gap: Positive | None = Field(
+        default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
+    )
+    impact_speed: float | None = Field(
+        default=None,
+        ge=0,
+        description="Speed at which free bodies hit; from gravity, drag and the box if not given [length/time]",
+    )
+    stepping: Literal["substeps", "implicit"] = Field(
+        default="substeps",
+        description="How bodies go through contacts: in `substeps`, or in `implicit` steps that keep the energy",
+    )
+    substeps: int | None = Field(
+        default=None,
+        ge=1,
+        description="Substeps of contacts in each step; as many as they need, and no more, if not given [1]",
+    )
+
+
+class MeshTable(_Table):
+    """How fine the mesh is."""
+
+    size: Positive = Field(description="Edge length far from the bodies [length]")
+    size_body: Positive = Field(description="Edge length on the bodies [length]")
+    growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
+    cells_per_gap: int = Field(
+        default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
+    )
+    quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is made anew [1]")
+    refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
+
+
+class TimeTable(_Table):
+    """How far and how fast time goes."""
+
+    end: Positive = Field(description="Time at which the simulation ends [time]")
+    step: Positive = Field(description="Size of a step [time]")
+    shortest: Positive = Field(
+        default_factory=lambda table: table["step"] / 1024,
+        description="Size below which a step is not cut further; step/1024 if not given [time]",
+    )
+
+
+class OutputTable(_Table):
+    """What is written, and how often."""
+
+    every: Positive = Field(description="Time between two written fields and checkpoints [time]")
+    probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
+
+
+class Scene(_Table):
+    """A whole scene, validated; `Scene.from_dict` and `load_scene` are the ways to make one."""
+
+    scene: SceneTable
+    fluid: FluidTable
+    domain: DomainTable
+    boundary: tuple[BoundaryTable, ...] = ()
+    body: tuple[BodyTable, ...] = Field(min_length=1)
+    contact: ContactTable = ContactTable()
+    mesh: MeshTable | None = Field(default=None, description="The mesh; needed by backends with a mesh")
+    time: TimeTable
+    output: OutputTable
+
+    @field_validator("body")
+    @classmethod
+    def _name_bodies(cls, bodies: tuple[BodyTable, ...]) -> tuple[BodyTable, ...]:
+        return tuple(body.model_copy(update={"name": body.name or f"body{i}"}) for i, body in enumerate(bodies))
+
+    @property
+    def name(self) -> str:
+        """Name of the scene."""
+        return self.scene.name
+
+    @property
+    def dimension(self) -> int:
+        """Number of space dimensions."""
+        return self.scene.dimension
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Scene:
+        """Validate the tables of a scene.
+
+        Parameters
+        ----------
+        data : mapping
+            The tables, as TOML gives them.
+
+        Returns
+        -------
+        Scene
+            With all defaults filled in.
+
+        Raises
+        ------
+        SceneError
+            If a key or value is not allowed, naming it, what is allowed and the remedy.
+        PluginError
+            If it names a part that is not there.
+        """
+        scene = read_table(cls, data)
+        check_tables(scene)
+        check_fluid(scene, resolve(scene).backend.part)
+        return scene
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables again, in values that TOML and JSON can hold; `from_dict` reads them back to an equal scene."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+
+def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file.
+    overrides : iterable of str
+        Values to set before validation, as ``contact.range=0.02`` or ``body.0.density=1.5``.
+
+    Returns
+    -------
+    Scene
+        Validated, with all defaults filled in.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, is no TOML, or says something that is not allowed.
+    PluginError
+        If it names a part that is not there.
+    """
+    data = read_toml(Path(path))
+    override(data, overrides)
+    return Scene.from_dict(data)
+
+
+def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
+    """The tables of a TOML file; ``kind`` says in messages what file it should be."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
+    except (ValueError, RecursionError) as error:
+        raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None

@@ -1,0 +1,88 @@
+"""What a scene switches on and off, and why; `rigidfluid check` prints it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.types import FluidProblem
+    from rigidfluid.core.setup.system import System
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One thing that costs time, whether this scene has it, and why."""
+
+    name: str
+    on: bool
+    why: str
+
+
+def features(system: System) -> Iterator[Feature]:
+    """What is on, what is off, and why.
+
+    Parameters
+    ----------
+    system : System
+        What was built from the scene.
+
+    Yields
+    ------
+    Feature
+        One for each thing that a scene may have.
+    """
+    problem, backend = system.backend.problem, type(system.backend)
+    if problem is None or not backend.needs_mesh:
+        yield Feature("fluid", False, f"backend {backend.name!r} has no viscosity to work with")
+    else:
+        yield Feature("fluid", True, f"backend {backend.name!r}")
+        yield from _fluid(problem)
+    yield from _mesh(system)
+    yield from _contact(system)
+    yield _count("controlled motion", system.controlled, "fixed or prescribed")
+
+
+def _fluid(problem: FluidProblem) -> Iterator[Feature]:
+    model = "navier-stokes" if problem.inertia else "stokes"
+    yield Feature("inertia of the fluid", problem.inertia, f"model {model!r}")
+    outlets = [condition.name for condition in problem.conditions if condition.type == "pressure"]
+    why = f"pressure is given on {', '.join(outlets)}" if outlets else "no face gives a pressure"
+    yield Feature("pressure fixed by a constraint", not outlets, why)
+
+
+def _mesh(system: System) -> Iterator[Feature]:
+    backend = type(system.backend)
+    yield Feature(
+        "mesh", backend.needs_mesh, f"backend {backend.name!r} needs {'one' if backend.needs_mesh else 'none'}"
+    )
+    if backend.needs_mesh:
+        turning = np.array([body.radius is None for body in system.bodies])
+        yield _count("rotation of the mesh", turning, "no balls")
+
+
+def _contact(system: System) -> Iterator[Feature]:
+    names = ", ".join(wall.name for wall in system.walls) or "none"
+    if system.law is None:
+        yield Feature("contact forces", False, "the scene names no law")
+    else:
+        yield Feature("contact forces", True, f"law {system.law.name!r} below a gap of {system.law.range}")
+        yield Feature("repelling walls", bool(system.walls), names)
+        parts = np.bincount(system.assembly, minlength=1)[system.assembly] > 1
+        yield _count("components that do not repel each other", parts, "parts of an articulated body")
+    yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
+    yield _measured(system.reach)
+
+
+def _measured(reach: float) -> Feature:
+    return Feature(
+        "smallest gap recorded", reach > 0, f"up to {reach:.4g}" if np.isfinite(reach) else "at any distance"
+    )
+
+
+def _count(name: str, bodies: np.ndarray[tuple[int], np.dtype[np.bool_]], what: str) -> Feature:
+    count = int(np.count_nonzero(bodies))
+    return Feature(name, count > 0, f"{count} of {len(bodies)} bodies are {what}")

@@ -1,0 +1,141 @@
+"""Refuses bodies that start in one another or outside the domain, and meshes that cannot resolve a gap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.core.setup.boundary import face_planes, faces
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.interfaces import Body, Detector
+    from rigidfluid.core.scene.scene import MeshTable, Scene
+    from rigidfluid.core.setup.parts import Parts
+
+
+MOST_FACETS_PER_RADIUS = 10**4
+"""Facets still smaller than that beside a body are a slip of units, and a mesher would never end."""
+
+
+SMALLEST_BODY = 1e-8
+"""Of the largest coordinate of the box: smaller bodies are lost in rounding, and Netgen may end the whole process."""
+
+
+def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
+    """Refuse a start that cannot be.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, for names and mesh sizes.
+    parts : Parts
+        Its bodies and backend.
+    pose : Pose
+        Where the bodies start.
+
+    Raises
+    ------
+    SceneError
+        If bodies overlap each other or a face of the domain or are lost in it, or the mesh is too coarse for a gap.
+    """
+    _check_extent(scene, parts)
+    mesh = scene.mesh if parts.backend.part.needs_mesh else None
+    reach = _coarsest_gap(mesh, parts) if mesh else 0.0
+    contacts = initial_contacts(scene, parts.exact_detector, parts.bodies, pose, reach)
+    _check_overlap(scene, contacts)
+    if mesh is not None:
+        _check_facets(mesh, parts)
+        _check_resolution(scene, mesh, parts, contacts)
+
+
+def initial_contacts(
+    scene: Scene, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
+) -> Contacts:
+    """Every pair of surfaces at the start, with faces that do not repel among them.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, for its box.
+    detector : type
+        What finds them without a mesh, see `exact_detector`.
+    bodies : sequence of Body
+        Its bodies.
+    pose : Pose
+        Where they are.
+    reach : float
+        Largest gap, may be infinite [length].
+
+    Returns
+    -------
+    Contacts
+        Up to that gap.
+    """
+    return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, reach)
+
+
+def _check_extent(scene: Scene, parts: Parts) -> None:
+    farthest = max(abs(coordinate) for coordinate in (*scene.domain.lower, *scene.domain.upper))
+    radii = [body.bounding_radius for body in parts.bodies]
+    smallest = min(range(len(radii)), key=radii.__getitem__)
+    if radii[smallest] < SMALLEST_BODY * farthest:
+        raise SceneError(
+            f"body.{smallest}",
+            f"a bounding radius of {radii[smallest]:.3g} in a box with a corner at {farthest:.3g}",
+            f"at least {SMALLEST_BODY:g} of the box's largest coordinate",
+            "Make the box smaller, or bring it nearer to the origin.",
+        )
+
+
+def _check_overlap(scene: Scene, contacts: Contacts) -> None:
+    if len(contacts) == 0 or np.min(contacts.gap) > 0:
+        return
+    worst = int(np.argmin(contacts.gap))
+    a, b, gap = int(contacts.body_a[worst]), int(contacts.body_b[worst]), float(contacts.gap[worst])
+    other = f"face {_name(scene, b)!r} of the domain" if b >= len(scene.body) else f"body {_name(scene, b)!r}"
+    raise SceneError(
+        f"body.{a}.position",
+        f"{list(scene.body[a].position)}, where body {_name(scene, a)!r} overlaps {other} by {-gap:.6g}",
+        "a place inside the domain and clear of all other surfaces",
+        f"Move it by more than {-gap:.6g}, or make it smaller.",
+    )
+
+
+def _check_facets(mesh: MeshTable, parts: Parts) -> None:
+    largest = max(body.bounding_radius for body in parts.bodies)
+    least = largest / MOST_FACETS_PER_RADIUS
+    if mesh.size_body < least:
+        raise SceneError("mesh.size_body", mesh.size_body, f"at least {least:g} for these bodies", "Coarsen it.")
+
+
+def _coarsest_gap(mesh: MeshTable, parts: Parts) -> float:
+    """The largest gap that the mesh may be too coarse for [length]."""
+    smallest = min(body.bounding_radius for body in parts.bodies)
+    return float((mesh.size_body / 2**mesh.refinements) ** 2 / (4.0 * smallest))
+
+
+def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Contacts) -> None:
+    """A chord h of a circle of radius R cuts off h²/(8R), which must stay below half the gap."""
+    halvings = 2**mesh.refinements
+    for k, gap in enumerate(contacts.gap):
+        for surface in (int(contacts.body_a[k]), int(contacts.body_b[k])):
+            if surface >= len(parts.bodies):
+                continue
+            fine = halvings * sqrt(4 * parts.bodies[surface].bounding_radius * float(gap))
+            if mesh.size_body >= fine:
+                a, b = _name(scene, int(contacts.body_a[k])), _name(scene, int(contacts.body_b[k]))
+                raise SceneError(
+                    "mesh.size_body",
+                    f"{mesh.size_body}, too coarse for the gap of {gap:.3g} between {a!r} and {b!r}",
+                    f"less than {fine:.3g}",
+                    f"Refine it, or allow more than {mesh.refinements} `refinements`.",
+                )
+
+
+def _name(scene: Scene, surface: int) -> str:
+    return (*(body.name for body in scene.body), *faces(scene.dimension))[surface]

@@ -1,0 +1,161 @@
+"""How fast bodies are expected to hit: what gravity can give them on their way, and what the fluid lets them keep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.setup.boundary import face_table, faces
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import BodyTable, Scene
+
+_HALVINGS = 60
+_REYNOLDS = 1e-12, 1e12
+_NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
+
+Vectors = Sequence[float] | None
+
+
+def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight: FloatArray, wet: bool) -> FloatArray:
+    """The speed at which each body is expected to hit something.
+
+    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the face of the box, less the range of the law. In a
+    fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the surface of
+    a body that is no ball turns with it. A driven body has the greatest speed of its prescription. An ``impact_speed``
+    in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its box, its velocities, its fluid.
+    bodies : sequence of Body
+        The n shapes.
+    mass : (n,) array
+        What gravity has to set in motion, the added mass with it [mass].
+    weight : (n, d) array
+        Submerged weight W [force].
+    wet : bool
+        Whether a fluid is computed.
+
+    Returns
+    -------
+    (n,) array
+        Speeds [length/time].
+    """
+    lever = _by_shape(_lever, bodies)
+    start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
+    pull = np.linalg.norm(weight, axis=1)
+    falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, bodies, weight))
+    if wet:
+        falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, bodies, pull))) + _fastest_inflow(scene)
+    if scene.contact.impact_speed is not None:
+        falling = np.maximum(start, scene.contact.impact_speed)
+    return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
+
+
+def terminal_speeds(scene: Scene, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
+    """The speed at which drag holds a submerged weight, far from walls, from correlations for a ball of equal volume.
+
+    3D: C = (24/Re)(1 + 0.15 Re^0.687) up to Re = 1000, then 0.44; 2D: C = 1 + 10 Re^(-2/3), with Re = 2 r ρ v/μ.
+    Without inertia F = 6πμ r v in 3D and, since no such law exists in 2D for an unbounded fluid, 4πμ v/ln(L/r) with
+    the longest side L of the box, less than the drag between its walls. The ball has nearly the least drag of all
+    shapes of a volume, so that the speed errs to the fast side.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its fluid, with density and viscosity.
+    bodies : sequence of Body
+        The n shapes.
+    pull : (n,) array
+        Submerged weights [force].
+
+    Returns
+    -------
+    (n,) array
+        Speeds [length/time].
+
+    Notes
+    -----
+    Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006;
+    Pironneau, J. Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
+    """
+    density, viscosity = scene.fluid.density, scene.fluid.viscosity
+    assert density is not None
+    assert viscosity is not None
+    radius = _by_shape(equal_volume_radius, bodies)
+    if scene.fluid.model == "stokes":
+        longest = float(np.max(np.subtract(scene.domain.upper, scene.domain.lower)))
+        resistance = 6.0 * np.pi * radius if scene.dimension == 3 else 4.0 * np.pi / np.log(longest / radius)
+        return np.asarray(pull / (viscosity * resistance))
+    per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
+    reynolds = _reynolds(pull * density / viscosity**2 * per_pull, drag)
+    return np.asarray(reynolds * viscosity / (2.0 * radius * density))
+
+
+def _reynolds(driving: FloatArray, drag: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Re with C(Re) Re² = ``driving``, zero for no driving, by halving in the logarithm."""
+    low, high = (np.full(len(driving), np.log(bound)) for bound in _REYNOLDS)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        reynolds = np.exp(middle)
+        held = drag(reynolds) * reynolds**2 >= driving
+        low, high = np.where(held, low, middle), np.where(held, middle, high)
+    return np.where(driving > 0.0, np.exp(high), 0.0)
+
+
+def _ball_drag(reynolds: FloatArray) -> FloatArray:
+    slow = 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687)
+    return np.where(reynolds < _NEWTON_REYNOLDS, slow, _NEWTON_DRAG)
+
+
+def _cylinder_drag(reynolds: FloatArray) -> FloatArray:
+    return np.asarray(1.0 + 10.0 * reynolds ** (-2.0 / 3.0))
+
+
+def _free_heights(scene: Scene, bodies: Sequence[Body], weight: FloatArray) -> FloatArray:
+    """Way along the weight from each body to the first face, at most, less the range; zero without weight (n,)."""
+    length = np.linalg.norm(weight, axis=1, keepdims=True)
+    down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
+    position = np.array([table.position for table in scene.body])
+    ahead = np.where(down > 0.0, np.subtract(scene.domain.upper, position), position - np.array(scene.domain.lower))
+    room = ahead - _by_shape(inscribed_radius, bodies)[:, None]
+    way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
+    height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
+    return np.maximum(height - (scene.contact.range or 0.0), 0.0)
+
+
+def _own_speed(table: BodyTable, lever: float) -> float:
+    """v₀ of a free body, or the greatest speed that its prescription gives to a driven one."""
+    motion = table.prescribed or table
+    speed = _length(motion.velocity) + lever * _length(motion.angular_velocity)
+    if table.prescribed is None:
+        return speed
+    return speed + 2.0 * np.pi * (table.prescribed.frequency or 0.0) * _length(table.prescribed.amplitude)
+
+
+def _fastest_inflow(scene: Scene) -> float:
+    tables = (face_table(scene, name) for name in faces(scene.dimension))
+    return max(_length(table.velocity) if table else 0.0 for table in tables)
+
+
+def _lever(body: Body) -> float:
+    """The most that a normal passes beside the centre of mass, √(R² - r²); zero for a ball [length]."""
+    return float(np.sqrt(max(body.bounding_radius**2 - inscribed_radius(body) ** 2, 0.0)))
+
+
+def _length(vector: Vectors) -> float:
+    return 0.0 if vector is None else float(np.linalg.norm(vector))
+
+
+def _by_shape(measure: Callable[[Body], float], bodies: Sequence[Body]) -> FloatArray:
+    """``measure`` of each body (n,), asked once for each shape."""
+    keys = [shape_key(body) for body in bodies]
+    known = {key: measure(body) for key, body in dict(zip(keys, bodies, strict=True)).items()}
+    return np.array([known[key] for key in keys])

@@ -1,0 +1,168 @@
+"""The parts that a scene names: their classes, and the keys of the scene's tables that are theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.part_results import refuse_lost_body
+from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import ContactTable, FluidTable, Scene
+
+P = TypeVar("P", bound=Part)
+
+AUTO = "auto"
+"""What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+
+
+@dataclass(frozen=True)
+class Choice(Generic[P]):
+    """A class that a scene names, and its validated options."""
+
+    part: type[P]
+    options: PartOptions
+
+
+@dataclass(frozen=True)
+class Parts:
+    """All that a scene names; ``law`` is None in a scene without contact forces.
+
+    ``detector_why`` says who chose the detector, and for what reason; ``exact_detector`` is the cheapest that is exact
+    without a mesh.
+    """
+
+    backend: Choice[FluidBackend]
+    bodies: tuple[Body, ...]
+    detector: Choice[Detector]
+    law: Choice[ForceLaw] | None
+    detector_why: str
+    exact_detector: type[Detector]
+
+
+def resolve(scene: Scene) -> Parts:
+    """Find the parts that a scene names and validate their options.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables hold the options of the parts beside their own keys.
+
+    Returns
+    -------
+    Parts
+        Classes with options; the bodies are built, as the default detector depends on their shapes.
+
+    Raises
+    ------
+    PluginError
+        If a part is not there.
+    SceneError
+        If an option is unknown, missing or has a value that is not allowed.
+    """
+    registry = Registry.load()
+    bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
+    backend = _backend(scene.fluid, registry)
+    mesh = backend.part.needs_mesh
+    law = _law(scene.contact, registry)
+    detector, why = _detector(scene.contact, registry, bodies, mesh, law is not None)
+    _refuse_contact(scene.contact, detector, law, bodies, mesh)
+    chosen = None if law is None else _choose(law, scene.contact)
+    exact = exact_detector(bodies, registry)
+    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why, exact)
+
+
+def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
+    """The cheapest detector that is exact for these bodies.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes.
+    mesh : bool
+        Whether there is a mesh around them, and no need to know gaps beyond the range of a law.
+
+    Returns
+    -------
+    str, str
+        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids; else
+        ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+    """
+    if all(body.radius is not None for body in bodies):
+        return "sphere", "all bodies are balls"
+    if all(body.semi_axes is not None for body in bodies):
+        return "ellipsoid", "all bodies are balls or ellipsoids"
+    if mesh:
+        return "narrow_band", "not all bodies are ellipsoids, and there is a mesh and a law"
+    return "brute_force", "not all bodies are ellipsoids, and there is no mesh or no law"
+
+
+def exact_detector(bodies: Sequence[Body], registry: Registry) -> type[Detector]:
+    """The cheapest detector that is exact for these bodies and needs no mesh."""
+    return registry.get(DETECTOR, cheapest_detector(bodies, mesh=False)[0])
+
+
+def _body(scene: Scene, registry: Registry, number: int) -> Body:
+    table, at = scene.body[number], f"body.{number}"
+    part = registry.get(BODY, table.type, f"{at}.type")
+    _refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        body = part(options, scene.dimension)
+    except SceneError as error:  # a body does not know its number
+        subject = f"{at}.{error.subject.removeprefix('body.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    refuse_lost_body(body, at)
+    return body
+
+
+def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:
+    part = registry.get(FLUID_BACKEND, table.backend)
+    _refuse_unread(table.options, [part], type(table).model_fields, "fluid")
+    return Choice(part, read_table(part.Options, table.options, "fluid"))
+
+
+def _law(table: ContactTable, registry: Registry) -> type[ForceLaw] | None:
+    return registry.get(FORCE_LAW, table.law) if table.law else None
+
+
+def _detector(
+    table: ContactTable, registry: Registry, bodies: Sequence[Body], mesh: bool, law: bool
+) -> tuple[type[Detector], str]:
+    if table.detector != AUTO:
+        return registry.get(DETECTOR, table.detector), "the scene names it"
+    name, why = cheapest_detector(bodies, mesh and law)
+    return registry.get(DETECTOR, name), f"chosen as {why}"
+
+
+def _refuse_contact(
+    table: ContactTable, detector: type[Detector], law: type[ForceLaw] | None, bodies: Sequence[Body], mesh: bool
+) -> None:
+    readers: list[type[Part]] = [detector, law] if law else [detector]
+    hint = "" if law else "Name the law that reads it: `law = …`."
+    _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
+    if law and law.balls_only and any(body.radius is None for body in bodies):
+        remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
+        raise SceneError("contact.law", f"{law.name!r} with bodies that are no balls", "a law for any shape", remedy)
+    if detector.needs_mesh and not mesh:
+        remedy = 'Use detector = "auto", or a backend with a mesh.'
+        raise SceneError("contact.detector", f"{detector.name!r} without a mesh", "a detector that needs none", remedy)
+
+
+def _choose(part: type[P], table: ContactTable) -> Choice[P]:
+    mine = {key: value for key, value in table.options.items() if key in part.Options.model_fields}
+    return Choice(part, read_table(part.Options, mine, "contact"))
+
+
+def _refuse_unread(
+    options: Mapping[str, Any], readers: Sequence[type[Part]], common: Mapping[str, Any], at: str, hint: str = ""
+) -> None:
+    known = set().union(*(reader.Options.model_fields for reader in readers))
+    for key in options:
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", known | set(common), hint)

@@ -1,0 +1,231 @@
+"""What one key alone cannot show to be wrong: lengths of vectors, doubled names, keys that contradict each other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.setup.boundary import face_table, face_velocity, faces, inward_normal
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.interfaces import FluidBackend
+    from rigidfluid.core.scene.scene import BodyTable, BoundaryTable, MeshTable, Scene
+
+    Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
+
+MOST_CELLS = 10**9
+"""More of them, a cube or square of the edge length each, are a slip of units, and a mesher would never end."""
+
+MOST_STEPS = 10**9
+"""A scene of more nominal steps than this is a slip of units."""
+
+
+def check_tables(scene: Scene) -> None:
+    """Refuse what contradicts itself in the tables alone.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its single keys are valid.
+
+    Raises
+    ------
+    SceneError
+        At the first contradiction.
+    """
+    _check_vectors(scene)
+    _check_box(scene)
+    for number, table in enumerate(scene.boundary):
+        _check_boundary(scene, table, f"boundary.{number}")
+    for number, body in enumerate(scene.body):
+        _check_body(scene, body, f"body.{number}")
+    _check_names(scene)
+    _check_assemblies(scene)
+    _check_contact(scene)
+    _check_sizes(scene)
+
+
+def check_fluid(scene: Scene, backend: type[FluidBackend]) -> None:
+    """Refuse a scene that lacks what its backend needs, or prescribes a flow that cannot be.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables are checked.
+    backend : type
+        The class that its fluid table names.
+
+    Raises
+    ------
+    SceneError
+        If density, viscosity or the mesh is missing, or if more flows in than out.
+    """
+    if not backend.needs_mesh:
+        return
+    beside = f"with backend {backend.name!r}"
+    for key in ("density", "viscosity"):
+        if getattr(scene.fluid, key) is None:
+            raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
+    if scene.mesh is None:
+        raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
+    _check_cells(scene, scene.mesh)
+    _check_inflow(scene)
+
+
+def _check_vectors(scene: Scene) -> None:
+    for field, vector, length in _vectors(scene):
+        if vector is not None and len(vector) != length:
+            numbers = "1 number" if length == 1 else f"{length} numbers"
+            remedy = f"The scene has {scene.dimension} dimensions."
+            raise SceneError(field, f"{list(vector)}, {len(vector)} of them", numbers, remedy)
+
+
+def _vectors(scene: Scene) -> Vectors:
+    """Every vector of the scene with its field and the length it must have."""
+    d = scene.dimension
+    k = 1 if d == 2 else 3
+    yield "fluid.gravity", scene.fluid.gravity, d
+    yield "domain.lower", scene.domain.lower, d
+    yield "domain.upper", scene.domain.upper, d
+    for i, boundary in enumerate(scene.boundary):
+        yield f"boundary.{i}.velocity", boundary.velocity, d
+    for i, body in enumerate(scene.body):
+        yield f"body.{i}.position", body.position, d
+        yield f"body.{i}.velocity", body.velocity, d
+        yield f"body.{i}.angular_velocity", body.angular_velocity, k
+        if body.prescribed:
+            yield f"body.{i}.prescribed.velocity", body.prescribed.velocity, d
+            yield f"body.{i}.prescribed.angular_velocity", body.prescribed.angular_velocity, k
+            yield f"body.{i}.prescribed.amplitude", body.prescribed.amplitude, d
+    for i, probe in enumerate(scene.output.probes):
+        yield f"output.probes.{i}", probe, d
+
+
+def _check_box(scene: Scene) -> None:
+    lower, upper = np.array(scene.domain.lower), np.array(scene.domain.upper)
+    if np.any(upper <= lower):
+        allowed = f"a corner above domain.lower = {list(scene.domain.lower)}"
+        raise SceneError("domain.upper", list(scene.domain.upper), allowed, "Swap or correct them.")
+    for i, probe in enumerate(scene.output.probes):
+        if np.any(probe < lower) or np.any(probe > upper):
+            raise SceneError(f"output.probes.{i}", list(probe), "a point of the domain", "Move it inside.")
+
+
+def _check_boundary(scene: Scene, table: BoundaryTable, at: str) -> None:
+    allowed = ("all", *faces(scene.dimension))
+    if table.on not in allowed:
+        raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a face of the box.")
+    for key in ("velocity", "pressure"):
+        given = getattr(table, key) is not None
+        if given and table.type != key:
+            raise SceneError(f"{at}.{key}", f"it on a {table.type!r} face", f"it with type = {key!r}", "Keep one.")
+        if table.type == key and not given:
+            raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
+
+
+def _check_body(scene: Scene, body: BodyTable, at: str) -> None:
+    if scene.dimension == 3 and body.angle is not None:
+        raise SceneError(f"{at}.angle", body.angle, "no angle in 3D", "Give `orientation`, a quaternion.")
+    if scene.dimension == 2 and body.orientation is not None:
+        raise SceneError(f"{at}.orientation", list(body.orientation), "no quaternion in 2D", "Give `angle` in radians.")
+    if body.orientation is not None and not np.linalg.norm(body.orientation) > 0:
+        raise SceneError(f"{at}.orientation", list(body.orientation), "a quaternion of length above 0", "[1, 0, 0, 0].")
+    _check_control(body, at)
+
+
+def _check_control(body: BodyTable, at: str) -> None:
+    """A body moves freely, is fixed, or follows a prescription: one of them."""
+    given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
+    if body.fixed and (given or body.prescribed):
+        other = given[0] if given else "prescribed"
+        raise SceneError(f"{at}.fixed", f"true beside {other!r}", "one of them", f"Remove `fixed` or {other!r}.")
+    if body.prescribed and given:
+        where = f"`{at}.prescribed`"
+        raise SceneError(f"{at}.{given[0]}", "it beside `prescribed`", f"it inside {where}", f"Move it into {where}.")
+    if body.prescribed and (body.prescribed.amplitude is None) != (body.prescribed.frequency is None):
+        missing = "amplitude" if body.prescribed.amplitude is None else "frequency"
+        field = f"{at}.prescribed.{missing}"
+        raise SceneError(field, "nothing", "amplitude and frequency together, or neither", f"Add {missing!r}.")
+
+
+def _check_names(scene: Scene) -> None:
+    names = [body.name for body in scene.body]
+    for name, count in Counter(names + list(faces(scene.dimension))).items():
+        if count > 1:
+            last = len(names) - 1 - names[::-1].index(name)
+            raise SceneError(f"body.{last}.name", repr(name), "a name that no other body or face has", "Rename it.")
+
+
+def _check_assemblies(scene: Scene) -> None:
+    """A name that only one body gives is a slip of the pen."""
+    wholes = [body.part_of for body in scene.body]
+    for number, whole in enumerate(wholes):
+        if whole is not None and wholes.count(whole) == 1:
+            others = sorted({name for name in wholes if name is not None and name != whole})
+            remedy = suggestion(whole, others) or "Give it to the other parts too, or remove it."
+            raise SceneError(f"body.{number}.part_of", repr(whole), "a name that at least two bodies give", remedy)
+
+
+def _check_contact(scene: Scene) -> None:
+    law, range_, smallest = scene.contact.law, scene.contact.range, scene.contact.smallest_gap
+    if law is not None and range_ is None:
+        raise SceneError("contact.range", "nothing", "a length above 0 beside `law`", "Add the law's reach.")
+    if law is None and range_ is not None:
+        raise SceneError("contact.range", f"{range_} without a law", "`range` beside `law`", "Name the law: `law = …`.")
+    for key in ("smallest_gap", "impact_speed"):
+        given = getattr(scene.contact, key)
+        if law is None and given is not None:
+            remedy = "Name the law: `law = …`."
+            raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
+    if scene.contact.stepping == "implicit" and scene.contact.substeps is not None:
+        allowed = 'none beside `stepping = "implicit"`'
+        raise SceneError("contact.substeps", scene.contact.substeps, allowed, "Remove one of them.")
+    if smallest is not None and range_ is not None and smallest >= range_:
+        allowed = f"a length above 0 and below contact.range = {range_}"
+        raise SceneError("contact.smallest_gap", smallest, allowed, "Shorten it, or widen the range.")
+
+
+def _check_sizes(scene: Scene) -> None:
+    time, mesh = scene.time, scene.mesh
+    if time.step > time.end:
+        raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten it, or end later.")
+    if time.end / time.step > MOST_STEPS:
+        raise SceneError("time.step", time.step, f"at least {time.end / MOST_STEPS:g} for this end", "Lengthen it.")
+    if scene.output.every < time.step:
+        raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
+    if time.shortest > time.step:
+        raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
+    if mesh and mesh.size_body > mesh.size:
+        raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
+
+
+def _check_cells(scene: Scene, mesh: MeshTable) -> None:
+    volume = float(np.prod(np.subtract(scene.domain.upper, scene.domain.lower)))
+    least = (volume / MOST_CELLS) ** (1.0 / scene.dimension)
+    if mesh.size < least:
+        raise SceneError("mesh.size", mesh.size, f"at least {least:.3g} for this domain", "Coarsen it.")
+
+
+def _check_inflow(scene: Scene) -> None:
+    """An incompressible fluid needs a way out where it flows in."""
+    extent = np.array(scene.domain.upper) - np.array(scene.domain.lower)
+    flows = []
+    for face, name in enumerate(faces(scene.dimension)):
+        table = face_table(scene, name)
+        if table and table.type == "pressure":
+            return
+        if table and table.type == "velocity":
+            area = np.prod(np.delete(extent, face // 2))
+            flows.append(float(area * face_velocity(scene, face, table).mean @ inward_normal(face, scene.dimension)))
+    if abs(sum(flows)) > 1e-12 * sum(map(abs, flows)):
+        raise SceneError(
+            "boundary",
+            f"a net inflow of {sum(flows):.6g} [length^{scene.dimension}/time] and no outlet",
+            "as much outflow as inflow, or a face of type 'pressure'",
+            "Give one face type = 'pressure', pressure = 0.0.",
+        )

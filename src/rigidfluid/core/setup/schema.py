@@ -1,0 +1,51 @@
+"""The JSON Schema of scenes, with the keys of every part that is installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Entry, Registry
+
+_TABLES = {FLUID_BACKEND: "FluidTable", BODY: "BodyTable", DETECTOR: "ContactTable", FORCE_LAW: "ContactTable"}
+# The parts that a table means where it names none.
+_UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "ellipsoid", "brute_force"), BODY: (), FORCE_LAW: ()}
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of a scene file.
+
+    Returns
+    -------
+    dict
+        Each table that names a part takes that part's keys as well, and no others.
+
+    Raises
+    ------
+    PluginError
+        If a plug-in is not usable.
+    """
+    schema = Scene.model_json_schema()
+    for entry in Registry.load().entries:
+        _add_part(schema["$defs"], entry)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
+    table, key = definitions[_TABLES[entry.kind]], entry.kind.field.partition(".")[2]
+    table.pop("additionalProperties", None)
+    table["unevaluatedProperties"] = False
+    condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
+    if entry.name not in _UNNAMED[entry.kind]:
+        condition["required"] = [key]
+    table.setdefault("allOf", []).append({"if": condition, "then": _options(definitions, entry)})
+
+
+def _options(definitions: dict[str, Any], entry: Entry) -> dict[str, Any]:
+    prefix = f"{entry.kind.title} {entry.name} ".replace(" ", "_")
+    schema = entry.part.Options.model_json_schema(ref_template=f"#/$defs/{prefix}{{model}}")
+    for name, definition in schema.pop("$defs", {}).items():
+        definitions[prefix + name] = definition
+    # Its table's own keys stand beside the part's.
+    schema.pop("additionalProperties", None)
+    return schema

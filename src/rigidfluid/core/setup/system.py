@@ -1,0 +1,227 @@
+"""The parts of one simulation, built from a scene: bodies, walls, detector, law and backend, ready for the loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.contact.stacks import stacked
+from rigidfluid.core.mechanics.added_mass import added_mass
+from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.model.types import (
+    BoolArray,
+    BoundaryCondition,
+    FloatArray,
+    FluidProblem,
+    IntArray,
+    Loads,
+    Pose,
+    Twist,
+    Wall,
+)
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.boundary import conditions, face_planes, faces
+from rigidfluid.core.setup.geometry_checks import check_geometry
+from rigidfluid.core.setup.impact import impact_speeds
+from rigidfluid.core.setup.parts import Parts, resolve
+from rigidfluid.core.setup.prescribed import prescribed_motion
+
+_MOST_PAIRS = 1000
+_SMALLEST_GAP = 0.25
+"""The smallest gap wanted over the range of the law, if the scene gives none."""
+
+
+@dataclass(frozen=True)
+class System:
+    """Everything that stays the same while a scene runs.
+
+    ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
+    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
+    fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
+    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
+    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
+    ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
+    ``loads``: what contacts must hold; its smallest gap is 0 without a law.
+    ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
+    ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
+    ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
+    """
+
+    dimension: int
+    bodies: tuple[Body, ...]
+    surfaces: tuple[str, ...]
+    walls: tuple[Wall, ...]
+    lower: FloatArray
+    upper: FloatArray
+    mass: FloatArray
+    added_mass: FloatArray
+    inertia: FloatArray
+    weight: FloatArray
+    pose: Pose
+    twist: Twist
+    assembly: IntArray
+    controlled: BoolArray
+    controlled_twist: Callable[[float], FloatArray]
+    backend: FluidBackend
+    detector: Detector
+    detector_why: str
+    reach: float
+    leverage: FloatArray
+    law: ForceLaw | None
+    loads: Loads
+    substeps: int | None
+    implicit: bool
+
+
+def build_system(scene: Scene) -> System:
+    """Build the parts of a simulation and check that they fit together.
+
+    Parameters
+    ----------
+    scene : Scene
+        A validated scene.
+
+    Returns
+    -------
+    System
+        Ready for the loop.
+
+    Raises
+    ------
+    SceneError
+        If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
+    """
+    parts, boundary = resolve(scene), conditions(scene)
+    walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
+    mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
+    pose, motion = _initial_pose(scene), prescribed_motion(scene)
+    controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
+    check_geometry(scene, parts, pose)
+    weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
+    added = inert * np.array([added_mass(body) for body in parts.bodies])
+    moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
+    speed = impact_speeds(scene, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
+    loads = _loads(scene, parts.bodies, controlled, moved, weight, speed)
+    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts, loads)
+    return System(
+        dimension=scene.dimension,
+        bodies=parts.bodies,
+        surfaces=(*(body.name for body in scene.body), *faces(scene.dimension)),
+        walls=walls,
+        lower=np.array(scene.domain.lower),
+        upper=np.array(scene.domain.upper),
+        mass=mass,
+        added_mass=added,
+        inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
+        weight=weight,
+        pose=pose,
+        twist=_initial_twist(scene, controlled, motion(0.0)),
+        assembly=_assemblies(scene),
+        controlled=controlled,
+        controlled_twist=motion,
+        backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
+        detector=detector,
+        detector_why=parts.detector_why,
+        reach=_reach(detector, law),
+        leverage=np.array([most_leverage(body) for body in parts.bodies]),
+        law=law,
+        loads=loads,
+        substeps=scene.contact.substeps,
+        implicit=scene.contact.stepping == "implicit",
+    )
+
+
+def _assemblies(scene: Scene) -> IntArray:
+    """A number for each body, the same for parts of one articulated body (n,)."""
+    wholes: list[str | int] = [body.part_of or number for number, body in enumerate(scene.body)]
+    first: dict[str | int, int] = {}
+    return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
+
+
+def _initial_pose(scene: Scene) -> Pose:
+    position = np.array([body.position for body in scene.body])
+    if scene.dimension == 2:
+        return Pose(position, np.array([[body.angle or 0.0] for body in scene.body]))
+    quaternions = np.array([body.orientation or (1.0, 0.0, 0.0, 0.0) for body in scene.body])
+    return Pose(position, quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True))
+
+
+def _initial_twist(scene: Scene, controlled: BoolArray, controlled_twist: FloatArray) -> Twist:
+    d, twist = scene.dimension, np.zeros_like(controlled_twist)
+    for i, body in enumerate(scene.body):
+        twist[i, :d] = body.velocity or 0.0
+        twist[i, d:] = body.angular_velocity or 0.0
+    twist = np.where(controlled[:, None], controlled_twist, twist)
+    return Twist(twist[:, :d], twist[:, d:])
+
+
+def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
+    """(m - ρV)g with the exact volume, (n, d) [force]; the fluid carries no gravity, so buoyancy belongs here."""
+    volume = np.array([body.volume for body in bodies])
+    gravity = np.array(scene.fluid.gravity or [0.0] * scene.dimension)
+    return np.outer(mass - (scene.fluid.density or 0.0) * volume, gravity)
+
+
+def _inert_density(scene: Scene, parts: Parts) -> float:
+    """Density of the fluid that bodies have to move with them; none without a fluid, or without its inertia."""
+    inert = parts.backend.part.needs_mesh and scene.fluid.model == "navier-stokes"
+    return (scene.fluid.density or 0.0) if inert else 0.0
+
+
+def _loads(
+    scene: Scene, bodies: Sequence[Body], controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
+) -> Loads:
+    """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
+    smallest = scene.contact.smallest_gap or _SMALLEST_GAP * (scene.contact.range or 0.0)
+    pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
+    own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
+    position = np.array([table.position for table in scene.body])
+    radius = np.array([body.bounding_radius for body in bodies])
+    together = stacked(own, weight, position, radius, np.subtract(scene.domain.upper, scene.domain.lower))
+    stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
+    return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
+
+
+def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProblem | None:
+    fluid = scene.fluid
+    if fluid.density is None or fluid.viscosity is None:
+        return None
+    return FluidProblem(
+        dimension=scene.dimension,
+        bodies=len(scene.body),
+        density=fluid.density,
+        dynamic_viscosity=fluid.viscosity,
+        inertia=fluid.model == "navier-stokes",
+        conditions=boundary,
+    )
+
+
+def _reach(detector: Detector, law: ForceLaw | None) -> float:
+    """As far as the detector sees, and no further than is worth its while."""
+    law_range = law.range if law else 0.0
+    return min(detector.sight(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
+
+
+def gap_reach(system: System) -> float:
+    """The largest gap that is worth measuring, whatever the detector sees [length]."""
+    return _worth_measuring(system.bodies, len(system.walls), system.law.range if system.law else 0.0)
+
+
+def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float) -> float:
+    """Among few bodies any gap; among many at most twice the largest body's size beyond the range.
+
+    So the work grows with the number of neighbours and not of pairs.
+    """
+    if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS:
+        return math.inf
+    return law_range + 2.0 * max(body.bounding_radius for body in bodies)
+
+
+def _law(scene: Scene, parts: Parts, loads: Loads) -> ForceLaw | None:
+    if parts.law is None or scene.contact.range is None:
+        return None
+    return parts.law.part(parts.law.options, scene.contact.range, loads)
