@@ -25,7 +25,8 @@ import numpy as np  # noqa: E402
 
 from rigidfluid.core.run.simulation import Simulation  # noqa: E402
 from rigidfluid.core.run.threads import one_openblas_thread  # noqa: E402
-from rigidfluid.core.scene.scene import Scene, load_scene  # noqa: E402
+from rigidfluid.core.scene.scene import Scene  # noqa: E402
+from rigidfluid.core.setup.load import load_scene, scene_from_dict  # noqa: E402
 
 HEAD = ("scene", "unknowns", "contacts", "free step [s]", "contact step [s]", "ratio", "steps", "re-meshes")
 PITCH = 0.066
@@ -59,7 +60,7 @@ def hundred(pitch: float, step: float) -> Scene:
         row, column = divmod(number, 10)
         place = 0.5 + (column - 4.5 + 0.25 * (row % 2)) * pitch, 0.05 + row * pitch
         body["position"] = (np.array(place) + random.uniform(-0.001, 0.001, 2)).tolist()
-    return changed(Scene.from_dict(data), time={"step": step}, domain={"upper": [1.0, 1.2]})
+    return changed(scene_from_dict(data), time={"step": step}, domain={"upper": [1.0, 1.2]})
 
 
 def changed(scene: Scene, **tables: dict[str, Any]) -> Scene:
@@ -67,7 +68,7 @@ def changed(scene: Scene, **tables: dict[str, Any]) -> Scene:
     data = scene.to_dict()
     for name, values in ({"output": {"every": 100.0}, "time": {}} | tables).items():
         data[name] |= values
-    return Scene.from_dict(data)
+    return scene_from_dict(data)
 
 
 CASES = (
@@ -86,7 +87,7 @@ CASES = (
 def without_law(scene: Scene) -> Scene:
     """Without contact forces; it must end before anything touches."""
     data = scene.to_dict()
-    return Scene.from_dict(data | {"contact": {}})
+    return scene_from_dict(data | {"contact": {}})
 
 
 def seconds(scene: Scene, steps: int) -> tuple[Simulation, list[tuple[int, float]]]:

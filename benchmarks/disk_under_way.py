@@ -29,7 +29,7 @@ def falling(thousands: int, backend: str = "scikit-fem") -> Simulation:
     data["mesh"].update(size=size, size_body=size_body, growth=growth)
     data["time"]["step"] = 0.1 * size_body
     data["output"]["every"] = 10.0
-    run = Simulation(rigidfluid.Scene.from_dict(data), None, False)
+    run = Simulation(rigidfluid.scene_from_dict(data), None, False)
     for _ in range(WARM_UP):
         run._advance()
     return run

@@ -42,7 +42,7 @@ def scene(law: str, side: int, steps: int) -> rigidfluid.Scene:
         for place, velocity in zip(places.tolist(), velocities.tolist(), strict=True)
     ]
     block = steps * STEP
-    return rigidfluid.Scene.from_dict(
+    return rigidfluid.scene_from_dict(
         {
             "scene": {"name": "dry_spheres", "dimension": 3},
             "fluid": {"backend": "dry"},

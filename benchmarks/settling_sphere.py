@@ -18,7 +18,7 @@ from pathlib import Path
 from rigidfluid.core.run.memory import peak_memory
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.threads import one_openblas_thread
-from rigidfluid.core.scene.scene import load_scene
+from rigidfluid.core.setup.load import load_scene
 from rigidfluid.taylor_hood.stale_solver import StaleSolver
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"

@@ -96,7 +96,7 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
     """Simulate a scene and write the results."""
     with _reported("The same command with --resume goes on from the last checkpoint."):
         from rigidfluid.core.run.run import run as simulate
-        from rigidfluid.core.scene.scene import load_scene
+        from rigidfluid.core.setup.load import load_scene
 
         loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
@@ -114,7 +114,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
     """Say what a scene switches on and off, and whether its contacts can hold; exit code 1 if they cannot."""
     with _reported():
         from rigidfluid.checks import check as ask
-        from rigidfluid.core.scene.scene import load_scene
+        from rigidfluid.core.setup.load import load_scene
 
         report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
@@ -130,7 +130,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
 def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile = None, steps: Steps = 3) -> None:
     """Run a dry scene of balls in LAMMPS too, and say how far the results are apart."""
     with _reported():
-        from rigidfluid.core.scene.scene import load_scene
+        from rigidfluid.core.setup.load import load_scene
         from rigidfluid.crosscheck import crosscheck as run_both
 
         _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)

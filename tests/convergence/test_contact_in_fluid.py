@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 UNCHANGED = {"size": 0.1, "size_body": 0.03, "quality": 0.01, "refinements": 0, "cells_per_gap": 1}
 """A mesh that serves for the whole bounce."""
 
 
 def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "bounce", "dimension": 2},
             "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},
@@ -41,7 +41,7 @@ def test_second_order_through_a_contact(stepping, speed, end, largest):
     heights = []
     for step in 1e-3 / np.array([1.0, 2.0, 4.0, 8.0]):
         scene = bounce(step, end, contact={"stepping": stepping}, velocity=[0.0, -speed]).to_dict()
-        history = rigidfluid.run(Scene.from_dict(scene | {"mesh": UNCHANGED}))
+        history = rigidfluid.run(scene_from_dict(scene | {"mesh": UNCHANGED}))
         assert history.summary["remeshes"] == 0
         heights.append(history.bodies["y"][-1])
     _, second, third = np.abs(np.diff(heights))
@@ -66,7 +66,7 @@ def test_the_step_is_not_tied_to_the_stiffness(stepping, epsilon, density):
     step, volume = 0.004, np.pi * 0.125**2
     start = {"density": density, "position": [0.5, 0.75 if density < 1 else 0.25], "velocity": [0.0, 0.0]}
     data = bounce(step, end=0.25, epsilon=epsilon, contact={"stepping": stepping}, **start).to_dict()
-    history = rigidfluid.run(Scene.from_dict(data | {"mesh": {"size": 0.1, "size_body": 0.05}}))
+    history = rigidfluid.run(scene_from_dict(data | {"mesh": {"size": 0.1, "size_body": 0.05}}))
     bodies, late = history.bodies, slice(-30, None)
     assert history.summary["rejected_steps"] == 0
     assert 0.0 < bodies["gap"].min() <= 0.05

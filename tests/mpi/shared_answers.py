@@ -16,8 +16,8 @@ import numpy as np
 from mpi4py import MPI
 from shared_steps import go_on, resident, started
 
+from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.run.step import step_to
 
 STEPS = 3
 

@@ -28,7 +28,8 @@ from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
 
@@ -40,7 +41,7 @@ def run_until(scene: Scene, end: float) -> History:
     """A run that ends earlier or later than its scene says."""
     data = scene.to_dict()
     data["time"]["end"], data["output"]["every"] = end, end
-    return rigidfluid.run(Scene.from_dict(data))
+    return rigidfluid.run(scene_from_dict(data))
 
 
 def first_rebound(history: History) -> float:
@@ -245,7 +246,7 @@ def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
 def test_an_enclosed_pressure_has_no_mean_and_is_pinned_far_from_bodies():
     scene = scenes.dropped(4.0 * MILLISECOND).to_dict()
     scene["time"]["end"] = scene["output"]["every"] = 8.0 * MILLISECOND
-    mean, spread, apart = pressure_and_pin(Scene.from_dict(scene))
+    mean, spread, apart = pressure_and_pin(scene_from_dict(scene))
     assert spread > 10.0
     assert abs(mean) < 1e-9 * spread
     assert apart > 0.8

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 
 def ball(position: Sequence[float], velocity: Sequence[float], **keys: Any) -> dict[str, Any]:
@@ -29,7 +30,7 @@ def dry_scene(
     fluid: dict[str, Any] = {"backend": "dry"}
     if gravity is not None:
         fluid["gravity"] = list(gravity)
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "dry", "dimension": dimension},
             "fluid": fluid,

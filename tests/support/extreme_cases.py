@@ -27,11 +27,11 @@ from extreme_scenes import (
 from extreme_wet import blade, floor_hit, let_go, resting, settling, squeezed, stokes_pressed
 from fluid_contacts import Stepping, put_in
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import MeshError, StepError
 
 LAST_PART = 0.1

@@ -9,6 +9,7 @@ import numpy as np
 from dry_scenes import ball, dry_scene
 
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 Table = dict[str, Any]
 
@@ -104,7 +105,7 @@ def wet(
     dimension = len(bodies[0]["position"])
     upper = [1.0] * (dimension - 1) + [height]
     coarse = {"size": 0.3, "size_body": 0.15, "refinements": 2}
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "wet", "dimension": dimension},
             "fluid": {"density": 1.0, "viscosity": 0.1},

@@ -9,6 +9,7 @@ from extreme_scenes import ellipsoid, wet, wet_hit
 from fluid_contacts import Stepping, Table
 
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 
 def floor_hit(
@@ -32,7 +33,7 @@ def blade(step: float, stepping: Stepping) -> Scene:
 def stepped(scene: Scene, stepping: Stepping) -> Scene:
     """The scene with another way through contacts."""
     tables = scene.to_dict()
-    return Scene.from_dict(tables | {"contact": tables["contact"] | {"stepping": stepping}})
+    return scene_from_dict(tables | {"contact": tables["contact"] | {"stepping": stepping}})
 
 
 def let_go(step: float, stepping: Stepping, gap: float, refinements: int) -> Scene:

@@ -15,4 +15,4 @@ def falling_disk(**tables):
     data["body"][0].update(tables.pop("body", {}))
     for name, keys in tables.items():
         data[name].update(keys)
-    return rigidfluid.Scene.from_dict(data)
+    return rigidfluid.scene_from_dict(data)

@@ -12,7 +12,8 @@ from extreme_scenes import dashpot, driven, ellipsoid, law, wet, wet_hit
 from touching import contact as one_contact
 
 from rigidfluid.core.output.history import History
-from rigidfluid.core.scene.scene import Scene, load_scene
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 Table = dict[str, Any]
@@ -37,7 +38,7 @@ def in_fluid(
     """Bodies in a box full of fluid of density 1 and viscosity .01, from the origin to ``upper``."""
     dimension = len(upper)
     downward = [0.0] * (dimension - 1) + [-gravity]
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "fluid_contacts", "dimension": dimension},
             "fluid": {"density": 1.0, "viscosity": 0.01, "gravity": downward} | (fluid or {}),
@@ -229,7 +230,7 @@ def spun(step: float, stepping: Stepping = "substeps") -> Scene:
     """A disk that spins at 1e4 rad/s is thrown onto the floor."""
     contact = repulsion(stepping, 1e-10, range=0.05)
     scene = wet_hit(contact, angular_velocity=[1e4]).to_dict()
-    return Scene.from_dict(scene | {"time": {"end": 0.06, "step": step}})
+    return scene_from_dict(scene | {"time": {"end": 0.06, "step": step}})
 
 
 def put_in(history: History) -> float:

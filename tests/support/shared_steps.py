@@ -13,13 +13,13 @@ from pathlib import Path
 from mpi4py import MPI
 
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 STEPS, EVERY = 3, 2
 
 
 def started(scene, **fluid):
-    return Simulation(Scene.from_dict({**scene, "fluid": scene["fluid"] | fluid}), None, False)
+    return Simulation(scene_from_dict({**scene, "fluid": scene["fluid"] | fluid}), None, False)
 
 
 def go_on(simulation, steps):

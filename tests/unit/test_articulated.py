@@ -6,8 +6,8 @@ import pytest
 import rigidfluid
 from rigidfluid.core.contact.proximity import surroundings
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 
@@ -19,7 +19,7 @@ def chain(*wholes, x=(0.2, 0.41, 0.62), mesh=False, **contact):
         for position, whole in zip(x, wholes, strict=True)
     ]
     fluid = {"density": 1.0, "viscosity": 0.1} if mesh else {"backend": "dry"}
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "chain", "dimension": 2},
             "fluid": fluid,

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid import Scene
+from rigidfluid import scene_from_dict
+from rigidfluid import Scene, scene_from_dict
 
 RANGE, SMALLEST, RADIUS = 0.02, 0.006, 0.25
 LAWS = ["centre", "normal", "contact", "barrier"]
@@ -26,7 +27,7 @@ def ball(height: float, velocity: float | None = None, **keys: Any) -> dict[str,
 
 def scene(law: str, dimension: int, gravity: float, *bodies: dict[str, Any], **contact: Any) -> Scene:
     """Balls in a box without a fluid, in steps that are small beside the impact."""
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "drop", "dimension": dimension},
             "fluid": {"backend": "dry", "gravity": _up(-gravity, 0.0, dimension)},
@@ -55,7 +56,7 @@ def smallest_gap(scene: Scene, speed: float, gravity: float) -> float:
     data = scene.to_dict()
     data["time"] = {"end": end, "step": end / 120}
     data["output"]["every"] = end
-    history = rigidfluid.run(Scene.from_dict(data))
+    history = rigidfluid.run(scene_from_dict(data))
     assert history.summary["auto_epsilon"]
     return float(history.bodies["gap"].min())
 
@@ -88,7 +89,7 @@ def test_drop_onto_a_ball_ends_at_the_smallest_gap(law: str, gravity: float, spe
 def test_the_summary_says_what_was_chosen_and_why() -> None:
     drop = scene("normal", 2, 10.0, ball(1.0), ball(1.6, density=4.0), epsilon=1e-3, epsilon_wall="auto")
     data = drop.to_dict() | {"time": {"end": 1e-3, "step": 1e-3}, "output": {"every": 1e-3}}
-    lower, upper = rigidfluid.run(Scene.from_dict(data)).summary["auto_epsilon"]
+    lower, upper = rigidfluid.run(scene_from_dict(data)).summary["auto_epsilon"]
     assert (lower["between"], upper["between"]) == (["body0", "wall"], ["body1", "wall"])
     light, heavy = (10.0 * density * np.pi * RADIUS**2 for density in (2.0, 4.0))
     alone = heavy * (1.35 - RANGE)
@@ -107,7 +108,7 @@ def test_the_summary_says_what_was_chosen_and_why() -> None:
 def test_the_summary_is_silent_where_the_scene_gives_numbers() -> None:
     drop = scene("normal", 2, 10.0, ball(1.0), epsilon=1e-3)
     data = drop.to_dict() | {"time": {"end": 1e-3, "step": 1e-3}, "output": {"every": 1e-3}}
-    assert rigidfluid.run(Scene.from_dict(data)).summary["auto_epsilon"] == []
+    assert rigidfluid.run(scene_from_dict(data)).summary["auto_epsilon"] == []
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from rigidfluid import Scene
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.cli import app
 from rigidfluid.core.contact.meetings import representatives
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 
 RADIUS, RANGE, GRAVITY, HEIGHT = 0.1, 0.02, 10.0, 0.5
 MASS = 3.0 * np.pi * RADIUS**2
@@ -43,7 +43,7 @@ def tables(*bodies: dict[str, Any], contact: dict[str, Any] | None = None, **mor
 
 
 def report(*bodies: dict[str, Any], **more: Any) -> Report:
-    return check(Scene.from_dict(tables(*bodies, **more)))
+    return check(scene_from_dict(tables(*bodies, **more)))
 
 
 def found(question: str, *bodies: dict[str, Any], **more: Any) -> list[Finding]:
@@ -68,7 +68,7 @@ def without_epsilon(contact: dict[str, Any], **more: Any) -> dict[str, Any]:
 
 
 def answers(data: dict[str, Any], question: str) -> list[Finding]:
-    return [one for one in check(Scene.from_dict(data)).findings if one.question == question]
+    return [one for one in check(scene_from_dict(data)).findings if one.question == question]
 
 
 # rest
@@ -305,7 +305,7 @@ def test_nothing_keeps_bodies_apart(contact: dict[str, Any], more: dict[str, Any
 
 
 def test_fixed_bodies_need_no_law() -> None:
-    assert not check(Scene.from_dict(tables(BALL | {"fixed": True}) | {"contact": {}})).findings
+    assert not check(scene_from_dict(tables(BALL | {"fixed": True}) | {"contact": {}})).findings
 
 
 def test_a_face_that_does_not_repel() -> None:
@@ -338,7 +338,7 @@ def test_many_different_bodies_are_asked_at_their_extremes() -> None:
         BALL | {"radius": 0.02 + 1e-4 * i, "position": [0.1 + 0.1 * (i % 18), 0.2 + 0.15 * (i // 18)]}
         for i in range(90)
     ]
-    assert len(representatives(build_system(Scene.from_dict(tables(*row))))) <= 24
+    assert len(representatives(build_system(scene_from_dict(tables(*row))))) <= 24
     assert found("rest", *row)[0].subject == ("body89", "bottom")
 
 
@@ -453,7 +453,7 @@ def test_every_question_and_figure_is_explained() -> None:
             contact=weak, boundary=[{"on": "bottom", "type": "slip"}], domain={"lower": [0.8, 0.0], "upper": [1.2, 2.0]}
         ),
         report(contact={"epsilon": 1e-12}, **WET, **MESH),
-        check(Scene.from_dict(tables() | {"contact": {}})),
+        check(scene_from_dict(tables() | {"contact": {}})),
     ]
     findings = [one for each in reports for one in each.to_dict()["findings"]]
     words = {word for one in findings for word in (one["question"], *one["found"], *one["enough"])}

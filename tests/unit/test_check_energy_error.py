@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid import Scene
+from rigidfluid import scene_from_dict
 from rigidfluid.checks import Finding, check
 
 RADIUS, RANGE, DENSITY, VISCOSITY, GRAVITY = 0.1, 0.03, 1.0, 0.01, 981.0
@@ -28,7 +28,7 @@ def findings(*bodies: dict[str, Any], step: float = 0.002, epsilon: float = STIF
         "time": {"end": 1.0, "step": step, "shortest": 1e-7},
         "output": {"every": 0.5},
     }
-    return [one for one in check(Scene.from_dict(data)).findings if one.question == "energy-error"]
+    return [one for one in check(scene_from_dict(data)).findings if one.question == "energy-error"]
 
 
 def only(*bodies: dict[str, Any], **keys: Any) -> dict[str, float]:

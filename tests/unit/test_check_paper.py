@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from rigidfluid import load_scene
 from rigidfluid.cli import app
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
 
 SCENES = Path(__file__).parents[2] / "scenes"
 NONE = "none"

@@ -26,7 +26,7 @@ from rigidfluid.comparison.scenes import backend_scenes
 from rigidfluid.comparison.tables import meaning
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.scene.scene_text import scene_text
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.reports import report
 from rigidfluid.reports.results import Results
@@ -136,7 +136,7 @@ def history(time: list[float], energy: list[float] | None = None, count: int = 2
     """A run of ``count`` bodies; columns that are not given are 0, quaternions 1."""
     dimension = 3 if any(name.startswith("q") for name in values) else 2
     body = {"type": "sphere", "radius": 0.1, "density": 1.0}
-    scene = rigidfluid.Scene.from_dict(
+    scene = rigidfluid.scene_from_dict(
         {
             "scene": {"name": "hand_made", "dimension": dimension},
             "fluid": {"backend": "dry"},

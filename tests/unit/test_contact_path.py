@@ -7,7 +7,7 @@ import rigidfluid
 from rigidfluid.core.contact import contact_path
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Wrench
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import StepError
 
@@ -17,7 +17,7 @@ DISK = {"type": "sphere", "radius": RADIUS, "density": 1.0, "position": [0.5, 0.
 
 
 def dry(*bodies, step, end, gravity=0.0, **contact):
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "dry", "dimension": 2},
             "fluid": {"backend": "dry", "gravity": [0.0, -gravity]},
@@ -68,7 +68,7 @@ def tilted(gravity):
     scene = dry({}, step=1e-3, end=0.45, gravity=gravity, law="normal", epsilon=1e-6, substeps=20)
     data = scene.to_dict()
     shape = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.6, "density": 1.0, "position": [0.5, 0.3]}
-    bodies = rigidfluid.run(Scene.from_dict(data | {"body": [shape]})).bodies
+    bodies = rigidfluid.run(scene_from_dict(data | {"body": [shape]})).bodies
     mass = np.pi * 0.1 * 0.05
     free = bodies["gap"] > RANGE
     spins = bodies["w"][free]
@@ -129,7 +129,7 @@ def test_an_ellipse_does_so_as_well(part):
     shape = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.6, "density": 1.0}
     shape |= {"position": [0.5, 0.11], "velocity": [0.0, -2.0], "angular_velocity": [3.0]}
     scene = dry({}, step=7.5e-4 * part, end=0.06, law="normal", epsilon=1e-6).to_dict()
-    history = rigidfluid.run(Scene.from_dict(scene | {"body": [shape]}))
+    history = rigidfluid.run(scene_from_dict(scene | {"body": [shape]}))
     assert np.count_nonzero(history.energy["contact"]) >= 5
     assert abs(history.summary["energy"]["relative_residual"]) < 1.5e-5
 
@@ -170,7 +170,7 @@ def test_a_dashpot_takes_what_the_restitution_says(restitution):
     law = {"law": "spring-dashpot", "stiffness": 1e4, "restitution": restitution}
     scene = dry({}, step=0.02, end=0.26)
     contact = {"range": RANGE, "substeps": 1000} | law
-    history = rigidfluid.run(Scene.from_dict(scene.to_dict() | {"contact": contact}))
+    history = rigidfluid.run(scene_from_dict(scene.to_dict() | {"contact": contact}))
     assert history.bodies["vy"][-1] == pytest.approx(restitution * SPEED, rel=5e-3)
     lost = 0.5 * MASS * SPEED**2 * (1.0 - restitution**2)
     assert history.summary["energy"]["contact_loss"] == pytest.approx(lost, rel=0.02, abs=1e-12)
@@ -182,7 +182,7 @@ def test_a_driven_body_pushes_and_takes_no_push():
     ball = {"position": [0.55, 0.5], "velocity": [0.0, 0.0]}
     data = dry({}, step=0.01, end=0.12, epsilon=1e-7).to_dict()
     bodies = [{key: value for key, value in (DISK | body).items() if value is not None} for body in (piston, ball)]
-    history = rigidfluid.run(Scene.from_dict(data | {"body": bodies}))
+    history = rigidfluid.run(scene_from_dict(data | {"body": bodies}))
     np.testing.assert_allclose(history.bodies["vx"][-2:], [1.0, 2.0], rtol=1e-3)
     np.testing.assert_allclose(history.bodies["x"][::2], 0.3 + history.bodies["time"][::2], atol=1e-12)
     assert history.summary["energy"]["control"] == pytest.approx(0.5 * MASS * 4.0, rel=2e-3)

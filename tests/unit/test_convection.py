@@ -8,11 +8,11 @@ import pytest
 
 from rigidfluid.core.contact.contact_path import BodiesPath
 from rigidfluid.core.contact.convection import turning
+from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.run.step import step_to
 
 STEP, SPEED, MASS = 1e-3, 7.0, 0.14
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from rigidfluid.cli import app
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.crosscheck import Row, crosscheck
 from rigidfluid.crosscheck import library as lammps_library
 from rigidfluid.crosscheck.kinds import kinds

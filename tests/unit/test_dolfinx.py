@@ -7,7 +7,7 @@ import pytest
 from falling import falling_disk
 
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
 
@@ -29,7 +29,7 @@ BALLS = {
 
 def three_dimensional(**fluid):
     driven = {**BALLS["body"][1], "prescribed": {"velocity": [0.0, -0.2, 0.0], "angular_velocity": [0.0, 0.0, 1.0]}}
-    return Scene.from_dict({**BALLS, "fluid": BALLS["fluid"] | fluid, "body": [BALLS["body"][0], driven]})
+    return scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | fluid, "body": [BALLS["body"][0], driven]})
 
 
 def two_dimensional(**fluid):
@@ -84,7 +84,7 @@ def test_petscs_flags_are_true_in_the_scene(capfd):
 
 def test_bodies_apart_have_no_entries_in_common():
     """Each would be a new nonzero of PETSc's matrix: many bodies would take minutes."""
-    scene = Scene.from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}})
+    scene = scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}})
     run = after(scene, 1)
     _, matrix = run.system.backend._solver._ksp.getOperators()
     first = matrix.getSize()[0] - len(run.state.mesh.points) - 12  # twists are between velocities and pressures
@@ -96,7 +96,7 @@ def test_bodies_apart_have_no_entries_in_common():
 def iterations(size, step):
     scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
     scene["mesh"], scene["time"]["step"] = {"size": 3 * size, "size_body": size}, step
-    simulation = after(Scene.from_dict(scene), 2)
+    simulation = after(scene_from_dict(scene), 2)
     return simulation.system.backend._solver._ksp.getIterationNumber()
 
 

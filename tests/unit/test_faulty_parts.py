@@ -12,6 +12,7 @@ from dry_scenes import ball, dry_scene
 import rigidfluid
 from rigidfluid.checks import check
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import PluginError
 from rigidfluid.registry import Registry
 
@@ -138,4 +139,4 @@ def test_a_body_that_cannot_be(install: Install, fault: str) -> None:
     table = meeting().to_dict()
     table["body"][0]["type"] = "odd"
     with pytest.raises(PluginError, match=r"body.0: found a \w+ of .*, by the type 'odd'"):
-        Scene.from_dict(table)
+        scene_from_dict(table)

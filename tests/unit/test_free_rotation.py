@@ -9,7 +9,7 @@ from scipy.special import ellipj, ellipkinc
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepRejected
 
 INERTIA = np.array([1.0, 2.0, 3.0])
@@ -66,7 +66,7 @@ def test_round_and_planar_bodies_turn_evenly():
 def test_a_thousand_periods_keep_energy_and_momentum():
     """Through the loop and its differences of momentum, at four steps a period."""
     body = {"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "density": 1.0, "position": [0.5, 0.5, 0.5]}
-    scene = Scene.from_dict(
+    scene = scene_from_dict(
         {
             "scene": {"name": "tumble", "dimension": 3},
             "fluid": {"backend": "dry"},

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from rigidfluid import Scene
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.impact import terminal_speeds
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 RADIUS, RANGE, GRAVITY = 0.1, 0.02, 10.0
@@ -23,7 +24,7 @@ def scene(
 ) -> Scene:
     fluid = {"backend": "dry"} | tables.pop("fluid", {}) | {"gravity": [*gravity, 0.0][:dimension]}
     placed = [{"position": [1.0, 1.5, 1.0][:dimension]} | body for body in bodies]
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "fall", "dimension": dimension},
             "fluid": fluid,
@@ -154,7 +155,7 @@ def test_keys_that_no_law_reads(key: str) -> None:
     data = scene(BALL).to_dict()
     data["contact"] = {key: 0.01}
     with pytest.raises(SceneError, match=f"contact.{key}: found 0.01 without a law"):
-        Scene.from_dict(data)
+        scene_from_dict(data)
 
 
 def test_loads_hold_the_added_mass_and_nothing_for_driven_bodies() -> None:

@@ -13,8 +13,8 @@ from rigidfluid.core.contact.redetected import RedetectedContacts
 from rigidfluid.core.contact.repulsion import RepulsionOptions
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Pose, Wrench
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError, StepError, StepRejected
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
@@ -195,4 +195,4 @@ def test_substeps_have_no_place_beside_it():
     data = implicit(spring(1e4), ball([0.5, 0.5], [0.0, 0.0]), end=0.1, step=0.01).to_dict()
     data["contact"]["substeps"] = 4
     with pytest.raises(SceneError, match=r"contact\.substeps"):
-        Scene.from_dict(data)
+        scene_from_dict(data)

@@ -6,7 +6,7 @@ import pytest
 import rigidfluid
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run import simulation as loop
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError, StepRejected
 
 BALL = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [5.0, 5.0]}
@@ -21,7 +21,7 @@ def dry(*bodies, gravity=(0.0, -10.0), **tables):
         "time": {"step": 0.01, "end": 0.25},
         "output": {"every": 0.1},
     }
-    return Scene.from_dict(data | tables)
+    return scene_from_dict(data | tables)
 
 
 def test_energy_of_a_driven_ball_that_pushes_a_free_one():
@@ -47,7 +47,7 @@ def test_a_dry_scene_that_names_a_fluid_is_no_wetter():
     scene = dry({"velocity": [1.0, -5.0], "position": [5.0, 0.6]}, gravity=(0.0, 0.0), contact=law)
     named = scene.to_dict()
     named["fluid"] |= {"density": 1.0, "viscosity": 0.1}
-    wetter, drier = rigidfluid.run(Scene.from_dict(named)).bodies, rigidfluid.run(scene).bodies
+    wetter, drier = rigidfluid.run(scene_from_dict(named)).bodies, rigidfluid.run(scene).bodies
     assert drier["vy"][-1] > 0.0
     for column in ("x", "y", "vx", "vy"):
         np.testing.assert_array_equal(wetter[column], drier[column])
@@ -79,7 +79,7 @@ def test_all_levels_are_tried(monkeypatch):
 
 
 def test_a_tumbling_ellipsoid_keeps_its_energy_in_a_run():
-    scene = Scene.from_dict(
+    scene = scene_from_dict(
         {
             "scene": {"name": "t", "dimension": 3},
             "fluid": {"backend": "dry"},

@@ -5,9 +5,9 @@ from mesh_tools import ball, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.run.run import run
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import cheapest_detector
-from rigidfluid.core.setup.system import build_system
 from rigidfluid.errors import SceneError
 
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}
@@ -16,7 +16,7 @@ LAW = {"law": "centre", "range": 0.03, "epsilon": 5e-6}
 
 
 def scene(body, contact, backend="scikit-fem"):
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "fall", "dimension": 2},
             "fluid": {"backend": backend, "density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},

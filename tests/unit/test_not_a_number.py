@@ -11,6 +11,7 @@ from dry_scenes import ball, dry_scene
 
 import rigidfluid
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError
 
 Install = Callable[..., Path]
@@ -123,4 +124,4 @@ def test_a_backend_that_gives_no_number(install: Install, tmp_path: Path, change
     install(BACKEND.replace("FIELD", change), name="lost", module="lost_backend")
     scene = towards_each_other(epsilon=1e-4, epsilon_wall=1e-4).to_dict()
     scene["fluid"]["backend"] = "lost"
-    assert_refused(Scene.from_dict(scene), tmp_path / "out", word, "fluid.backend")
+    assert_refused(scene_from_dict(scene), tmp_path / "out", word, "fluid.backend")

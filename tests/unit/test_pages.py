@@ -71,7 +71,7 @@ def test_the_example_of_a_plug_in_runs(install: Install) -> None:
     assert Registry.load().get(FORCE_LAW, "linear").__doc__
     scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.01"]).to_dict()
     scene["contact"] = scene_table["contact"]
-    history = rigidfluid.run(rigidfluid.Scene.from_dict(scene))
+    history = rigidfluid.run(rigidfluid.scene_from_dict(scene))
     assert history.bodies["cfx"].any()
 
 

@@ -6,7 +6,7 @@ from falling import falling_disk
 from scipy import sparse
 
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
 BALLS = {
@@ -29,7 +29,7 @@ def disk():
 
 
 def balls():
-    return Scene.from_dict(BALLS)
+    return scene_from_dict(BALLS)
 
 
 @pytest.fixture(params=[disk, balls], scope="module")

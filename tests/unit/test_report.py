@@ -91,7 +91,7 @@ def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:
     places = [(x, y) for x in np.linspace(0.1, 0.9, 5) for y in np.linspace(0.1, 0.9, 5)]
     body = [{"type": "sphere", "radius": 0.05, "density": 1.0, "position": list(map(float, place))} for place in places]
     rigidfluid.run(
-        rigidfluid.Scene.from_dict(
+        rigidfluid.scene_from_dict(
             {
                 "scene": {"name": "many", "dimension": 2},
                 "fluid": {"backend": "dry", "gravity": [0.0, -1.0]},
@@ -111,7 +111,7 @@ def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:
 def test_a_body_alone_has_no_gap_to_show(tmp_path: Path) -> None:
     scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"]).to_dict()
     scene["boundary"], scene["body"] = [{"on": "all", "type": "slip"}], scene["body"][:1]
-    rigidfluid.run(rigidfluid.Scene.from_dict(scene), tmp_path)
+    rigidfluid.run(rigidfluid.scene_from_dict(scene), tmp_path)
     assert not any(path.stem == "gap" for path in report(tmp_path))
 
 

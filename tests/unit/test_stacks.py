@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid import Scene
-from rigidfluid.core.contact.stacks import stacked
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.stacks import stacked
 
 BOX = np.array([2.0, 3.0, 4.0])
 
@@ -75,7 +75,7 @@ def loads(*bodies: dict[str, Any]) -> Any:
         "time": {"end": 1.0, "step": 0.01},
         "output": {"every": 0.5},
     }
-    return build_system(Scene.from_dict(data)).loads
+    return build_system(scene_from_dict(data)).loads
 
 
 def test_the_lower_of_two_disks_bears_both() -> None:

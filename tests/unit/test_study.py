@@ -19,6 +19,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import OutputError, SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid.reports.style import PALETTE
@@ -462,7 +463,7 @@ def test_shipped_studies_can_be_run(path: Path) -> None:
     for identity in identities:
         tables = json.loads(identity)[0]
         if tables["fluid"].get("backend", "scikit-fem") in usable:
-            Scene.from_dict(tables)
+            scene_from_dict(tables)
 
 
 def test_tables_are_named_by_what_differs() -> None:

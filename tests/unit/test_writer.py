@@ -99,7 +99,7 @@ def test_a_resumed_run_knows_its_extremes(tmp_path):
     whole = rigidfluid.run(dry_scene(law, thrown, end=0.4, **bounce)).summary
     for end in (0.2, 0.4):
         scene = dry_scene(law, thrown, end=end, **bounce).to_dict() | {"output": {"every": 0.1}}
-        parts = rigidfluid.run(rigidfluid.Scene.from_dict(scene), tmp_path, resume=end > 0.2).summary
+        parts = rigidfluid.run(rigidfluid.scene_from_dict(scene), tmp_path, resume=end > 0.2).summary
     assert parts["smallest_gap"] == whole["smallest_gap"]
 
 
@@ -167,7 +167,7 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
 
 def test_a_body_without_any_wall_has_no_gap(tmp_path):
     data = falling_disk(**SHORT).to_dict() | {"boundary": [{"on": "all", "type": "slip"}]}
-    rigidfluid.run(rigidfluid.Scene.from_dict(data), tmp_path)
+    rigidfluid.run(rigidfluid.scene_from_dict(data), tmp_path)
     assert json.loads((tmp_path / "summary.json").read_text())["smallest_gap"] is None
 
 

@@ -14,7 +14,7 @@ VISCOSITY, SPEED, FAR = 0.7, 0.3, 60.0
 
 def drag(height, direction=(0.0, 0.0), spin=0.0):
     """Force (2,) and torque on a cylinder of radius 1 that moves at SPEED or turns, ``height`` above the floor."""
-    scene = rigidfluid.Scene.from_dict(
+    scene = rigidfluid.scene_from_dict(
         {
             "scene": {"name": "cylinder", "dimension": 2},
             "fluid": {"model": "stokes", "density": 1.0, "viscosity": VISCOSITY},

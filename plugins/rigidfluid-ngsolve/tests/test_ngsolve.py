@@ -29,7 +29,7 @@ def two_balls(backend: str, dimension: int, model: str) -> rigidfluid.Scene:
         "position": [0.3] * dimension,
         "prescribed": {"velocity": [0.5] * dimension, "angular_velocity": spin},
     }
-    return rigidfluid.Scene.from_dict(
+    return rigidfluid.scene_from_dict(
         {
             "scene": {"name": "two_balls", "dimension": dimension},
             "fluid": {

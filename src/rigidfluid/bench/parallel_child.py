@@ -19,6 +19,7 @@ from rigidfluid.core.run.launch import Launch
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 STEPS = 10
 """As many as in the paper."""
@@ -32,7 +33,7 @@ def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfin
     balls, pose, _ = balls_in_a_box(dimension, bodies)
     sizes = mesh_sizes(dimension, bodies, coarseness)
     ball = {"type": "sphere", "radius": balls[0].radius, "density": 1.0}
-    return Scene.from_dict(
+    return scene_from_dict(
         {
             "scene": {"name": "balls", "dimension": dimension},
             "fluid": {"backend": backend, "density": 1.0, "viscosity": 0.01},

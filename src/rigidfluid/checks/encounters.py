@@ -19,8 +19,8 @@ from rigidfluid.core.contact.loads import (
 from rigidfluid.core.contact.meetings import body_meetings, free, kinds, representatives, wall_meetings
 from rigidfluid.core.contact.stiffness import greatest_stiffness
 from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, Wall
-from rigidfluid.core.setup.system import System
 
 MOST_SHOWN = 8
 """Of the kinds of pairs, for one question."""

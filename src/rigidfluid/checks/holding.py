@@ -9,9 +9,9 @@ import numpy as np
 from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.core.contact.meetings import free, kinds
 from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import faces, inward_normal
-from rigidfluid.core.setup.system import System
 
 
 def by_a_law(system: System) -> Iterator[Finding]:

@@ -13,9 +13,9 @@ from rigidfluid.core.contact.proximity import may_repel
 from rigidfluid.core.mechanics.shapes import inscribed_radius
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import Body, ForceLaw
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.scene import MeshTable
-from rigidfluid.core.setup.system import System
 
 
 def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Finding]:

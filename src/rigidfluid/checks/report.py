@@ -19,12 +19,13 @@ from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.rest import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.core.model.foreign import no_exit
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
 from rigidfluid.core.setup.parts import exact_detector
-from rigidfluid.core.setup.system import System, build_system, gap_reach
 from rigidfluid.registry import Registry
 
 

@@ -10,6 +10,7 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import FluidTable, Scene, read_toml
 from rigidfluid.core.scene.validation import unknown_key
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
@@ -46,7 +47,7 @@ def backend_scenes(path: str | Path, backends: Sequence[str], overrides: Iterabl
     tables = read_toml(Path(path))
     override(tables, overrides)
     if not isinstance(tables.get("fluid", {}), Mapping):
-        Scene.from_dict(tables)  # it says what is wrong
+        scene_from_dict(tables)  # it says what is wrong
     _refuse_unread(tables.get("fluid", {}), registry, backends)
     return {part.name: _scene(tables, part) for part in parts}
 
@@ -82,7 +83,7 @@ def _scene(tables: Mapping[str, Any], part: type[FluidBackend]) -> Scene:
     own = set(part.Options.model_fields)
     fluid = {key: value for key, value in tables.get("fluid", {}).items() if key in _COMMON | own}
     try:
-        return Scene.from_dict({**tables, "fluid": fluid | {"backend": part.name}})
+        return scene_from_dict({**tables, "fluid": fluid | {"backend": part.name}})
     except SceneError as error:
         if error.subject.removeprefix("fluid.") in own:
             raise _naming(error, f"with backend {part.name!r}") from None

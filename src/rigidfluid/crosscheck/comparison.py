@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.system import System
 from rigidfluid.crosscheck.kinds import radii
 from rigidfluid.crosscheck.samples import Samples
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import build_system
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.crosscheck.comparison import Comparison, compared
 from rigidfluid.crosscheck.ours import run_ours
 from rigidfluid.crosscheck.refusals import refuse_foreign
@@ -20,7 +20,7 @@ def crosscheck(scene: Scene, steps: int = 3, samples: int = SAMPLES) -> Comparis
     Parameters
     ----------
     scene : Scene
-        From `load_scene` or `Scene.from_dict`; the first step is its ``time.step`` over ``contact.substeps``.
+        From `load_scene` or `scene_from_dict`; the first step is its ``time.step`` over ``contact.substeps``.
     steps : int
         How many steps to run with, each half of the one before.
     samples : int

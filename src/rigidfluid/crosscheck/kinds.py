@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, IntArray
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import CrosscheckError
 
 MOST_KINDS = 12

@@ -8,10 +8,11 @@ from rigidfluid.core.contact.balls import on_wall
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Motion
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.crosscheck.samples import Sample, Samples
 from rigidfluid.crosscheck.timing import Timing
 
@@ -49,7 +50,7 @@ def _timed(scene: Scene, timing: Timing) -> Scene:
     data["time"] = {"step": block, "shortest": block, "end": timing.blocks * block}
     data["output"] = {"every": timing.blocks * block}
     data["contact"] |= {"stepping": "substeps", "substeps": timing.steps}
-    return Scene.from_dict(data)
+    return scene_from_dict(data)
 
 
 def _sample(system: System, state: State) -> Sample:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import CrosscheckError
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 

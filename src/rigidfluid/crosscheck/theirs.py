@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.run.step import contact_energy
-from rigidfluid.core.setup.system import System
 from rigidfluid.crosscheck.kinds import Kinds, kinds, radii
 from rigidfluid.crosscheck.library import lammps_session
 from rigidfluid.crosscheck.samples import Sample, Samples

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Wall
-from rigidfluid.core.setup.system import System
 from rigidfluid.crosscheck.kinds import Kinds, radii
 from rigidfluid.crosscheck.tables import POINTS, Pair, write_table
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns
@@ -19,7 +20,8 @@ from rigidfluid.core.output.tables import read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System, build_system
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import OutputError
 
 NEEDED = (
@@ -84,7 +86,7 @@ def read_results(folder: Path) -> Results:
         Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
     """
     summary = _summary(folder / SUMMARY)
-    scene = Scene.from_dict(summary["scene"])
+    scene = scene_from_dict(summary["scene"])
     system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension)
     energy = _table(folder, "energy", scene.dimension)

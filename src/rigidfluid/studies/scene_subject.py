@@ -10,6 +10,7 @@ from typing import Any
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.studies.figure import check_figure, read_figure
 from rigidfluid.studies.model import ErrorTable, Settings, Study
 from rigidfluid.studies.subject import Outcome, Target, tried
@@ -67,7 +68,7 @@ class SceneSubject:
         return tables
 
     def _scene(self, settings: Settings) -> Scene:
-        return Scene.from_dict(self._tables(settings))
+        return scene_from_dict(self._tables(settings))
 
     def _warm_up(self, scene: Scene) -> None:
         """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""

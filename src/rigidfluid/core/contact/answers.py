@@ -6,8 +6,8 @@ import numpy as np
 
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Step
-from rigidfluid.core.setup.system import System
 
 CHANGED, CHANGED_SHARED = 0.01, 0.05
 """A body is asked again when the tightness of its contacts, or its way in a step over its radius, has changed by so

@@ -23,8 +23,8 @@ from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000

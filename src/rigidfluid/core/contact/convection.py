@@ -9,8 +9,8 @@ from rigidfluid.core.contact.contact_path import BodiesPath
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, Step
-from rigidfluid.core.setup.system import System
 
 
 def turning(system: System, state: State, path: BodiesPath, step: Step) -> FloatArray:

@@ -6,13 +6,13 @@ import numpy as np
 
 from rigidfluid.core.contact.answers import updated_model
 from rigidfluid.core.contact.contact_path import BodiesPath, near_contacts
+from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Step
-from rigidfluid.core.run.step import step_to
-from rigidfluid.core.setup.system import System
 
 SETTLED = 1e-3
 """A step is followed again until the bodies' velocities change by less than this part of them."""

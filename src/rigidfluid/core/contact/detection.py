@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rigidfluid.core.model.part_results import refuse_lost_contacts
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
-from rigidfluid.core.setup.system import System
 
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:

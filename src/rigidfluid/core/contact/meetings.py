@@ -12,8 +12,8 @@ import numpy as np
 from rigidfluid.core.contact.proximity import may_repel
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, Wall
-from rigidfluid.core.setup.system import System
 
 MOST = 40
 """More bodies than that do not stand for all: then those with the extremes of all that counts do."""

@@ -8,8 +8,8 @@ from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.detection import detect
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import StepRejected
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from rigidfluid.core.contact.detection import detect
 from rigidfluid.core.contact.proximity import may_repel, travel
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, IntArray, Pose
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import StepRejected
 
 

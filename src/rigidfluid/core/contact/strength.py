@@ -10,8 +10,8 @@ import numpy as np
 from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.contact.meetings import body_meetings, free, representatives, wall_meetings
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
-from rigidfluid.core.setup.system import System
 
 
 def chosen_strengths(system: System) -> list[dict[str, Any]]:

@@ -15,8 +15,8 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
-from rigidfluid.core.setup.system import System
 from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from rigidfluid.core.mechanics.rigid import lab_inertia
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
-
 
 @dataclass(frozen=True, slots=True)
 class Power:
@@ -95,9 +90,3 @@ class Ledger:
     def after_transfer(self, loss: float) -> Ledger:
         """The ledger after a transfer that lost this much kinetic energy."""
         return replace(self, kinetic=self.kinetic - loss, transfer_loss=self.transfer_loss + loss)
-
-
-def kinetic_energy(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> float:
-    """Of the bodies, Σ ½ m|U|² + ½ ω·(R I Rᵀ)ω [energy]."""
-    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
-    return 0.5 * float(mass @ np.sum(twist.velocity**2, axis=1) + np.sum(spin * twist.angular_velocity))

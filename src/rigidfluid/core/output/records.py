@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.system import System
 
 Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]

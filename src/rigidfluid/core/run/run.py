@@ -30,7 +30,7 @@ def run(
     Parameters
     ----------
     scene : Scene
-        From `load_scene` or `Scene.from_dict`.
+        From `load_scene` or `scene_from_dict`.
     out : Path or None
         Folder for the results; None keeps them in memory alone.
     resume : bool

@@ -22,6 +22,7 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
@@ -33,7 +34,7 @@ from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt, 
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System, build_system
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.errors import OutputError, SceneError, StepError, StepRejected
 
 MOST_ATTEMPTS = 4

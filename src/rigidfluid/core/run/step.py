@@ -9,16 +9,17 @@ import numpy as np
 from rigidfluid.core.contact.contact_path import BodiesPath
 from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.contact.proximity import refuse_overlap, surroundings
-from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
-from rigidfluid.core.mechanics.wrenches import flat, power
+from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
+from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.mesh.mesh_adaptation import Mover
-from rigidfluid.core.model.energy import Power, Work, kinetic_energy
+from rigidfluid.core.model.energy import Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import Past, State
-from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Advance, Contacts, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
-from rigidfluid.core.setup.system import System
 
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
@@ -94,57 +95,6 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     energy = system.law.energy(contacts)
     refuse_no_number("contacts", "energy", energy, "contact.law")
     return float(np.sum(energy))
-
-
-def step_to(
-    system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
-) -> Step:
-    """The step of this ``size`` that ends at ``time`` with the bodies at ``pose``, after ``impulse`` by contacts."""
-    derivative = derivative_weights(size, state.past_step)
-    poses, twists = [state.pose], [state.twist]
-    if state.past is not None:
-        poses.append(state.past.pose)
-        twists.append(state.past.twist)
-    pushed = _mean_push(state, impulse, derivative)
-    wrench = Wrench(pushed.force + system.weight, pushed.torque)
-    mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
-    return Step(
-        time=time,
-        derivative=derivative,
-        extrapolation=extrapolation_weights(size, state.past_step),
-        pose=pose,
-        points=None if mesh is None else mesh.points,
-        mass_matrix=mass_matrix,
-        load=load,
-        controlled=system.controlled,
-        controlled_twist=system.controlled_twist(time),
-        impulse=flat(impulse),
-        load_scale=_load_scale(system, impulse, derivative),
-        turning=np.zeros_like(load),
-    )
-
-
-def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
-    """A hundredth of weight and contacts, which cancel each other at rest [force].
-
-    What remains of them is rounding, and no residual can be made small beside it.
-    """
-    free = ~system.controlled
-    pushed = derivative[0] * np.linalg.norm(impulse.force[free])
-    return float(0.01 * max(np.linalg.norm(system.weight[free]), pushed))
-
-
-def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
-    """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
-
-    It is what differencing momentum less the impulses received so far comes to: a blow shorter than the step changes
-    the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
-    """
-    latest, before = state.contact_wrench, state.past_step or 0.0
-    return Wrench(
-        derivative[0] * impulse.force - derivative[2] * before * latest.force,
-        derivative[0] * impulse.torque - derivative[2] * before * latest.torque,
-    )
 
 
 def _power(system: System, advance: Advance) -> Power:

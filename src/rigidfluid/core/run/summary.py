@@ -11,12 +11,12 @@ import numpy as np
 from rigidfluid.core.contact.strength import chosen_strengths
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 from rigidfluid.core.run.memory import peak_memory
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.system import System
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation

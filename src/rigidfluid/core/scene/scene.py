@@ -7,16 +7,11 @@ Units are free but must be consistent; ``d`` is the dimension.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 
-from rigidfluid.core.scene.overrides import override
-from rigidfluid.core.scene.validation import read_table
-from rigidfluid.core.setup.parts import resolve
-from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 from rigidfluid.errors import SceneError
 
 Positive = Annotated[float, Field(gt=0)]
@@ -195,7 +190,7 @@ class OutputTable(_Table):
 
 
 class Scene(_Table):
-    """A whole scene, validated; `Scene.from_dict` and `load_scene` are the ways to make one."""
+    """A whole scene, validated; `scene_from_dict` and `load_scene` are the ways to make one."""
 
     scene: SceneTable
     fluid: FluidTable
@@ -222,62 +217,10 @@ class Scene(_Table):
         """Number of space dimensions."""
         return self.scene.dimension
 
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Scene:
-        """Validate the tables of a scene.
-
-        Parameters
-        ----------
-        data : mapping
-            The tables, as TOML gives them.
-
-        Returns
-        -------
-        Scene
-            With all defaults filled in.
-
-        Raises
-        ------
-        SceneError
-            If a key or value is not allowed, naming it, what is allowed and the remedy.
-        PluginError
-            If it names a part that is not there.
-        """
-        scene = read_table(cls, data)
-        check_tables(scene)
-        check_fluid(scene, resolve(scene).backend.part)
-        return scene
-
     def to_dict(self) -> dict[str, Any]:
-        """The tables again, in values that TOML and JSON can hold; `from_dict` reads them back to an equal scene."""
+        """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
+        scene."""
         return self.model_dump(mode="json", exclude_none=True)
-
-
-def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
-    """Read a scene file.
-
-    Parameters
-    ----------
-    path : str or Path
-        A TOML file.
-    overrides : iterable of str
-        Values to set before validation, as ``contact.range=0.02`` or ``body.0.density=1.5``.
-
-    Returns
-    -------
-    Scene
-        Validated, with all defaults filled in.
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read, is no TOML, or says something that is not allowed.
-    PluginError
-        If it names a part that is not there.
-    """
-    data = read_toml(Path(path))
-    override(data, overrides)
-    return Scene.from_dict(data)
 
 
 def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.system import System
     from rigidfluid.core.model.types import FluidProblem
-    from rigidfluid.core.setup.system import System
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,16 @@
-"""The parts of one simulation, built from a scene: bodies, walls, detector, law and backend, ready for the loop."""
+"""A scene becomes a system: bodies, walls, detector, law and backend, ready for the loop."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.contact.stacks import stacked
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import most_leverage
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
     BoundaryCondition,
@@ -21,7 +20,6 @@ from rigidfluid.core.model.types import (
     Loads,
     Pose,
     Twist,
-    Wall,
 )
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions, face_planes, faces
@@ -29,52 +27,11 @@ from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.parts import Parts, resolve
 from rigidfluid.core.setup.prescribed import prescribed_motion
+from rigidfluid.core.setup.stacks import stacked
 
 _MOST_PAIRS = 1000
 _SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if the scene gives none."""
-
-
-@dataclass(frozen=True)
-class System:
-    """Everything that stays the same while a scene runs.
-
-    ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
-    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
-    fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
-    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
-    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
-    ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
-    ``loads``: what contacts must hold; its smallest gap is 0 without a law.
-    ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
-    ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
-    ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
-    """
-
-    dimension: int
-    bodies: tuple[Body, ...]
-    surfaces: tuple[str, ...]
-    walls: tuple[Wall, ...]
-    lower: FloatArray
-    upper: FloatArray
-    mass: FloatArray
-    added_mass: FloatArray
-    inertia: FloatArray
-    weight: FloatArray
-    pose: Pose
-    twist: Twist
-    assembly: IntArray
-    controlled: BoolArray
-    controlled_twist: Callable[[float], FloatArray]
-    backend: FluidBackend
-    detector: Detector
-    detector_why: str
-    reach: float
-    leverage: FloatArray
-    law: ForceLaw | None
-    loads: Loads
-    substeps: int | None
-    implicit: bool
 
 
 def build_system(scene: Scene) -> System:

@@ -1,0 +1,51 @@
+"""The parts of one simulation: bodies, walls, detector, law and backend."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Loads, Pose, Twist, Wall
+
+
+@dataclass(frozen=True)
+class System:
+    """Everything that stays the same while a scene runs.
+
+    ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
+    ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
+    fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
+    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
+    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
+    ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
+    ``loads``: what contacts must hold; its smallest gap is 0 without a law.
+    ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
+    ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
+    ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
+    """
+
+    dimension: int
+    bodies: tuple[Body, ...]
+    surfaces: tuple[str, ...]
+    walls: tuple[Wall, ...]
+    lower: FloatArray
+    upper: FloatArray
+    mass: FloatArray
+    added_mass: FloatArray
+    inertia: FloatArray
+    weight: FloatArray
+    pose: Pose
+    twist: Twist
+    assembly: IntArray
+    controlled: BoolArray
+    controlled_twist: Callable[[float], FloatArray]
+    backend: FluidBackend
+    detector: Detector
+    detector_why: str
+    reach: float
+    leverage: FloatArray
+    law: ForceLaw | None
+    loads: Loads
+    substeps: int | None
+    implicit: bool

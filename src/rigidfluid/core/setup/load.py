@@ -1,0 +1,66 @@
+"""Tables become a scene that the parts it names can run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.parts import resolve
+from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
+
+
+def scene_from_dict(data: Mapping[str, Any]) -> Scene:
+    """Validate the tables of a scene.
+
+    Parameters
+    ----------
+    data : mapping
+        The tables, as TOML gives them.
+
+    Returns
+    -------
+    Scene
+        With all defaults filled in.
+
+    Raises
+    ------
+    SceneError
+        If a key or value is not allowed, naming it, what is allowed and the remedy.
+    PluginError
+        If it names a part that is not there.
+    """
+    scene = read_table(Scene, data)
+    check_tables(scene)
+    check_fluid(scene, resolve(scene).backend.part)
+    return scene
+
+
+def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file.
+    overrides : iterable of str
+        Values to set before validation, as ``contact.range=0.02`` or ``body.0.density=1.5``.
+
+    Returns
+    -------
+    Scene
+        Validated, with all defaults filled in.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, is no TOML, or says something that is not allowed.
+    PluginError
+        If it names a part that is not there.
+    """
+    data = read_toml(Path(path))
+    override(data, overrides)
+    return scene_from_dict(data)
