@@ -15,15 +15,15 @@ import potpourri3d
 import skfmm
 from scipy.spatial import cKDTree
 
-from rigidfluid.bench.nearest_facet import nearest_facet_distances
-from rigidfluid.bench.shells import INNER, shell
-from rigidfluid.bench.timing import fastest
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
+from rigidfluid.evaluation.bench.shells import INNER, shell
+from rigidfluid.evaluation.bench.timing import fastest
 from rigidfluid.marching.field import distance_field
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace

@@ -21,9 +21,9 @@ import numpy as np
 import rigidfluid
 from rigidfluid.core.contact.contact_path import follow
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.crosscheck.kinds import kinds
-from rigidfluid.crosscheck.library import lammps_session
-from rigidfluid.crosscheck.theirs import build
+from rigidfluid.evaluation.crosscheck.kinds import kinds
+from rigidfluid.evaluation.crosscheck.library import lammps_session
+from rigidfluid.evaluation.crosscheck.theirs import build
 
 RADIUS, SPACING, RANGE, STEP = 0.4, 1.0, 0.05, 1e-3
 LAWS: dict[str, dict[str, Any]] = {

@@ -20,13 +20,13 @@ from matplotlib.figure import Figure
 
 import rigidfluid
 from rigidfluid.core.output.history import History
-from rigidfluid.crosscheck import crosscheck
-from rigidfluid.crosscheck.comparison import PARTED
 from rigidfluid.errors import StepError
+from rigidfluid.evaluation.crosscheck import crosscheck
+from rigidfluid.evaluation.crosscheck.comparison import PARTED
+from rigidfluid.evaluation.studies import load_study, run_study
+from rigidfluid.evaluation.studies.results import Results
+from rigidfluid.evaluation.studies.rows import cells, short_text
 from rigidfluid.registry import FLUID_BACKEND, Registry
-from rigidfluid.studies import load_study, run_study
-from rigidfluid.studies.results import Results
-from rigidfluid.studies.rows import cells, short_text
 
 ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "validation"

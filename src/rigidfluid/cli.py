@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
     from rigidfluid.checks import Report
-    from rigidfluid.comparison.compare import CompareProgress
-    from rigidfluid.comparison.comparison import Comparison as BackendComparison
     from rigidfluid.core.output.history import History
     from rigidfluid.core.run.run import Progress
     from rigidfluid.core.scene.scene import Scene
-    from rigidfluid.crosscheck import Comparison
-    from rigidfluid.studies.results import Results
-    from rigidfluid.studies.run import StudyProgress
+    from rigidfluid.evaluation.comparison.compare import CompareProgress
+    from rigidfluid.evaluation.comparison.comparison import Comparison as BackendComparison
+    from rigidfluid.evaluation.crosscheck import Comparison
+    from rigidfluid.evaluation.studies.results import Results
+    from rigidfluid.evaluation.studies.run import StudyProgress
 
 FOUND_ERRORS = 1
 BAD_INPUT = 2
@@ -131,7 +131,7 @@ def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: Jso
     """Run a dry scene of balls in LAMMPS too, and say how far the results are apart."""
     with _reported():
         from rigidfluid.core.setup.load import load_scene
-        from rigidfluid.crosscheck import crosscheck as run_both
+        from rigidfluid.evaluation.crosscheck import crosscheck as run_both
 
         _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)
 
@@ -147,7 +147,7 @@ def compare(
 ) -> None:
     """Run a scene with several fluid backends, and say how far the results are apart; exit code 1 if one fails."""
     with _reported("The same command goes on."):
-        from rigidfluid.comparison import compare as compare_backends
+        from rigidfluid.evaluation.comparison import compare as compare_backends
 
         with _compare_bar() as show:
             comparison, written = compare_backends(
@@ -190,7 +190,7 @@ def report(folder: Folder) -> None:
 def narrow_band(json_file: JsonFile = None, refinement: Refinement = 1.0) -> None:
     """Time distance fields in bands around a disk and a ball (Van Landeghem et al., Table 1)."""
     with _reported():
-        from rigidfluid.bench.narrow_band import band_rows
+        from rigidfluid.evaluation.bench.narrow_band import band_rows
 
         _print_rows(band_rows(refinement), json_file)
 
@@ -199,7 +199,7 @@ def narrow_band(json_file: JsonFile = None, refinement: Refinement = 1.0) -> Non
 def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> None:
     """Time the collision algorithm among many balls (Van Landeghem et al., Tables 2 and 3)."""
     with _reported():
-        from rigidfluid.bench.collisions import collision_rows
+        from rigidfluid.evaluation.bench.collisions import collision_rows
 
         _print_rows(collision_rows(most_bodies), json_file)
 
@@ -210,7 +210,7 @@ def parallel(
 ) -> None:
     """Time steps of many balls in a fluid on one process and on several (Van Landeghem et al., Tables 2 and 3)."""
     with _reported():
-        from rigidfluid.bench.parallel import parallel_rows
+        from rigidfluid.evaluation.bench.parallel import parallel_rows
 
         _print_rows(parallel_rows(ranks or (1, 2), most_bodies, coarseness), json_file)
 
@@ -219,7 +219,7 @@ def parallel(
 def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> None:
     """Run a scene or a kernel with many settings, and plot the error against the run time."""
     with _reported("The same command goes on with the runs that are not done."):
-        from rigidfluid.studies import load_study, run_study
+        from rigidfluid.evaluation.studies import load_study, run_study
 
         loaded = load_study(study)
         folder = out or Path("out") / loaded.name
@@ -422,7 +422,7 @@ def _print_comparison(comparison: Comparison, json_file: Path | None) -> None:
 
 
 def _print_backends(comparison: BackendComparison) -> None:
-    from rigidfluid.comparison.tables import HEADER, cost_rows, difference_rows, meaning
+    from rigidfluid.evaluation.comparison.tables import HEADER, cost_rows, difference_rows, meaning
 
     for pair in comparison.pairs:
         # without vertical lines it fits into 80 columns

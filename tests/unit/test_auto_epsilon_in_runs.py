@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid import scene_from_dict
 from rigidfluid import Scene, scene_from_dict
 
 RANGE, SMALLEST, RADIUS = 0.02, 0.006, 0.25

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from rigidfluid.bench.collisions import PAPER
-from rigidfluid.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.cli import app
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.detectors.sphere import SphereDetector
+from rigidfluid.evaluation.bench.collisions import PAPER
+from rigidfluid.evaluation.bench.grids import RANGE, balls_in_a_box
 
 
 def test_narrow_band_writes_a_row_for_each_band(tmp_path):

@@ -17,17 +17,17 @@ from typer.testing import CliRunner, Result
 
 import rigidfluid
 from rigidfluid.cli import app
-from rigidfluid.comparison import child, compare, runs
-from rigidfluid.comparison.compare import CompareProgress
-from rigidfluid.comparison.differences import interpolated, pair
-from rigidfluid.comparison.figures import difference_plot, most_different
-from rigidfluid.comparison.page import MOST_BODIES
-from rigidfluid.comparison.scenes import backend_scenes
-from rigidfluid.comparison.tables import meaning
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.errors import RigidfluidError
+from rigidfluid.evaluation.comparison import child, compare, runs
+from rigidfluid.evaluation.comparison.compare import CompareProgress
+from rigidfluid.evaluation.comparison.differences import interpolated, pair
+from rigidfluid.evaluation.comparison.figures import difference_plot, most_different
+from rigidfluid.evaluation.comparison.page import MOST_BODIES
+from rigidfluid.evaluation.comparison.scenes import backend_scenes
+from rigidfluid.evaluation.comparison.tables import meaning
 from rigidfluid.reports import report
 from rigidfluid.reports.results import Results
 

@@ -15,11 +15,11 @@ from typer.testing import CliRunner
 from rigidfluid.cli import app
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
-from rigidfluid.crosscheck import Row, crosscheck
-from rigidfluid.crosscheck import library as lammps_library
-from rigidfluid.crosscheck.kinds import kinds
-from rigidfluid.crosscheck.theirs import build
 from rigidfluid.errors import CrosscheckError, StepError
+from rigidfluid.evaluation.crosscheck import Row, crosscheck
+from rigidfluid.evaluation.crosscheck import library as lammps_library
+from rigidfluid.evaluation.crosscheck.kinds import kinds
+from rigidfluid.evaluation.crosscheck.theirs import build
 
 SCENES = Path(__file__).parents[2] / "scenes"
 RADIUS = 0.1

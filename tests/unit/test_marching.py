@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from marching_meshes import INNER, OUTER, box, naive_distances, reachable, shell, stars
 
-from rigidfluid.bench.nearest_facet import nearest_facet_distances
+from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.marching.field import distance_field, march_from
 from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology

@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from rigidfluid.bench import processes
-from rigidfluid.bench.collisions import PAPER
-from rigidfluid.bench.grids import balls_in_a_box
-from rigidfluid.bench.mesh_sizes import EDGES, PAPER_NODES
-from rigidfluid.bench.parallel import BACKEND, PAPER_SPEEDUP, row
-from rigidfluid.bench.parallel_child import scene
-from rigidfluid.bench.processes import measured_apart
 from rigidfluid.cli import app
 from rigidfluid.errors import LaunchError, PluginError
+from rigidfluid.evaluation.bench import processes
+from rigidfluid.evaluation.bench.collisions import PAPER
+from rigidfluid.evaluation.bench.grids import balls_in_a_box
+from rigidfluid.evaluation.bench.mesh_sizes import EDGES, PAPER_NODES
+from rigidfluid.evaluation.bench.parallel import BACKEND, PAPER_SPEEDUP, row
+from rigidfluid.evaluation.bench.parallel_child import scene
+from rigidfluid.evaluation.bench.processes import measured_apart
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 MEASURED = {"mesh_nodes": 17000, "unknowns": 150000, "body_body": 28, "body_wall": 24}

@@ -21,18 +21,18 @@ from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import OutputError, SceneError
+from rigidfluid.evaluation.studies import load_study, run_study, scene_subject
+from rigidfluid.evaluation.studies.figure import check_figure, read_figure
+from rigidfluid.evaluation.studies.kernel_subject import KernelSubject
+from rigidfluid.evaluation.studies.model import ErrorTable, FigureTable, Settings, StudyTable
+from rigidfluid.evaluation.studies.plot import error_plot
+from rigidfluid.evaluation.studies.results import Results, most_expensive, pareto_front
+from rigidfluid.evaluation.studies.rows import read_rows, short_text
+from rigidfluid.evaluation.studies.run import StudyProgress
+from rigidfluid.evaluation.studies.scene_subject import SceneSubject
+from rigidfluid.evaluation.studies.subject import Outcome
 from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid.reports.style import PALETTE
-from rigidfluid.studies import load_study, run_study, scene_subject
-from rigidfluid.studies.figure import check_figure, read_figure
-from rigidfluid.studies.kernel_subject import KernelSubject
-from rigidfluid.studies.model import ErrorTable, FigureTable, Settings, StudyTable
-from rigidfluid.studies.plot import error_plot
-from rigidfluid.studies.results import Results, most_expensive, pareto_front
-from rigidfluid.studies.rows import read_rows, short_text
-from rigidfluid.studies.run import StudyProgress
-from rigidfluid.studies.scene_subject import SceneSubject
-from rigidfluid.studies.subject import Outcome
 
 HEIGHT_WITHOUT_GRAVITY = 0.5
 STUDY = f"""

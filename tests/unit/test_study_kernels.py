@@ -18,13 +18,13 @@ from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import RigidfluidError
-from rigidfluid.studies import load_study, run_study
-from rigidfluid.studies.kernels import KERNELS
-from rigidfluid.studies.kernels.convex_gaps import true_gap
-from rigidfluid.studies.kernels.detector_gaps import DetectorGaps
-from rigidfluid.studies.kernels.ring_distance import RingDistance
-from rigidfluid.studies.results import Results
-from rigidfluid.studies.subject import Outcome
+from rigidfluid.evaluation.studies import load_study, run_study
+from rigidfluid.evaluation.studies.kernels import KERNELS
+from rigidfluid.evaluation.studies.kernels.convex_gaps import true_gap
+from rigidfluid.evaluation.studies.kernels.detector_gaps import DetectorGaps
+from rigidfluid.evaluation.studies.kernels.ring_distance import RingDistance
+from rigidfluid.evaluation.studies.results import Results
+from rigidfluid.evaluation.studies.subject import Outcome
 
 FIELD = """
 [study]

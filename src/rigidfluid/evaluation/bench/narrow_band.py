@@ -1,0 +1,125 @@
+"""The paper's Table 1: the distance from the inner of two concentric circles or spheres, in bands of growing width."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
+from rigidfluid.evaluation.bench.shells import INNER, shell
+from rigidfluid.evaluation.bench.timing import fastest, least_processor_time, timed
+from rigidfluid.marching.field import DistanceField, distance_field
+from rigidfluid.marching.partition import field_in_threads, split
+from rigidfluid.marching.topology import Topology
+from rigidfluid.marching.workspace import new_workspace
+
+INNER_RADIUS, OUTER_RADIUS = 0.1, 2.0
+SIZES = {2: 0.01, 3: 0.0591}
+"""Distances of vertices that give as many cells as the paper's meshes of size 0.01 and 0.05."""
+
+PAPER = {
+    2: {
+        0.0625: (2262, 0.261),
+        0.125: (4104, 0.276),
+        0.25: (9430, 0.316),
+        0.5: (27082, 0.411),
+        1.0: (89898, 0.722),
+        1.9: (294918, 1.959),
+    },
+    3: {
+        0.125: (4537, 1.759),
+        0.25: (10238, 1.815),
+        0.5: (43784, 2.368),
+        1.0: (254365, 5.869),
+        1.9: (1385385, 22.851),
+    },
+}
+"""Dimension → threshold → elements of the band and seconds, Table 1 of Van Landeghem et al., arXiv:2402.19093."""
+
+
+@dataclass(frozen=True, slots=True)
+class BandRow:
+    """One band: ``threshold`` [length], and the best of several times.
+
+    ``seconds`` is what `distance_field` takes. It marches one field with one thread, so ``seconds_one_thread`` is the
+    same; ``seconds_two_threads`` is for the two halves of the mesh side by side, as parts. ``processor_seconds`` leaves
+    out when others had the processor. ``elements`` of the mesh;
+    ``band_elements`` with a vertex in the band; ``max_error`` to the facets over the threshold. ``mesh_seconds``,
+    ``adjacency_seconds`` and ``partition_seconds`` are paid once for each mesh; ``paper_…`` are the paper's figures,
+    on its mesh and machine.
+    """
+
+    dimension: int
+    threshold: float
+    elements: int
+    band_elements: int
+    seconds: float
+    seconds_one_thread: float
+    processor_seconds: float
+    seconds_two_threads: float
+    max_error: float
+    mesh_seconds: float
+    adjacency_seconds: float
+    partition_seconds: float
+    paper_band_elements: int
+    paper_seconds: float
+
+
+def band_rows(refinement: float = 1.0, repeats: int = 20) -> Iterator[BandRow]:
+    """Measure every band of the paper's table.
+
+    Parameters
+    ----------
+    refinement : float
+        Vertices per length, relative to the paper's meshes [1].
+    repeats : int
+        How often each band is marched; the fastest counts.
+
+    Yields
+    ------
+    BandRow
+        In 2D, then in 3D, the widest band last.
+    """
+    for dimension, table in PAPER.items():
+        size = SIZES[dimension] / refinement
+        mesh, mesh_seconds = timed(partial(shell, dimension, INNER_RADIUS, OUTER_RADIUS, size))
+        Topology.of(shell(dimension, INNER_RADIUS, 2 * INNER_RADIUS, INNER_RADIUS / 2))  # compiles
+        topology, adjacency_seconds = timed(partial(Topology.of, mesh))
+        parts, partition_seconds = timed(partial(split, mesh, _halves(mesh)))
+        work = new_workspace(len(mesh.points))
+        true = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[mesh.markers == INNER]])
+        for threshold, (paper_elements, paper_seconds) in table.items():
+            one = partial(distance_field, topology, mesh.points, [INNER], threshold, workspace=work)
+            two = partial(field_in_threads, parts, mesh.points, [INNER], threshold)
+            field, alone, together = one(), fastest(one, repeats), fastest(two, repeats)
+            yield BandRow(
+                dimension=dimension,
+                threshold=threshold,
+                elements=len(mesh.cells),
+                band_elements=_band_elements(mesh, field),
+                seconds=alone,
+                seconds_one_thread=alone,
+                processor_seconds=least_processor_time(one, repeats),
+                seconds_two_threads=together,
+                max_error=float(np.abs(field.distance - true[field.vertices]).max() / threshold),
+                mesh_seconds=mesh_seconds,
+                adjacency_seconds=adjacency_seconds,
+                partition_seconds=partition_seconds,
+                paper_band_elements=paper_elements,
+                paper_seconds=paper_seconds,
+            )
+
+
+def _halves(mesh: Mesh) -> IntArray:
+    halves: IntArray = (mesh.points[mesh.cells, 0].mean(axis=1) > 0).astype(np.int64)
+    return halves
+
+
+def _band_elements(mesh: Mesh, field: DistanceField) -> int:
+    reached = np.zeros(len(mesh.points), dtype=bool)
+    reached[field.vertices] = True
+    return int(np.count_nonzero(reached[mesh.cells].any(axis=1)))

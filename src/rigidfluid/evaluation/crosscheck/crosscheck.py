@@ -1,0 +1,46 @@
+"""Runs a scene in both programs."""
+
+from __future__ import annotations
+
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.evaluation.crosscheck.comparison import Comparison, compared
+from rigidfluid.evaluation.crosscheck.ours import run_ours
+from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
+from rigidfluid.evaluation.crosscheck.theirs import run_theirs
+from rigidfluid.evaluation.crosscheck.timing import Timing
+
+SAMPLES = 200
+"""Times at which positions and energies are compared, if there are as many steps."""
+
+
+def crosscheck(scene: Scene, steps: int = 3, samples: int = SAMPLES) -> Comparison:
+    """Run a dry scene of balls here and in LAMMPS, with the same velocity Verlet steps, and compare.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `load_scene` or `scene_from_dict`; the first step is its ``time.step`` over ``contact.substeps``.
+    steps : int
+        How many steps to run with, each half of the one before.
+    samples : int
+        Times at which the programs are compared.
+
+    Returns
+    -------
+    Comparison
+        A row for each step, the longest first.
+
+    Raises
+    ------
+    CrosscheckError
+        If LAMMPS is missing, fails, or has no exact counterpart of something in the scene.
+    StepError
+        If bodies overlap.
+    """
+    system = build_system(scene)
+    refuse_foreign(scene, system)
+    timings = [Timing.of(scene, samples).divided(2**halvings) for halvings in range(steps)]
+    # LAMMPS first: if it is missing, nothing has been computed in vain.
+    pairs = [(run_theirs(system, timing), run_ours(scene, timing)) for timing in timings]
+    return compared(system, [timing.step for timing in timings], [(ours, theirs) for theirs, ours in pairs])

@@ -1,0 +1,10 @@
+"""Small calculations with an exact answer, for studies; one file each."""
+
+from __future__ import annotations
+
+from rigidfluid.evaluation.studies.kernels.detector_gaps import DetectorGaps
+from rigidfluid.evaluation.studies.kernels.kernel import Kernel
+from rigidfluid.evaluation.studies.kernels.ring_distance import RingDistance
+
+KERNELS: dict[str, type[Kernel]] = {"distance-field": RingDistance, "detector": DetectorGaps}
+"""By the name that a study gives."""

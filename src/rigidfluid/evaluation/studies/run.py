@@ -1,0 +1,94 @@
+"""Runs what a study has not run yet, and reports on all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigidfluid.core.output.writer import writing
+from rigidfluid.errors import RigidfluidError
+from rigidfluid.evaluation.studies.kernel_subject import KernelSubject
+from rigidfluid.evaluation.studies.model import Settings, Study
+from rigidfluid.evaluation.studies.report import write_report
+from rigidfluid.evaluation.studies.results import Results
+from rigidfluid.evaluation.studies.rows import Row, fingerprint, read_rows, text_of, write_rows
+from rigidfluid.evaluation.studies.scene_subject import SceneSubject
+from rigidfluid.evaluation.studies.subject import Subject
+
+TABLE = "study.csv"
+
+
+@dataclass(frozen=True, slots=True)
+class StudyProgress:
+    """Where a study is: runs ``done``, a fraction of the present one included, of ``total``; its ``settings``."""
+
+    done: float
+    total: int
+    settings: str
+
+
+def run_study(
+    study: Study, out: Path, *, fresh: bool = False, progress: Callable[[StudyProgress], None] | None = None
+) -> tuple[Results, list[Path]]:
+    """Run a study to its end, going on where an earlier one was stopped.
+
+    Parameters
+    ----------
+    study : Study
+        From `load_study`.
+    out : Path
+        Folder for the table, the plots and the page.
+    fresh : bool
+        Run everything, also what the table in ``out`` holds.
+    progress : callable or None
+        Called as the study goes on.
+
+    Returns
+    -------
+    tuple
+        The results, and the files that were written.
+
+    Raises
+    ------
+    SceneError, PluginError
+        If the study cannot be run at all. The failure of one run is put into the table instead.
+    OutputError
+        Where the disk refuses, or the table there cannot be read.
+    """
+    subject: Subject = SceneSubject(study) if study.scene is not None else KernelSubject(study)
+    results = _results(study, subject, out, fresh, progress or (lambda _: None))
+    return results, [out / TABLE, *write_report(results, out)]
+
+
+def _results(
+    study: Study, subject: Subject, out: Path, fresh: bool, progress: Callable[[StudyProgress], None]
+) -> Results:
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+    distinct = {fingerprint(subject.identity(settings)): subject.read(settings) for settings in study.settings()}
+    prints, plan = list(distinct), list(distinct.values())
+    rows = {} if fresh else read_rows(out / TABLE)
+    results = Results(study, subject.target, plan, prints, rows)
+    for number, (settings, key) in enumerate(zip(plan, prints, strict=True)):
+        if key not in rows:
+            show = _shower(progress, number, len(plan), settings)
+            show(0.0)
+            rows[key] = _tried(subject, settings, show)
+            results = Results(study, subject.target, plan, prints, rows)
+        write_rows(out / TABLE, study.knobs, plan, prints, rows, results.errors)
+    return results
+
+
+def _tried(subject: Subject, settings: Settings, show: Callable[[float], None]) -> Row:
+    try:
+        return Row(subject.run(settings, show))
+    except RigidfluidError as error:
+        return Row(None, str(error))
+
+
+def _shower(
+    progress: Callable[[StudyProgress], None], number: int, total: int, settings: Settings
+) -> Callable[[float], None]:
+    words = ", ".join(f"{key} {text_of(value)}" for key, value in settings.items())
+    return lambda part: progress(StudyProgress(number + part, total, words))

@@ -1,0 +1,60 @@
+"""Where modules of core lie, and in which direction they import each other."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import rigidfluid
+
+SOURCE = Path(rigidfluid.__file__).parent
+BELOW = {
+    "model": "",
+    "mechanics": "model",
+    "scene": "model",
+    "output": "model",
+    "mesh": "mechanics model",
+    "contact": "mechanics model",
+    "setup": "mechanics scene model",
+    "run": "setup mesh contact output mechanics scene model",
+}
+
+
+def imports(path: Path) -> Iterator[str]:
+    """All that a module imports from rigidfluid, for type checkers and within functions too."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        names += [name.name for name in node.names] if isinstance(node, ast.Import) else []
+        yield from (name for name in names if name.startswith("rigidfluid."))
+
+
+@pytest.mark.parametrize("room", BELOW)
+def test_a_room_imports_from_those_below_alone(room: str) -> None:
+    allowed = {room, *BELOW[room].split()}
+    paths = sorted((SOURCE / "core" / room).glob("*.py"))
+    assert paths
+    rooms = {path.name: {name.split(".")[2] for name in imports(path) if ".core." in name} for path in paths}
+    assert {name: above for name, found in rooms.items() if (above := found - allowed)} == {}
+
+
+def test_core_has_no_other_modules() -> None:
+    assert {path.stem for path in (SOURCE / "core").iterdir() if not path.name.startswith("__")} == set(BELOW)
+
+
+def test_core_knows_no_plug_in_and_nothing_above_it() -> None:
+    beside = {"errors", "registry", "hookspecs"}
+    homes = {name.split(".")[1] for path in (SOURCE / "core").rglob("*.py") for name in imports(path)}
+    assert homes - {"core"} <= beside
+
+
+def test_no_room_is_more_than_twelve_hundredths_of_all() -> None:
+    def lines(folder: Path) -> int:
+        return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in folder.rglob("*.py"))
+
+    roofs = SOURCE, SOURCE / "core", SOURCE / "evaluation"
+    rooms = {path for roof in roofs for path in roof.iterdir() if path.is_dir()} - set(roofs)
+    sizes = {room.name: lines(room) / lines(SOURCE) for room in rooms}
+    assert {name: size for name, size in sizes.items() if size > 0.12} == {}
