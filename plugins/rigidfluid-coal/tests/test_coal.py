@@ -9,13 +9,21 @@ import coal
 import numpy as np
 import pytest
 
-from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
-from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.types import FloatArray, Pose, Wall
-from rigidfluid.errors import SceneError
-from rigidfluid.registry import DETECTOR, Registry
+from rigidfluid.api import (
+    DETECTOR,
+    Body,
+    Ellipsoid,
+    EllipsoidOptions,
+    FloatArray,
+    PartOptions,
+    Pose,
+    Registry,
+    SceneError,
+    Sphere,
+    SphereOptions,
+    Wall,
+    rotation_matrices,
+)
 from rigidfluid.testing import Arrangement, DetectorContract
 from rigidfluid_coal import CoalDetector
 
@@ -114,7 +122,7 @@ def test_without_coal_it_is_listed_with_what_to_install() -> None:
     code = (
         "import sys, importlib.util as util; find = util.find_spec\n"
         "util.find_spec = lambda name, *rest: None if name == 'coal' else find(name, *rest)\n"
-        "from rigidfluid.registry import Registry\n"
+        "from rigidfluid.api import Registry\n"
         "print(*[entry.hint for entry in Registry.load().entries if entry.name == 'coal'], 'coal' in sys.modules)"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from skfem import MeshTet, MeshTri
 
+from rigidfluid.api import FloatArray
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid_ngsolve.assembly import FormAssembly
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.api import FLUID_BACKEND, FloatArray, Registry
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid_ngsolve import NGSolve
 
 SCENES = Path(__file__).parents[3] / "scenes"
@@ -91,7 +90,7 @@ def test_without_ngsolve_it_is_listed_with_what_to_install() -> None:
     code = (
         "import sys, importlib.util as util; find = util.find_spec\n"
         "util.find_spec = lambda name, *rest: None if name == 'ngsolve' else find(name, *rest)\n"
-        "from rigidfluid.registry import Registry\n"
+        "from rigidfluid.api import Registry\n"
         "print(*[entry.hint for entry in Registry.load().entries if entry.name == 'ngsolve'], 'ngsolve' in sys.modules)"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import Detector
-from rigidfluid.hookspecs import hookimpl
+from rigidfluid.api import Detector, hookimpl
 from rigidfluid_coal.detector import CoalDetector
 
 

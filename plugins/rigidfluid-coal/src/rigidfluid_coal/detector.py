@@ -7,9 +7,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.api import (
+    Body,
+    BoolArray,
+    Contacts,
+    Detector,
+    FloatArray,
+    IntArray,
+    Mesh,
+    PartOptions,
+    Pose,
+    Wall,
+    rotation_matrices,
+)
 from rigidfluid_coal.broad_phase import near_pairs
 from rigidfluid_coal.narrow_phase import NarrowPhase
 from rigidfluid_coal.refinement import extent, farthest, refined, separation, shape_matrices

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.api import FloatArray, IntArray
 from rigidfluid_coal.shapes import in_space
 
 TOLERANCE = 1e-6

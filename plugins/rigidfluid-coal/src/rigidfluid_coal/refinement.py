@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.api import FloatArray
 
 _STEPS = 50
 _SCALES = 0.5 ** np.arange(12)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
-from rigidfluid.errors import SceneError
+from rigidfluid.api import Body, FloatArray, SceneError
 
 
 def semi_axes(index: int, body: Body) -> FloatArray:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.hookspecs import hookimpl
+from rigidfluid.api import FluidBackend, hookimpl
 from rigidfluid_ngsolve.backend import NGSolve
 
 

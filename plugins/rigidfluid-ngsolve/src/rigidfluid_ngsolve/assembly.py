@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.api import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid_ngsolve.mesh import NodeMesh
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.api import FloatArray
 from rigidfluid.taylor_hood.numbering import EDGES, Numbering
 
 # Netgen's quadratic cells: the edges of a triangle or tetrahedron in the order of the nodes at their midpoints.

@@ -1,0 +1,110 @@
+"""The public face: all that a program, a plug-in or an example imports, beside `rigidfluid.testing` for its tests.
+
+Scenes and runs, the interfaces of parts and the records that go through them, the marker by which a plug-in offers its
+parts, and the errors. Names elsewhere may move without notice, but for `rigidfluid.taylor_hood`, which backends of
+elements P2–P1 may build on.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
+from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.types import (
+    Advance,
+    BoolArray,
+    BoundaryCondition,
+    Contacts,
+    Fields,
+    FloatArray,
+    FluidProblem,
+    FluidState,
+    IntArray,
+    Loads,
+    Mesh,
+    Motion,
+    Pose,
+    Response,
+    Step,
+    Twist,
+    Wall,
+    Wrench,
+)
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import load_scene, scene_from_dict
+from rigidfluid.errors import (
+    MeshError,
+    OutputError,
+    PluginError,
+    RigidfluidError,
+    SceneError,
+    StepError,
+    StepRejected,
+)
+from rigidfluid.hookspecs import hookimpl
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry, missing_packages
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.run import run
+
+__all__ = [
+    "BODY",
+    "DETECTOR",
+    "FLUID_BACKEND",
+    "FORCE_LAW",
+    "Advance",
+    "Body",
+    "BoolArray",
+    "BoundaryCondition",
+    "Contacts",
+    "Detector",
+    "Ellipsoid",
+    "EllipsoidOptions",
+    "Fields",
+    "FloatArray",
+    "FluidBackend",
+    "FluidProblem",
+    "FluidState",
+    "ForceLaw",
+    "IntArray",
+    "Loads",
+    "Mesh",
+    "MeshError",
+    "Motion",
+    "OutputError",
+    "Part",
+    "PartOptions",
+    "PluginError",
+    "Pose",
+    "Registry",
+    "Response",
+    "RigidfluidError",
+    "Scene",
+    "SceneError",
+    "Sphere",
+    "SphereOptions",
+    "Step",
+    "StepError",
+    "StepRejected",
+    "Twist",
+    "Wall",
+    "Wrench",
+    "hookimpl",
+    "load_scene",
+    "missing_packages",
+    "rotation_matrices",
+    "run",
+    "scene_from_dict",
+]
+
+
+def __getattr__(name: str) -> object:
+    """`run` when it is first asked for: plug-ins, which are imported at every start, need no loop."""
+    if name != "run":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from rigidfluid.core.run.run import run
+
+    return run

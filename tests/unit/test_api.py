@@ -1,0 +1,39 @@
+"""The public face of the library."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rigidfluid import api
+
+ROOT = Path(__file__).parents[2]
+PUBLIC = ("rigidfluid.api", "rigidfluid.testing", "rigidfluid.taylor_hood")
+HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}
+
+
+def test_every_name_is_there() -> None:
+    assert [name for name in api.__all__ if getattr(api, name, None) is None] == []
+
+
+def test_another_name_is_refused() -> None:
+    with pytest.raises(AttributeError, match="nobody"):
+        api.nobody  # noqa: B018
+
+
+def test_plug_ins_that_import_it_load_no_heavy_library() -> None:
+    command = [sys.executable, "-c", "import sys, rigidfluid.api; print(*sys.modules)"]
+    assert HEAVY & set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()) == set()
+
+
+@pytest.mark.parametrize(
+    "path", sorted(ROOT.glob("plugins/*/src/*/*.py")), ids=lambda path: f"{path.parent.name}.{path.stem}"
+)
+def test_the_plug_ins_beside_import_from_it_alone(path: Path) -> None:
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    homes = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    assert {home for home in homes if home.split(".")[0] == "rigidfluid" and not home.startswith(PUBLIC)} == set()
