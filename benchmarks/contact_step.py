@@ -95,7 +95,7 @@ def seconds(scene: Scene, steps: int) -> tuple[Simulation, list[tuple[int, float
     run, found = Simulation(scene, None, False), []
     for _ in range(steps):
         start = time.process_time()
-        run._advance()
+        run.step()
         spent = time.process_time() - start
         law, coupling = run.system.law, run.state.coupling
         near = 0 if law is None or coupling is None else max(1, int(np.sum(run.state.contacts.gap < law.range)))
@@ -115,7 +115,7 @@ def rows() -> Iterator[tuple[str, ...]]:
         contact, contacts = (np.mean(column) for column in zip(*((s, n) for n, s in touching), strict=True))
         unknowns = run.system.backend.unknowns(run.state.mesh, run.system.controlled)
         figures = f"{np.mean(free):.3f}", f"{contact:.3f}", f"{contact / np.mean(free):.1f}"
-        yield case.name, f"{unknowns:,}", f"{contacts:.0f}", *figures, f"{len(touching)}", f"{run.remeshes}"
+        yield case.name, f"{unknowns:,}", f"{contacts:.0f}", *figures, f"{len(touching)}", f"{run.counts.remeshes}"
 
 
 def main() -> None:

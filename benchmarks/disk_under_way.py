@@ -31,5 +31,5 @@ def falling(thousands: int, backend: str = "scikit-fem") -> Simulation:
     data["output"]["every"] = 10.0
     run = Simulation(rigidfluid.scene_from_dict(data), None, False)
     for _ in range(WARM_UP):
-        run._advance()
+        run.step()
     return run

@@ -58,7 +58,7 @@ def scene(law: str, side: int, steps: int) -> rigidfluid.Scene:
 def measure(law: str, side: int, steps: int, repeats: int) -> dict[str, Any]:
     """Milliseconds per substep of both; the run warms up for as many steps as are then timed."""
     run = Simulation(scene(law, side, steps), None, False)
-    run._advance()
+    run.step()
     ours, theirs = [], []
     with TemporaryDirectory() as folder, lammps_session() as engine:
         build(engine, run.system, kinds(run.system), Path(folder))
@@ -71,7 +71,7 @@ def measure(law: str, side: int, steps: int, repeats: int) -> dict[str, Any]:
             engine.command(f"run {steps} post no")
             ours.append(1e3 * (middle - start) / steps)
             theirs.append(1e3 * (time.perf_counter() - middle) / steps)
-            run._advance()
+            run.step()
     touching = int(np.sum(run.state.contacts.gap <= RANGE))
     return {
         "law": law,

@@ -68,12 +68,12 @@ def settle(mesh: tuple[float, float, float], step: float, steps: int) -> tuple[R
     start = time.perf_counter()
     with counted(iterations):
         for _ in range(steps):
-            run._advance()
+            run.step()
     seconds = (time.perf_counter() - start) / steps
     backend, ranks = run.system.backend, run.system.backend.ranks
     unknowns = backend.unknowns(run.state.mesh, run.system.controlled)
     speed = float(-run.state.twist.velocity[0, 1])
-    row = Row(unknowns, step, iterations, seconds, run.remeshes, speed)
+    row = Row(unknowns, step, iterations, seconds, run.counts.remeshes, speed)
     return row, int(ranks.sum(peak_memory() or 0)), ranks.is_root
 
 

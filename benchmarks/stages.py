@@ -80,7 +80,7 @@ def measured(run: Simulation, steps: int) -> dict[str, Any]:
     for step in range(steps):
         if step % OUTPUT_EVERY == 0:
             run.system.backend.forget()
-        run._advance()
+        run.step()
     seconds = (time.perf_counter() - start) / steps
     watched = {stage: (run.watch.seconds[key] - before[key]) / steps for key, stage in WATCHED.items()}
     hooked = {stage: hooks.seconds[stage] / steps for stage, _, _ in HOOKS}
@@ -93,5 +93,5 @@ def measured(run: Simulation, steps: int) -> dict[str, Any]:
         "stages": {stage: ranks.sum(value) / ranks.size for stage, value in stages.items()},
         "iterations": hooks.iterations / steps,
         "factorisations": hooks.calls[FACTORISE],
-        "remeshes": run.remeshes,
+        "remeshes": run.counts.remeshes,
     }

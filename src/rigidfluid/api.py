@@ -7,6 +7,7 @@ elements P2–P1 may build on.
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
@@ -49,6 +50,7 @@ from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Regist
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
+    from rigidfluid.core.run.simulation import Simulation
 
 __all__ = [
     "BODY",
@@ -84,6 +86,7 @@ __all__ = [
     "RigidfluidError",
     "Scene",
     "SceneError",
+    "Simulation",
     "Sphere",
     "SphereOptions",
     "Step",
@@ -102,9 +105,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """`run` when it is first asked for: plug-ins, which are imported at every start, need no loop."""
-    if name != "run":
+    """What runs a scene when it is first asked for: plug-ins, which are imported at every start, need no loop."""
+    if name not in _LOOP:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from rigidfluid.core.run.run import run
+    return getattr(import_module(_LOOP[name]), name)
 
-    return run
+
+_LOOP = {"run": "rigidfluid.core.run.run", "Simulation": "rigidfluid.core.run.simulation"}

@@ -19,7 +19,7 @@ class Interrupted(Simulation):
             False,
         )
         self.uneven = uneven
-        self.mover._asks = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
+        self.mover.asks = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
 
     def _first_level(self):
         odd = self.state.tick // self.clock.ticks(0) % 2
@@ -30,8 +30,8 @@ class Interrupted(Simulation):
 
 def fall(step, uneven):
     simulation = Interrupted(step, uneven)
-    simulation.go(None)
-    assert simulation.remeshes == 1
+    simulation.go()
+    assert simulation.counts.remeshes == 1
     assert simulation.state.count == round(END / step * (1.5 if uneven else 1.0))
     return np.array([simulation.state.pose.position[0, 1], simulation.state.twist.velocity[0, 1]])
 

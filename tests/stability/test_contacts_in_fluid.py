@@ -225,7 +225,7 @@ def test_dampers_take_what_a_rough_fall_loses():
 def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
     """Mean pressure over its spread after two steps; distance of the pin from all bodies, over the farthest one's."""
     simulation = Simulation(scene, None, False)
-    simulation.go(None)
+    simulation.go()
     state, system = simulation.state, simulation.system
     assert state.mesh is not None
     assert system.backend.problem is not None

@@ -101,7 +101,7 @@ def findings(case: Case) -> list[Finding]:
     with one_openblas_thread():
         try:
             run = Simulation(case.scene(), None, False)
-            run.go(None)
+            run.go()
         except (MeshError, StepError) as error:
             expected = bool(case.stops) and case.stops in error.remedy
             return [Finding(ENDS, _demanded_end(case), f"stops: {error}", expected)]

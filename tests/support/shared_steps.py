@@ -25,9 +25,8 @@ def started(scene, **fluid):
 def go_on(simulation, steps):
     """With a new mesh every second one."""
     for _ in range(steps):
-        simulation.mover._asks = lambda state, _: state.count % EVERY == 1
-        simulation._advance()
-        simulation._record()
+        simulation.mover.asks = lambda state, _: state.count % EVERY == 1
+        simulation.step()
 
 
 def figures(simulation):
@@ -39,7 +38,7 @@ def figures(simulation):
         "torque": wrench.torque.tolist(),
         "energy": list(simulation.history.records["energy"][-1][2:]),
         "probes": [list(row[3:]) for row in simulation.history.records["probes"]],
-        "remeshes": simulation.remeshes,
+        "remeshes": simulation.counts.remeshes,
         "unknowns": simulation.system.backend.unknowns(state.mesh, simulation.system.controlled),
     }
 

@@ -40,7 +40,7 @@ def two_dimensional(**fluid):
 def after(scene, steps):
     simulation = Simulation(scene, None, False)
     for _ in range(steps):
-        simulation._advance()
+        simulation.step()
     return simulation
 
 

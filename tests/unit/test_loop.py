@@ -5,7 +5,7 @@ import pytest
 
 import rigidfluid
 from rigidfluid.core.output.checkpoint import read_checkpoint
-from rigidfluid.core.run import simulation as loop
+from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError, StepRejected
 

@@ -14,7 +14,7 @@ import rigidfluid
 from rigidfluid.core.mesh import mesh_adaptation
 from rigidfluid.core.mesh.mesh_adaptation import TANGLED, Mover
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
-from rigidfluid.core.run import simulation as loop
+from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepRejected
 
@@ -34,7 +34,7 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     mover = Mover(system, None, asked, 1)
     monkeypatch.setattr(mover, "_map", lambda reference: still)
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
-    assert mover._asks(state, state) is anew
+    assert mover.asks(state, state) is anew
 
 
 def test_a_rejected_attempt_changes_nothing(monkeypatch):

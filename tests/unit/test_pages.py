@@ -75,5 +75,15 @@ def test_the_example_of_a_plug_in_runs(install: Install) -> None:
     assert history.bodies["cfx"].any()
 
 
+def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(ROOT)
+    (example,) = blocks(text("docs/control.md"), "python")
+    coarse = '["time.end=2", "mesh.size=0.1", "mesh.size_body=0.05"]'
+    exec(example.replace('["time.end=2"]', coarse), {})
+    printed = capsys.readouterr().out
+    assert printed.startswith("1.0 [")
+    assert len(printed.splitlines()) == 2
+
+
 def test_the_picture_is_small() -> None:
     assert (ROOT / "docs" / "falling_disk.png").stat().st_size < 300 * 1024

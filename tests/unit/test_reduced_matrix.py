@@ -51,8 +51,8 @@ def steps(request):
         run = Simulation(request.param(), None, False)
         made.clear()
         for _ in range(4):
-            run._advance()
-    assert run.remeshes == 0
+            run.step()
+    assert run.counts.remeshes == 0
     latest = made[-1][0]
     return latest, [step[1:] for step in made if step[0] is latest]
 

@@ -22,7 +22,7 @@ def spinning():
     simulation = Simulation(
         falling_disk(body={"angular_velocity": 30.0, "velocity": [0.0, -4.0]}, **SHORT), None, False
     )
-    simulation.go(None)
+    simulation.go()
     return simulation
 
 
@@ -39,7 +39,7 @@ def divergence(discretisation, points, velocity):
 def test_both_levels_are_carried_over(spinning):
     before = spinning.state
     energy = kinetic_energy(on(spinning, before.mesh), before.mesh.points, before.fluid["velocity"])
-    spinning.mover._asks = lambda *_: True
+    spinning.mover.asks = lambda *_: True
     after = spinning.mover.adapted(
         before, predict_pose(before.pose, before.twist, before.past_twist, 0.004, before.past_step)
     )

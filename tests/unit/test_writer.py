@@ -42,7 +42,7 @@ def same(left, right):
 
 def test_a_checkpoint_comes_back_to_the_last_bit(scene, tmp_path):
     simulation = Simulation(scene, tmp_path, False)
-    simulation.go(None)
+    simulation.go()
     simulation.close()
     assert same(simulation.state, read_checkpoint(tmp_path / "state.h5").state)
 
@@ -158,7 +158,7 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
     monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
-    monkeypatch.setattr(Mover, "_asks", lambda *_: True)
+    monkeypatch.setattr(Mover, "is_worn", lambda *_: True)
     summary = rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})).summary
     assert summary["status"] == "complete"
     assert 0 < summary["failed_remeshes"] == len(tried) <= 4

@@ -5,6 +5,7 @@ The root makes each mesh and holds it whole meanwhile; every rank moves its own 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -47,6 +48,7 @@ class Mover:
         self._sizes = sizes
         self._quality = quality
         self._pause = pause
+        self.asks: Callable[[State, Pose], bool] = self.is_worn
         self._motion: MeshMotion | None = None
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
@@ -79,7 +81,7 @@ class Mover:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
         if state.reference is None or state.reference.tick == state.tick:
             return state
-        if self._waits(state.reference, state, pose) or not self._asks(state, pose):
+        if self._waits(state.reference, state, pose) or not self.asks(state, pose):
             return state
         assert state.mesh is not None
         try:
@@ -110,7 +112,8 @@ class Mover:
             return False
         return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
-    def _asks(self, state: State, pose: Pose) -> bool:
+    def is_worn(self, state: State, pose: Pose) -> bool:
+        """Whether a gap has changed since the mesh was made, or a step to ``pose`` spoils a cell."""
         assert state.reference is not None
         if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
             return True

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Pose
 from rigidfluid.errors import PluginError, StepRejected
 
@@ -27,18 +26,6 @@ def refuse_no_number(subject: str, quantity: str, values: FloatArray | float, ke
             "finite numbers",
             f"Shorten time.step; if that does not help, look for the cause in what `{key}` says or names.",
         )
-
-
-def refuse_lost_body(body: Body, at: str) -> None:
-    """Raise PluginError unless all sizes of a body are finite and positive; ``at`` is its place in the scene."""
-    turns = 1 if body.dimension == 2 else 3
-    for name, shape in (("volume", ()), ("bounding_radius", ()), ("radius", ()), ("semi_axes", (body.dimension,))):
-        size = getattr(body, name)
-        if size is not None or name in ("volume", "bounding_radius"):
-            _refuse_lost_size(body, at, name, np.shape(size) == shape and np.min(size) > 0.0)
-    inertia = np.asarray(body.gyration)
-    sound = inertia.shape == (turns, turns) and np.isfinite(inertia).all()
-    _refuse_lost_size(body, at, "gyration", sound and np.linalg.eigvalsh(inertia)[0] > 0.0)
 
 
 def refuse_lost_pose(names: Sequence[str], pose: Pose) -> None:
@@ -84,13 +71,6 @@ def refuse_lost_contacts(contacts: Contacts, bodies: int, surfaces: int, dimensi
     if not _finite(contacts.gap, contacts.point_a, contacts.point_b, contacts.normal):
         for name in ("gap", *vectors):
             refuse_no_number("contacts", name, getattr(contacts, name), key)
-
-
-def _refuse_lost_size(body: Body, at: str, name: str, positive: bool | np.bool_) -> None:
-    size = np.asarray(getattr(body, name)).tolist()
-    if not (positive and np.all(np.isfinite(size))):
-        remedy = "Mend the body type; its contract test in rigidfluid.testing shows more."
-        raise PluginError(at, f"a {name} of {size}, by the type {body.name!r}", "a positive one of its shape", remedy)
 
 
 def _refuse_lost_bodies(names: Sequence[str], quantity: str, values: FloatArray, key: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -41,6 +41,15 @@ class History:
         if self._folder is None:
             return self._rows
         return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension)}
+
+    @property
+    def lengths(self) -> dict[str, int]:
+        """Rows in memory by table name."""
+        return {name: len(rows) for name, rows in self._rows.items()}
+
+    def cut(self, lengths: Mapping[str, int]) -> None:
+        """Drop what came after so many rows in memory."""
+        self._rows = {name: self._rows[name][:length] for name, length in lengths.items()}
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state, unless a writer puts them on disk."""

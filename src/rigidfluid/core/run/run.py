@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import closing, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
-from rigidfluid.core.run.simulation import Progress, Simulation
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, RigidfluidError
@@ -64,9 +65,11 @@ def run(
     folder = None if out is None else Path(out)
     with one_openblas_thread(), no_exit(), closing(Simulation(scene, folder, resume, processes)) as simulation:
         told = finished or (lambda _: None)
+        if progress is not None:
+            simulation.observe(lambda now: progress(_progress(now)))
         try:
             with no_exit():
-                simulation.go(progress)
+                simulation.go()
         except BaseException as error:
             if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
                 with suppress(OutputError):  # a full disk has been reported once
@@ -76,6 +79,22 @@ def run(
         simulation.finish(status="complete")
         told(simulation.history)
     return simulation.history
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds."""
+
+    time: float
+    end: float
+    step: float
+    gap: float
+    elapsed: float
+
+
+def _progress(now: Simulation) -> Progress:
+    step, gap = now.clock.size(now.state.level or 0), float(now.state.gaps.min())
+    return Progress(now.time, now.clock.end, step, gap, now.elapsed)
 
 
 def _status(error: BaseException) -> str:

@@ -1,58 +1,72 @@
-"""The loop: choose a step, try it, accept it or try a shorter one, write what is due."""
+"""A run that goes on step by step: its state, who watches it, and what is written when."""
 
 from __future__ import annotations
 
 import json
-import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodiesPath, first_step_again, follow
-from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen
-from rigidfluid.core.contact.proximity import least_gaps, surroundings, travel
-from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.mesh.mesh_adaptation import Mover, reference_of
+from rigidfluid.core.mesh.mesh_adaptation import Mover
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
-from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt, bodies_energy, contact_energy
+from rigidfluid.core.run.initial_state import initial_state, start_level
+from rigidfluid.core.run.schedule import Schedule
+from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
-from rigidfluid.errors import OutputError, SceneError, StepError, StepRejected
+from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.prescribed import prescribed_motion
+from rigidfluid.errors import OutputError, SceneError, StepError
 
-MOST_ATTEMPTS = 4
-"""Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
-
-START_LEVEL = 6
-"""In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
+Observer = Callable[["Simulation"], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
-    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds."""
+class BodyNow:
+    """One body at present; ``force`` (d,) and ``torque`` (k,) are those of the fluid, ``contact_force`` and
+    ``contact_torque`` those of its contacts in the latest step, ``gap`` the least to any surface [length].
 
-    time: float
-    end: float
-    step: float
+    ``orientation`` (1,) angle [rad] or (4,) unit quaternion.
+    """
+
+    position: FloatArray
+    orientation: FloatArray
+    velocity: FloatArray
+    angular_velocity: FloatArray
+    force: FloatArray
+    torque: FloatArray
+    contact_force: FloatArray
+    contact_torque: FloatArray
     gap: float
-    elapsed: float
+
+
+@dataclass(frozen=True)
+class SavedRun:
+    """A run as `Simulation.save` kept it."""
+
+    scene: Scene
+    state: State
+    system: System
+    counts: Counts
+    extremes: Extremes
+    rows: dict[str, int]
+    met: tuple[float, ...]
 
 
 class Simulation:
@@ -68,9 +82,14 @@ class Simulation:
         Whether to go on from the checkpoint there.
     processes : int or None
         How many processes were started to share the run; None if the backend's own ranks are those.
+
+    Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller and ``mover.asks`` another
+    rule of re-meshing.
     """
 
-    def __init__(self, scene: Scene, out: Path | None, resume: bool, processes: int | None = None) -> None:
+    def __init__(
+        self, scene: Scene, out: Path | None = None, resume: bool = False, processes: int | None = None
+    ) -> None:
         self.scene = scene
         self.system = build_system(scene)
         self._ranks = self.system.backend.ranks
@@ -81,11 +100,14 @@ class Simulation:
         quality = scene.mesh.quality if scene.mesh else 0.0
         self.mover = Mover(self.system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
+        self.stepper = Stepper(self.system, self.clock, self.mover, self.watch)
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(self.system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start = time.perf_counter()
         self._writer: Writer | None = None
+        self._observers: list[tuple[Schedule, Observer]] = []
+        self.state: State
         try:
             if earlier is None:
                 self._begin(out)
@@ -106,16 +128,129 @@ class Simulation:
         """Wall seconds of this run, those before a resumption included."""
         return self._elapsed_before + time.perf_counter() - self._start
 
-    def go(self, progress: Callable[[Progress], None] | None) -> None:
-        """Step until the end."""
-        while self.state.tick < self.clock.last_tick:
-            self._advance()
-            self._record()
-            if self._output_due():
-                self._output()
-            if progress is not None:
-                now, level = self.clock.time(self.state.tick), self.state.level or 0
-                progress(Progress(now, self.clock.end, self.clock.size(level), self._smallest_gap(), self.elapsed))
+    @property
+    def time(self) -> float:
+        """Time of the present state [time]."""
+        return self.clock.time(self.state.tick)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the scene's end is reached."""
+        return self.state.tick >= self.clock.last_tick
+
+    @property
+    def counts(self) -> Counts:
+        """Steps rejected and meshes made."""
+        return self.stepper.counts
+
+    @property
+    def bodies(self) -> dict[str, BodyNow]:
+        """All bodies by name, as they are now."""
+        s = self.state
+        return {
+            body.name or "": BodyNow(
+                position=s.pose.position[i],
+                orientation=s.pose.orientation[i],
+                velocity=s.twist.velocity[i],
+                angular_velocity=s.twist.angular_velocity[i],
+                force=s.hydrodynamic_wrench.force[i],
+                torque=s.hydrodynamic_wrench.torque[i],
+                contact_force=s.contact_wrench.force[i],
+                contact_torque=s.contact_wrench.torque[i],
+                gap=float(s.gaps[i]),
+            )
+            for i, body in enumerate(self.scene.body)
+        }
+
+    def step(self) -> State:
+        """Take one accepted step, record it, call who is due, and return the new state.
+
+        Raises
+        ------
+        StepError
+            Where even the shortest step fails, or the scene's end was reached before.
+        """
+        if self.ended:
+            remedy = "Move time.end in the scene."
+            raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
+        self.state = self.stepper.after(self.state)
+        self._record()
+        for schedule, observer in self._observers:
+            if schedule.due(self.state.tick):
+                schedule.met(self.state.tick)
+                observer(self)
+        return self.state
+
+    def go(self, until: float = np.inf) -> None:
+        """Step until this time [time], or the scene's end."""
+        last = self.clock.last_tick if until >= self.clock.end else self.clock.tick_from(until)
+        while self.state.tick < last:
+            self.step()
+
+    def observe(self, observer: Observer, every: float | None = None) -> None:
+        """Call ``observer`` with this simulation after each accepted step, or after those that reach a multiple of
+        ``every`` [time]."""
+        self._observers.append((Schedule(self.clock, every, self.time), observer))
+
+    def prescribe(
+        self, name: str, velocity: Sequence[float] | None = None, angular_velocity: Sequence[float] | None = None
+    ) -> None:
+        """Move a body that is fixed or prescribed so from now on; what is not given is zero.
+
+        It changes the scene, so that a checkpoint made after it cannot be resumed as the scene that it was.
+
+        Parameters
+        ----------
+        name : str
+            Of the body.
+        velocity, angular_velocity : sequence of float
+            (d,) and (k,) [length/time, rad/time].
+
+        Raises
+        ------
+        SceneError
+            If there is no such body, it is free, or a value is not allowed.
+        """
+        tables, number = self.scene.to_dict(), self._controlled(name)
+        given = {"velocity": velocity, "angular_velocity": angular_velocity}
+        body = {key: value for key, value in tables["body"][number].items() if key != "fixed"}
+        body["prescribed"] = {key: value for key, value in given.items() if value is not None}
+        tables["body"][number] = body
+        self.scene = scene_from_dict(tables)
+        motion = prescribed_motion(self.scene)
+        self.system = self.stepper.system = replace(self.system, controlled_twist=motion)
+        if self.system.backend.needs_mesh:  # the fluid is set in motion at once
+            self.state = replace(self.state, level=start_level(self.clock))
+
+    def save(self) -> SavedRun:
+        """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
+        self.system.backend.forget()
+        return SavedRun(
+            scene=self.scene,
+            state=self.state,
+            system=self.system,
+            counts=replace(self.counts),
+            extremes=self.extremes,
+            rows=self.history.lengths,
+            met=tuple(schedule.latest for schedule, _ in self._observers),
+        )
+
+    def restore(self, saved: SavedRun) -> None:
+        """Go back to where the run was saved; raises OutputError where its results go to a folder."""
+        if self._writer is not None:
+            raise OutputError(
+                str(self._writer.out),
+                "a run that writes there and is to go back",
+                "a run in memory",
+                "Make the Simulation without a folder, or resume the run from its checkpoint.",
+            )
+        self.system.backend.forget()
+        self.scene, self.state, self.extremes = saved.scene, saved.state, saved.extremes
+        self.system = self.stepper.system = saved.system
+        self.stepper.counts = replace(saved.counts)
+        self.history.cut(saved.rows)
+        for (schedule, _), latest in zip(self._observers, saved.met, strict=False):
+            schedule.latest = latest
 
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk."""
@@ -131,138 +266,41 @@ class Simulation:
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before = 0.0
-        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
-            self.state = _initial_state(self.system, self.mover, self.clock)
+            self.state = initial_state(self.system, self.mover, self.clock)
         if self._ranks.shared(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
         self._record()
         self._output()
+        self.observe(Simulation._output, self.scene.output.every)
 
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
-        start = self.state
-        self._advance()
-        self.state = start
-        self.rejected, self.remeshes, self.failed_remeshes, self.unsettled = 0, 0, 0, 0
+        self.stepper.after(self.state)
+        self.stepper.counts = Counts()
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self._elapsed_before = earlier.elapsed
-        self.rejected, self.unsettled = earlier.rejected, earlier.unsettled
-        self.remeshes, self.failed_remeshes = earlier.remeshes, earlier.failed_remeshes
-        self._times = earlier.times
+        self.stepper.counts = Counts(*(getattr(earlier, count.name) for count in fields(Counts)))
+        self._elapsed_before, self._times = earlier.elapsed, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
-
-    def _advance(self) -> None:
-        """One accepted step: the longest that is allowed, halved until it succeeds."""
-        level, path = self._first_level()
-        while True:
-            try:
-                path = path or self._path(level)
-                self._accept_mesh(path.pose)
-                self.state, agreed = self._tried(level, path)
-            except StepRejected as rejection:
-                self.rejected += 1
-                level, path = level + 1, None
-                if level > self.clock.levels:
-                    raise self._stuck(rejection) from rejection
-            else:
-                self.unsettled += not agreed
-                return
-
-    def _accept_mesh(self, pose: Pose) -> None:
-        """The present state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
-        with self.watch("mesh"):
-            state = self.mover.adapted(self.state, pose)
-        self.remeshes += state.mesh is not self.state.mesh
-        self.failed_remeshes += state.remesh_failed not in (None, self.state.remesh_failed)
-        self.state = state
-
-    def _tried(self, level: int, path: BodiesPath) -> tuple[State, bool]:
-        """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
-        for number in range(MOST_ATTEMPTS):
-            candidate, step = attempt(self.system, self.clock, self.mover, self.watch, self.state, level, path)
-            if level < self.clock.levels and unforeseen(self.system, self.state, candidate):
-                raise _too_fast()
-            if path.coupling is None:
-                if number > 0 or self.state.past is not None or self.state.mesh is None:
-                    return candidate, True
-                path = first_step_again(self.state, candidate.twist, self.clock.size(level))
-                continue
-            with self.watch("response"):
-                found = shown_coupling(self.system, self.state, candidate, path, step)
-            agreed = settled(found, path, self.state, candidate)
-            if agreed or number == MOST_ATTEMPTS - 1:
-                break
-            path = self._path(level, found)
-            if level < self.clock.levels and self._changes_gaps_too_fast(path.pose):
-                raise _too_fast()
-        return replace(candidate, coupling=found), agreed
-
-    def _path(self, level: int, coupling: Coupling | None = None) -> BodiesPath:
-        """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
-        time, size = self.clock.time(self.state.tick), self.clock.size(level)
-        if coupling is None:
-            with self.watch("response"):
-                coupling = expected_coupling(self.system, self.state, time, size)
-        with self.watch("contact"):
-            return follow(self.system, self.state, time, size, coupling)
-
-    def _first_level(self) -> tuple[int, BodiesPath | None]:
-        """The longest step on the clock's grid that changes no gap too fast for the mesh, and the way it takes."""
-        level = self.clock.longest_level(self.state.tick, self.state.level)
-        while level < self.clock.levels:
-            try:
-                path = self._path(level)
-            except StepRejected:
-                break
-            if not self._changes_gaps_too_fast(path.pose):
-                return level, path
-            level += 1
-        return level, None
-
-    def _changes_gaps_too_fast(self, pose: Pose) -> bool:
-        """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
-        if self.state.mesh is None:
-            return False
-        moved = travel(self.system, self.state.pose, pose)
-        before = least_gaps(self.system, self.state.pose, self.state.gaps)
-        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
-            return False  # too far away for that: no need to measure
-        try:
-            mesh = self.mover.moved(self.state, pose) if self.system.detector.needs_mesh else None
-        except StepRejected:
-            return True
-        with self.watch("detect"):
-            _, gaps = surroundings(self.system, pose, mesh)
-        film = self.state.gaps < (self.system.law.range if self.system.law else 0.0)
-        opens = film & (gaps > WIDEST_OPENING * self.state.gaps)
-        return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())
-
-    def _smallest_gap(self) -> float:
-        return float(self.state.gaps.min())
+        self.observe(Simulation._output, self.scene.output.every)
 
     def _record(self) -> None:
-        now = records(self.system, self._probes, self.state, self.clock.time(self.state.tick))
+        now = records(self.system, self._probes, self.state, self.time)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
             with self.watch("write"):
                 self._writer.extend(now)
 
-    def _output_due(self) -> bool:
-        every = self.scene.output.every
-        latest = math.floor(self._times[-1] / every + 1e-9)
-        return self.state.tick >= min(self.clock.tick_from((latest + 1) * every), self.clock.last_tick)
-
     def _output(self) -> None:
         """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
-        self._times = (*self._times, self.clock.time(self.state.tick))
+        self._times = (*self._times, self.time)
         self.system.backend.forget()
         if self._writer is None:
             return
@@ -278,72 +316,21 @@ class Simulation:
             times=self._times,
             lengths=writer.lengths,
             seconds=self.watch.seconds,
-            rejected=self.rejected,
-            unsettled=self.unsettled,
-            remeshes=self.remeshes,
-            failed_remeshes=self.failed_remeshes,
+            **asdict(self.counts),
             elapsed=self.elapsed,
             extremes=self.extremes,
             ranks=self._ranks.size,
         )
 
-    def _stuck(self, rejection: StepRejected) -> StepError:
-        shortest, nearest = self.clock.size(self.clock.levels), int(np.argmin(self.state.gaps))
-        body, gap = self.system.surfaces[nearest], self.state.gaps[nearest]
-        return StepError(
-            f"{rejection.subject} at time {self.clock.time(self.state.tick):g}",
-            f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from the nearest surface",
-            rejection.allowed,
-            f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
-        )
-
-
-def _too_fast() -> StepRejected:
-    found = (
-        f"a gap that closes to less than {CLOSEST_APPROACH} of it, a film that opens more than {WIDEST_OPENING}-fold"
-    )
-    found += " or a contact that was out of sight"
-    return StepRejected("the step", found, "slower changes", "Shorten time.step.")
-
-
-def _initial_state(system: System, mover: Mover, clock: Clock) -> State:
-    zero = nothing(system.pose)
-    mesh = mover.first_mesh()
-    contacts, gaps = surroundings(system, system.pose, mesh)
-    fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
-    kinetic += bodies_energy(system, system.pose, system.twist)
-    stored = contact_energy(system, contacts)
-    return State(
-        tick=0,
-        count=0,
-        level=_start_level(system, clock, stored),
-        pose=system.pose,
-        twist=system.twist,
-        past=None,
-        mesh=mesh,
-        reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
-        fluid=fluid,
-        contacts=contacts,
-        coupling=None,
-        gaps=gaps,
-        hydrodynamic_wrench=zero,
-        contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored),
-    )
-
-
-def _start_level(system: System, clock: Clock, stored: float) -> int | None:
-    """The level that the first step may be twice as long as; any where the motion starts smoothly.
-
-    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
-    contacts that let go, and weight where the fluid has no inertia.
-    """
-    problem = system.backend.problem
-    if not system.backend.needs_mesh or problem is None:
-        return None
-    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
-    at_once = moves or stored > 0.0 or (not problem.inertia and system.weight.any())
-    return min(START_LEVEL + 1, clock.levels) if at_once else None
+    def _controlled(self, name: str) -> int:
+        """The number of a body whose motion is given."""
+        names = [body.name for body in self.scene.body]
+        given = [body for body, controlled in zip(names, self.system.controlled, strict=True) if controlled]
+        if name not in given:
+            found = f"{name!r}, which {'is free' if name in names else 'is not there'}"
+            allowed = f"a body that is fixed or prescribed: {', '.join(map(str, given)) or 'there is none'}"
+            raise SceneError("body", found, allowed, "Name another, or give it 'fixed = true' in the scene.")
+        return names.index(name)
 
 
 def _sizes(scene: Scene, system: System) -> Sizes | None:

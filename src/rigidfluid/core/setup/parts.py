@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
-from rigidfluid.core.model.part_results import refuse_lost_body
 from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
 

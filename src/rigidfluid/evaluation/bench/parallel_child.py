@@ -51,11 +51,11 @@ def measured(dimension: int, bodies: int, coarseness: float) -> dict[str, Any]:
     """Sizes, contacts, and the mean seconds a step of ten; the first of them factorises, none compiles."""
     with one_openblas_thread():
         run = Simulation(scene(dimension, bodies, coarseness), None, False, Launch.of().size)
-        run._advance()
+        run.step()
         run.system.backend.forget()
         before, start = dict(run.watch.seconds), time.perf_counter()
         for _ in range(STEPS):
-            run._advance()
+            run.step()
         seconds = time.perf_counter() - start
     mesh = run.state.mesh
     assert mesh is not None

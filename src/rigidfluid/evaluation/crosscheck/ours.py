@@ -39,7 +39,8 @@ def run_ours(scene: Scene, timing: Timing) -> Samples:
     """
     simulation = Simulation(_timed(scene, timing), None, False)
     samples = [_sample(simulation.system, simulation.state)]
-    simulation.go(lambda _: samples.append(_sample(simulation.system, simulation.state)))
+    simulation.observe(lambda now: samples.append(_sample(now.system, now.state)))
+    simulation.go()
     return Samples.of(timing.times, samples)
 
 

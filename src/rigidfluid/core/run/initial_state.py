@@ -1,0 +1,61 @@
+"""Where a run starts."""
+
+from __future__ import annotations
+
+from rigidfluid.core.contact.proximity import surroundings
+from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.mesh.mesh_adaptation import Mover, reference_of
+from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.step import bodies_energy, contact_energy
+
+START_LEVEL = 6
+"""In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
+
+
+def initial_state(system: System, mover: Mover, clock: Clock) -> State:
+    """The state at time zero, on its first mesh; raises MeshError where there is none."""
+    zero = nothing(system.pose)
+    mesh = mover.first_mesh()
+    contacts, gaps = surroundings(system, system.pose, mesh)
+    fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
+    kinetic += bodies_energy(system, system.pose, system.twist)
+    stored = contact_energy(system, contacts)
+    return State(
+        tick=0,
+        count=0,
+        level=_level(system, clock, stored),
+        pose=system.pose,
+        twist=system.twist,
+        past=None,
+        mesh=mesh,
+        reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
+        fluid=fluid,
+        contacts=contacts,
+        coupling=None,
+        gaps=gaps,
+        hydrodynamic_wrench=zero,
+        contact_wrench=zero,
+        ledger=Ledger(kinetic, stored, kinetic + stored),
+    )
+
+
+def _level(system: System, clock: Clock, stored: float) -> int | None:
+    """The level that the first step may be twice as long as; any where the motion starts smoothly.
+
+    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
+    contacts that let go, and weight where the fluid has no inertia.
+    """
+    problem = system.backend.problem
+    if not system.backend.needs_mesh or problem is None:
+        return None
+    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
+    at_once = moves or stored > 0.0 or (not problem.inertia and system.weight.any())
+    return start_level(clock) if at_once else None
+
+
+def start_level(clock: Clock) -> int:
+    """The level that the next step may be twice as long as after something has changed at once."""
+    return min(START_LEVEL + 1, clock.levels)

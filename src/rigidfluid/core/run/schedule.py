@@ -1,0 +1,35 @@
+"""When something is due in a run."""
+
+from __future__ import annotations
+
+import math
+
+from rigidfluid.core.run.clock import Clock
+
+
+class Schedule:
+    """Due at the first accepted step at or after each multiple of an interval, and at the last; or at each step.
+
+    Parameters
+    ----------
+    clock : Clock
+        Of the run.
+    every : float or None
+        The interval [time]; None for each step.
+    latest : float
+        When it was met last [time].
+    """
+
+    def __init__(self, clock: Clock, every: float | None, latest: float = 0.0) -> None:
+        self._clock, self._every, self.latest = clock, every, latest
+
+    def due(self, tick: int) -> bool:
+        """Whether it is due in the state at this ``tick``."""
+        if self._every is None:
+            return True
+        number = math.floor(self.latest / self._every + 1e-9)
+        return tick >= min(self._clock.tick_from((number + 1) * self._every), self._clock.last_tick)
+
+    def met(self, tick: int) -> None:
+        """It was met in the state at this ``tick``."""
+        self.latest = self._clock.time(tick)

@@ -1,0 +1,167 @@
+"""From one accepted state to the next: the longest step that is allowed, halved until it succeeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rigidfluid.core.contact.contact_path import BodiesPath, first_step_again, follow
+from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen
+from rigidfluid.core.contact.proximity import least_gaps, surroundings, travel
+from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
+from rigidfluid.core.run.stopwatch import Stopwatch
+from rigidfluid.errors import StepError, StepRejected
+
+MOST_ATTEMPTS = 4
+"""Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
+
+
+@dataclass
+class Counts:
+    """Of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes made
+    after the first (``remeshes``), and those that could not be made (``failed_remeshes``)."""
+
+    rejected: int = 0
+    unsettled: int = 0
+    remeshes: int = 0
+    failed_remeshes: int = 0
+
+
+class Stepper:
+    """Takes steps, and counts what happens to them.
+
+    Parameters
+    ----------
+    system : System
+        What moves; it may be replaced between steps by one with another motion of its controlled bodies.
+    clock : Clock
+        Ticks and levels of steps.
+    mover : Mover
+        Of the mesh.
+    watch : Stopwatch
+        Of the stages of a step.
+
+    ``propose`` gives the level of the next step after a state, before gaps and rejections shorten it: the step
+    controller. Another may be put in the place of `longest`.
+    """
+
+    def __init__(self, system: System, clock: Clock, mover: Mover, watch: Stopwatch) -> None:
+        self.system, self._clock, self._mover, self._watch = system, clock, mover, watch
+        self.counts = Counts()
+        self.propose: Callable[[State], int] = self.longest
+
+    def longest(self, state: State) -> int:
+        """The level of the longest step on the clock's grid, at most twice the last."""
+        return self._clock.longest_level(state.tick, state.level)
+
+    def after(self, state: State) -> State:
+        """The next accepted state; raises StepError where even the shortest step is rejected."""
+        level, path = self._first_level(state)
+        while True:
+            try:
+                path = path or self._path(state, level)
+                state = self._on_its_mesh(state, path.pose)
+                new, agreed = self._tried(state, level, path)
+            except StepRejected as rejection:
+                self.counts.rejected += 1
+                level, path = level + 1, None
+                if level > self._clock.levels:
+                    raise self._stuck(state, rejection) from rejection
+            else:
+                self.counts.unsettled += not agreed
+                return new
+
+    def _on_its_mesh(self, state: State, pose: Pose) -> State:
+        """The state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
+        with self._watch("mesh"):
+            adapted = self._mover.adapted(state, pose)
+        self.counts.remeshes += adapted.mesh is not state.mesh
+        self.counts.failed_remeshes += adapted.remesh_failed not in (None, state.remesh_failed)
+        return adapted
+
+    def _tried(self, state: State, level: int, path: BodiesPath) -> tuple[State, bool]:
+        """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
+        for number in range(MOST_ATTEMPTS):
+            candidate, step = attempt(self.system, self._clock, self._mover, self._watch, state, level, path)
+            if level < self._clock.levels and unforeseen(self.system, state, candidate):
+                raise _too_fast()
+            if path.coupling is None:
+                if number > 0 or state.past is not None or state.mesh is None:
+                    return candidate, True
+                path = first_step_again(state, candidate.twist, self._clock.size(level))
+                continue
+            with self._watch("response"):
+                found = shown_coupling(self.system, state, candidate, path, step)
+            agreed = settled(found, path, state, candidate)
+            if agreed or number == MOST_ATTEMPTS - 1:
+                break
+            path = self._path(state, level, found)
+            if level < self._clock.levels and self._changes_gaps_too_fast(state, path.pose):
+                raise _too_fast()
+        return replace(candidate, coupling=found), agreed
+
+    def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodiesPath:
+        """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
+        time, size = self._clock.time(state.tick), self._clock.size(level)
+        if coupling is None:
+            with self._watch("response"):
+                coupling = expected_coupling(self.system, state, time, size)
+        with self._watch("contact"):
+            return follow(self.system, state, time, size, coupling)
+
+    def _first_level(self, state: State) -> tuple[int, BodiesPath | None]:
+        """The longest step, of those proposed and shorter ones, that changes no gap too fast, and the way it takes."""
+        level = self.propose(state)
+        while level < self._clock.levels:
+            try:
+                path = self._path(state, level)
+            except StepRejected:
+                break
+            if not self._changes_gaps_too_fast(state, path.pose):
+                return level, path
+            level += 1
+        return level, None
+
+    def _changes_gaps_too_fast(self, state: State, pose: Pose) -> bool:
+        """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
+        if state.mesh is None:
+            return False
+        moved = travel(self.system, state.pose, pose)
+        before = least_gaps(self.system, state.pose, state.gaps)
+        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
+            return False  # too far away for that: no need to measure
+        try:
+            mesh = self._mover.moved(state, pose) if self.system.detector.needs_mesh else None
+        except StepRejected:
+            return True
+        with self._watch("detect"):
+            _, gaps = surroundings(self.system, pose, mesh)
+        film = state.gaps < (self.system.law.range if self.system.law else 0.0)
+        opens = film & (gaps > WIDEST_OPENING * state.gaps)
+        return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())
+
+    def _stuck(self, state: State, rejection: StepRejected) -> StepError:
+        shortest, nearest = self._clock.size(self._clock.levels), int(np.argmin(state.gaps))
+        body, gap = self.system.surfaces[nearest], state.gaps[nearest]
+        return StepError(
+            f"{rejection.subject} at time {self._clock.time(state.tick):g}",
+            f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from the nearest surface",
+            rejection.allowed,
+            f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
+        )
+
+
+def _too_fast() -> StepRejected:
+    found = (
+        f"a gap that closes to less than {CLOSEST_APPROACH} of it, a film that opens more than {WIDEST_OPENING}-fold"
+    )
+    found += " or a contact that was out of sight"
+    return StepRejected("the step", found, "slower changes", "Shorten time.step.")

@@ -1,0 +1,128 @@
+"""A simulation that its caller drives: steps, observers, a body that is moved, a way back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rigidfluid.api import OutputError, SceneError, Simulation, StepError, run, scene_from_dict
+
+BALL = {"name": "ball", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.3, 0.5]}
+PADDLE = {"name": "paddle", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.7, 0.5]}
+DRIVEN = PADDLE | {"prescribed": {"velocity": [0.0, 0.2]}}
+
+
+def scene(*bodies: dict[str, Any], wet: bool = True, end: float = 0.4) -> Any:
+    fluid = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.05} if wet else {"backend": "dry"}
+    tables = {
+        "scene": {"name": "by_hand", "dimension": 2},
+        "fluid": fluid | {"gravity": [0.0, -1.0]},
+        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
+        "body": list(bodies),
+        "contact": {"law": "centre", "range": 0.05, "epsilon": 1e-4},
+        "time": {"end": end, "step": 0.02},
+        "output": {"every": 0.1},
+    }
+    return scene_from_dict(tables | ({"mesh": {"size": 0.2, "size_body": 0.1}} if wet else {}))
+
+
+def same(one: Any, other: Any) -> None:
+    for name in ("bodies", "energy"):
+        for column, values in one.table(name).items():
+            np.testing.assert_array_equal(values, other.table(name)[column])
+
+
+@pytest.mark.parametrize("wet", [True, False])
+def test_steps_taken_by_hand_are_those_of_a_run(wet: bool) -> None:
+    simulation = Simulation(scene(BALL, DRIVEN, wet=wet))
+    while not simulation.ended:
+        simulation.step()
+    same(run(scene(BALL, DRIVEN, wet=wet)), simulation.history)
+    assert simulation.time == pytest.approx(0.4)
+
+
+def test_there_is_no_step_after_the_end() -> None:
+    simulation = Simulation(scene(BALL, wet=False))
+    simulation.go()
+    with pytest.raises(StepError, match=r"time\.end"):
+        simulation.step()
+
+
+def test_observers_are_called_when_they_are_due() -> None:
+    simulation, each, now_and_then = Simulation(scene(BALL, wet=False)), [], []
+    simulation.observe(lambda s: each.append(s.time))
+    simulation.observe(lambda s: now_and_then.append(s.time), every=0.15)
+    simulation.go(until=0.2)
+    assert simulation.time == pytest.approx(0.2)
+    simulation.go()
+    np.testing.assert_allclose(each, 0.02 * np.arange(1, 21))
+    np.testing.assert_allclose(now_and_then, [0.16, 0.3, 0.4])
+
+
+def test_bodies_are_told_by_name() -> None:
+    simulation = Simulation(scene(BALL, DRIVEN))
+    simulation.step()
+    ball, paddle = simulation.bodies["ball"], simulation.bodies["paddle"]
+    assert ball.velocity[1] < 0.0 != ball.force[1]
+    np.testing.assert_array_equal(paddle.velocity, [0.0, 0.2])
+    assert paddle.gap == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_driven_body_takes_the_velocity_that_it_is_given() -> None:
+    simulation = Simulation(scene(BALL, DRIVEN))
+    simulation.go(until=0.2)
+    simulation.prescribe("paddle", velocity=[0.1, 0.0])
+    before = simulation.bodies["paddle"].position
+    simulation.go()
+    np.testing.assert_allclose(simulation.bodies["paddle"].velocity, [0.1, 0.0])
+    np.testing.assert_allclose(simulation.bodies["paddle"].position - before, [0.02, 0.0], atol=2e-3)
+    simulation.finish("complete")
+    assert simulation.history.summary["scene"]["body"][1]["prescribed"] == {"velocity": [0.1, 0.0]}
+
+
+def test_a_fixed_body_may_be_set_in_motion() -> None:
+    simulation = Simulation(scene(PADDLE | {"fixed": True}, wet=False))
+    simulation.prescribe("paddle", velocity=[-0.5, 0.0], angular_velocity=[1.0])
+    simulation.go()
+    np.testing.assert_allclose(simulation.bodies["paddle"].position, [0.5, 0.5])
+    np.testing.assert_allclose(simulation.bodies["paddle"].orientation, [0.4])
+
+
+@pytest.mark.parametrize(("name", "said"), [("ball", "is free"), ("nobody", "is not there")])
+def test_other_bodies_cannot_be_driven(name: str, said: str) -> None:
+    with pytest.raises(SceneError, match=f"'{name}', which {said}.*paddle"):
+        Simulation(scene(BALL, DRIVEN, wet=False)).prescribe(name, velocity=[1.0, 0.0])
+
+
+def test_a_velocity_that_cannot_be_is_refused() -> None:
+    with pytest.raises(SceneError, match="velocity"):
+        Simulation(scene(BALL, DRIVEN, wet=False)).prescribe("paddle", velocity=[1.0, np.nan])
+
+
+@pytest.mark.parametrize("wet", [True, False])
+def test_a_saved_run_branches_and_comes_back_to_the_last_bit(wet: bool) -> None:
+    simulation = Simulation(scene(BALL, DRIVEN, wet=wet))
+    simulation.go(until=0.2)
+    saved = simulation.save()
+    simulation.go()
+    rows = {name: len(column["time"]) for name in ("bodies", "energy") for column in [simulation.history.table(name)]}
+    end = simulation.bodies["ball"].position
+    simulation.restore(saved)
+    assert simulation.time == pytest.approx(0.2)
+    simulation.prescribe("paddle", velocity=[-1.0, 0.0])
+    simulation.go()
+    assert np.any(simulation.bodies["ball"].position != end)
+    simulation.restore(saved)
+    simulation.go()
+    np.testing.assert_array_equal(simulation.bodies["ball"].position, end)
+    assert {name: len(simulation.history.table(name)["time"]) for name in rows} == rows
+
+
+def test_a_run_that_writes_does_not_go_back(tmp_path: Any) -> None:
+    simulation = Simulation(scene(BALL, wet=False), tmp_path)
+    saved = simulation.save()
+    with pytest.raises(OutputError, match="go back"):
+        simulation.restore(saved)
+    simulation.close()
