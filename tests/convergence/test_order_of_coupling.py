@@ -20,12 +20,11 @@ class Interrupted(Simulation):
         )
         self.uneven = uneven
         self.mover.asks = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
+        self.stepper.propose = self._uneven
 
-    def _first_level(self):
-        odd = self.state.tick // self.clock.ticks(0) % 2
-        level, path = super()._first_level()
-        shorter = self.uneven and odd and level == 0
-        return (1, None) if shorter else (level, path)
+    def _uneven(self, state):
+        odd = state.tick // self.clock.ticks(0) % 2
+        return max(self.stepper.longest(state), int(self.uneven and odd))
 
 
 def fall(step, uneven):

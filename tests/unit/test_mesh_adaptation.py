@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,7 @@ from rigidfluid.core.mesh.mesh_adaptation import TANGLED, Mover
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.errors import StepRejected
+from rigidfluid.errors import StepError, StepRejected
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
@@ -38,18 +38,18 @@ def test_quality(monkeypatch, asked, made, worst, anew):
 
 
 def test_a_rejected_attempt_changes_nothing(monkeypatch):
-    simulation = Simulation(falling_disk(**SHORT), None, False)
-    before = {key: value for key, value in vars(simulation).items() if key not in ("watch", "mover")}
+    simulation = Simulation(falling_disk(**SHORT))
+    state = simulation.state
+    before = {field.name: getattr(state, field.name) for field in fields(state)}
 
     def refuse(*_):
         raise StepRejected("x", "y", "z", "Mend it.")
 
     monkeypatch.setattr(loop, "attempt", refuse)
-    monkeypatch.setattr(Mover, "adapted", lambda _, state, pose: replace(state))
-    level, path = simulation._first_level()
-    with pytest.raises(StepRejected):
-        simulation._tried(level, path)
-    assert all(getattr(simulation, key) is value for key, value in before.items())
+    with pytest.raises(StepError):
+        simulation.step()
+    assert simulation.state is state
+    assert all(getattr(state, key) is value for key, value in before.items())
 
 
 def test_steps_whose_turns_did_not_settle_are_counted(monkeypatch):

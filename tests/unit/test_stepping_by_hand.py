@@ -126,3 +126,16 @@ def test_a_run_that_writes_does_not_go_back(tmp_path: Any) -> None:
     with pytest.raises(OutputError, match="go back"):
         simulation.restore(saved)
     simulation.close()
+
+
+@pytest.mark.parametrize("wet", [True, False])
+def test_driven_bodies_are_where_their_motion_says(wet: bool) -> None:
+    swings = PADDLE | {"prescribed": {"amplitude": [0.1, 0.0], "frequency": 2.5, "angular_velocity": [3.0]}}
+    simulation = Simulation(scene(BALL, swings, wet=wet))
+    simulation.observe(lambda now: np.testing.assert_allclose(now.bodies["paddle"].position, at(now.time), atol=1e-14))
+    simulation.go()
+    assert simulation.bodies["paddle"].orientation[0] == pytest.approx(1.2)
+
+
+def at(time: float) -> list[float]:
+    return [0.7 + 0.1 * np.sin(5.0 * np.pi * time), 0.5]

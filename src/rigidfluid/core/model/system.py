@@ -16,7 +16,8 @@ class System:
     ``surfaces``: names of the bodies, then of the domain's faces (left, right, bottom, top[, back, front]).
     ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
     fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
-    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k).
+    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k), and the pose, by
+    ``controlled_pose(time)``.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
     ``loads``: what contacts must hold; its smallest gap is 0 without a law.
@@ -40,6 +41,7 @@ class System:
     assembly: IntArray
     controlled: BoolArray
     controlled_twist: Callable[[float], FloatArray]
+    controlled_pose: Callable[[float], Pose]
     backend: FluidBackend
     detector: Detector
     detector_why: str

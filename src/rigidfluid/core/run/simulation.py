@@ -217,8 +217,9 @@ class Simulation:
         body["prescribed"] = {key: value for key, value in given.items() if value is not None}
         tables["body"][number] = body
         self.scene = scene_from_dict(tables)
-        motion = prescribed_motion(self.scene)
-        self.system = self.stepper.system = replace(self.system, controlled_twist=motion)
+        motion = prescribed_motion(self.scene, self.state.pose, self.time)
+        self.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
+        self.stepper.system = self.system
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
             self.state = replace(self.state, level=start_level(self.clock))
 

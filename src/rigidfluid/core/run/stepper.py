@@ -96,7 +96,8 @@ class Stepper:
             if path.coupling is None:
                 if number > 0 or state.past is not None or state.mesh is None:
                     return candidate, True
-                path = first_step_again(state, candidate.twist, self._clock.size(level))
+                again = first_step_again(state, candidate.twist, self._clock.size(level))
+                path = self._as_given(again, state, level)
                 continue
             with self._watch("response"):
                 found = shown_coupling(self.system, state, candidate, path, step)
@@ -115,7 +116,16 @@ class Stepper:
             with self._watch("response"):
                 coupling = expected_coupling(self.system, state, time, size)
         with self._watch("contact"):
-            return follow(self.system, state, time, size, coupling)
+            path = follow(self.system, state, time, size, coupling)
+        return self._as_given(path, state, level)
+
+    def _as_given(self, path: BodiesPath, state: State, level: int) -> BodiesPath:
+        """The path with the poses of controlled bodies at its end evaluated, and not integrated."""
+        given = self.system.controlled_pose(self._clock.time(state.tick + self._clock.ticks(level)))
+        is_given = self.system.controlled[:, None]
+        position = np.where(is_given, given.position, path.pose.position)
+        orientation = np.where(is_given, given.orientation, path.pose.orientation)
+        return replace(path, pose=Pose(position, orientation))
 
     def _first_level(self, state: State) -> tuple[int, BodiesPath | None]:
         """The longest step, of those proposed and shorter ones, that changes no gap too fast, and the way it takes."""

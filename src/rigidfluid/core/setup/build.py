@@ -55,7 +55,8 @@ def build_system(scene: Scene) -> System:
     parts, boundary = resolve(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
-    pose, motion = _initial_pose(scene), prescribed_motion(scene)
+    pose = _initial_pose(scene)
+    motion = prescribed_motion(scene, pose)
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
     check_geometry(scene, parts, pose)
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
@@ -80,6 +81,7 @@ def build_system(scene: Scene) -> System:
         assembly=_assemblies(scene),
         controlled=controlled,
         controlled_twist=motion,
+        controlled_pose=motion.pose_at,
         backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
         detector=detector,
         detector_why=parts.detector_why,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.mechanics.rigid import rotate
+from rigidfluid.core.model.types import FloatArray, Pose
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
@@ -27,11 +28,24 @@ class PrescribedMotion:
         Amplitude of the displacement [length].
     frequency : ndarray (n,)
         Its frequency f [1/time].
+    pose : Pose
+        Of all bodies when the motion starts.
+    start : float
+        When that is [time].
     """
 
     twist: FloatArray
     amplitude: FloatArray
     frequency: FloatArray
+    pose: Pose
+    start: float
+
+    def pose_at(self, time: float) -> Pose:
+        """Where the motion leads to by ``time``: evaluated, so that no error of a step adds up."""
+        elapsed, d = time - self.start, self.amplitude.shape[1]
+        phase = np.sin(2 * np.pi * self.frequency * time) - np.sin(2 * np.pi * self.frequency * self.start)
+        moved = elapsed * self.twist[:, :d] + phase[:, None] * self.amplitude
+        return Pose(self.pose.position + moved, rotate(self.pose.orientation, elapsed * self.twist[:, d:]))
 
     def __call__(self, time: float) -> FloatArray:
         """Velocity and angular velocity (n, d+k) at ``time`` [length/time, rad/time]."""
@@ -41,8 +55,8 @@ class PrescribedMotion:
         return twist
 
 
-def prescribed_motion(scene: Scene) -> PrescribedMotion:
-    """The motion that a scene prescribes to its bodies."""
+def prescribed_motion(scene: Scene, pose: Pose, start: float = 0.0) -> PrescribedMotion:
+    """The motion that a scene prescribes to its bodies, which are at ``pose`` at time ``start``."""
     n, d = len(scene.body), scene.dimension
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(scene.body):
@@ -53,4 +67,4 @@ def prescribed_motion(scene: Scene) -> PrescribedMotion:
         twist[i, d:] = motion.angular_velocity or 0.0
         amplitude[i] = motion.amplitude or 0.0
         frequency[i] = motion.frequency or 0.0
-    return PrescribedMotion(twist, amplitude, frequency)
+    return PrescribedMotion(twist, amplitude, frequency, pose, start)
