@@ -6,6 +6,7 @@ python docs/make_validation.py [NAME ...], the names as in CASES; all without on
 from __future__ import annotations
 
 import datetime
+import json
 import os
 import shutil
 import sys
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 import rigidfluid
 from rigidfluid.core.output.history import History
@@ -433,7 +435,67 @@ put in, the shares of energy mean little.
 {resting}"""
 
 
+def hundred_disks() -> None:
+    """Case 6 of arXiv:2402.19093 to its end, from a run that is taken up where it was stopped."""
+    out = ROOT / "out" / "hundred_disks"
+    scene = rigidfluid.load_scene(ROOT / "scenes" / "hundred_disks.toml")
+    if not (out / "summary.json").exists() or json.loads((out / "summary.json").read_text())["status"] != "complete":
+        rigidfluid.run(scene, out, resume=(out / "state.h5").exists())
+    history, summary = History(2, folder=out), json.loads((out / "summary.json").read_text())
+    bodies, energy, count = history.bodies, history.energy, len(scene.body)
+    time, *state = (bodies[name].reshape(-1, count) for name in ("time", "x", "y", "vx", "vy", "gap"))
+    shown = [int(np.argmin(np.abs(time[:, 0] - t))) for t in (0.0, 1.0, 2.0, 3.0, scene.time.end)]
+    figure = Figure(figsize=(12.0, 4.8), layout="constrained")
+    for step, axes in zip(shown, figure.subplots(1, len(shown)), strict=True):
+        for x, y, body in zip(state[0][step], state[1][step], scene.body, strict=True):
+            axes.add_patch(Circle((x, y), body.radius, facecolor="steelblue", edgecolor="black", linewidth=0.3))
+        axes.set(xlim=(0, 1), ylim=(0, 2), aspect="equal", title=f"t = {time[step, 0]:.1f} s", xticks=[], yticks=[])
+    figure.savefig(OUT / "hundred_disks.png", dpi=80)
+    seconds, speed = summary["wall_time_per_stage"], np.hypot(state[2], state[3]).max(axis=1)
+    contacts = len(history.contacts["time"]) / summary["steps"]
+    stages = table(
+        ("stage", "share of the run [%]"), ((k, f"{100 * v / sum(seconds.values()):.0f}") for k, v in seconds.items())
+    )
+    text = HUNDRED_DISKS.format(
+        time=time[-1, 0],
+        steps=summary["steps"],
+        rejected=summary["rejected_steps"],
+        remeshes=summary["remeshes"],
+        unknowns=summary["unknowns"],
+        hours=summary["wall_time"] / 60.0,
+        contacts=contacts,
+        gap=summary["smallest_gap"],
+        fastest=speed.max(),
+        last=speed[-1],
+        kinetic=energy["kinetic"][-1],
+        transfer=summary["energy"]["transfer_loss"],
+        created=100 * summary["energy"]["created"],
+        lost=100 * summary["energy"]["lost"],
+        put_in=summary["energy"]["put_in"],
+        stages=stages,
+    )
+    write_page("hundred_disks", "A hundred disks settle", "python docs/make_validation.py hundred_disks", text)
+
+
+HUNDRED_DISKS = """`scenes/hundred_disks.toml` as shipped: the paper's law, box and step.
+
+| | |
+| --- | --- |
+| end [s] | {time:.3g} |
+| steps, rejected, new meshes | {steps}, {rejected}, {remeshes} |
+| unknowns at the end | {unknowns:,} |
+| wall time of one thread [min] | {hours:.0f} |
+| contacts in range, mean over the steps | {contacts:.0f} |
+| smallest gap [cm] | {gap:.4f} |
+| highest speed of the run, and at its end [cm/s] | {fastest:.2f}, {last:.1e} |
+| energy put in, created, lost | {put_in:.2f} erg/cm, {created:.3f} %, {lost:.3f} % |
+| lost by re-meshing [erg/cm] | {transfer:.4f} |
+
+{stages}"""
+
+
 CASES = {
+    "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,
     "dfg_cylinder": dfg_cylinder,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
