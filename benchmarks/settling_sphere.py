@@ -19,7 +19,7 @@ from rigidfluid.core.run.memory import peak_memory
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.setup.load import load_scene
-from rigidfluid.taylor_hood.stale_solver import StaleSolver
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 
 SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"
 # (size, size_body, growth) of the mesh: 55,000, 160,000 and more than 300,000 unknowns.
@@ -45,18 +45,18 @@ class Row:
 @contextmanager
 def counted(iterations: list[int]) -> Iterator[None]:
     """Collects the iterations of every solution."""
-    solve = StaleSolver.solve
+    solve = LaggedSolver.solve
 
     def counting(self, *arguments):  # type: ignore[no-untyped-def]
         found = solve(self, *arguments)
         iterations.append(found[1])
         return found
 
-    StaleSolver.solve = counting  # type: ignore[method-assign]
+    LaggedSolver.solve = counting  # type: ignore[method-assign]
     try:
         yield
     finally:
-        StaleSolver.solve = solve  # type: ignore[method-assign]
+        LaggedSolver.solve = solve  # type: ignore[method-assign]
 
 
 def settle(mesh: tuple[float, float, float], step: float, steps: int) -> tuple[Row, int, bool]:

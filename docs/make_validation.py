@@ -378,11 +378,11 @@ are; not with dampers that steps do not resolve. One explicit substep only where
 
 ## Two disks without a fluid
 
-`studies/contact_stepping.toml`, the plot above. Substeps find the moment of a blow within a step, and are exact to four
-digits with the longest steps. They stay the same through a blow, however many steps it lasts. In the second blow the
-disks hit a wall and, before they leave it, the floor; where that is foreseen in a later step, substeps change in the
-midst of the blow, which costs some energy, most with steps of 5e-5. The implicit step keeps the energy to 1e-8 at all
-steps; its error is when the blow takes place, so it is of first order until steps resolve the contact, and then of
+`studies/contact_stepping.toml`, the plot above. Substeps find the moment of an impact within a step, and are exact to
+four digits with the longest steps. They stay the same through an impact, however many steps it lasts. In the second
+impact the disks hit a wall and, before they leave it, the floor; where that is foreseen in a later step, substeps change
+in the midst of the impact, which costs some energy, most with steps of 5e-5. The implicit step keeps the energy to 1e-8 at all
+steps; its error is when the impact takes place, so it is of first order until steps resolve the contact, and then of
 second.
 
 {dry}
@@ -414,7 +414,8 @@ water, with contacts that are ten to a thousand times shorter than a step; what 
 [numerics](../numerics.md#contacts).
 
 * created: the most negative residual of the energy balance after the first step, less the first step's own; lost: the
-  most positive. Both over what was put in, energy stored at the start and the most that gravity and hands had worked.
+  most positive. Both over what was put in, energy stored at the start and the most that gravity and driven
+  bodies had worked.
 * friction: `path_friction`, what the bodies' friction took between the fluid's solutions, over the same. It explains up
   to so much of what was lost; it is no part of the residual.
 * first step: what it created.

@@ -19,7 +19,7 @@ class Interrupted(Simulation):
             False,
         )
         self.uneven = uneven
-        self.mover.asks = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
+        self.mesh_updater.needs_remesh = lambda state, pose: state.tick == self.clock.tick_from(REMESH)
         self.stepper.propose = self._uneven
 
     def _uneven(self, state):

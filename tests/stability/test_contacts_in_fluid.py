@@ -31,7 +31,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
 MILLISECOND = 1e-3
 BOTH: tuple[Stepping, Stepping] = ("substeps", "implicit")
@@ -236,7 +236,7 @@ def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
     mean = float(volume @ pressure.mean(axis=1) / volume.sum())
     problem = system.backend.problem
     numbering = Numbering(state.mesh.cells, len(state.mesh.points))
-    pin = far_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.bodies), state.mesh)
+    pin = pinned_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.bodies), state.mesh)
     apart = np.linalg.norm(state.mesh.points[:, None] - state.pose.position[None], axis=2).min(axis=1)
     inside = np.setdiff1d(np.arange(len(state.mesh.points)), state.mesh.facets)
     assert pin is not None

@@ -354,7 +354,7 @@ def _wet() -> Iterator[Case]:
 
 
 def _wet_blows() -> Iterator[Case]:
-    """One or a few blows."""
+    """One or a few impacts."""
     sub, imp = partial(_by, "substeps"), partial(_by, "implicit")
     two, three, made = (4, 1), (4, 2, 1), "energy created"
     for epsilon in (1e-6, 1e-8, 1e-10, 1e-14):

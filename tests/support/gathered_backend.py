@@ -87,14 +87,14 @@ class Gathered(FluidBackend):
 
     def _on_root(self, work, mesh, fluid=None):
         """What the root makes of the whole: a state, of which each rank gets a slice, and the rest, for all."""
-        mesh, states = self._whole(mesh), self.ranks.collected(fluid)
+        mesh, states = self._whole(mesh), self.ranks.gather(fluid)
         slices = rest = None
-        with self.ranks.together():
+        with self.ranks.raise_on_all():
             if self.ranks.is_root:
                 state, rest = work(mesh, *([] if fluid is None else [self._joined(fluid, states)]))
                 cut = {name: np.array_split(values, self.ranks.size) for name, values in state.items()}
                 slices = [{name: cut[name][rank] for name in cut} for rank in range(self.ranks.size)]
-        return self.ranks.scattered(slices), self.ranks.shared(rest)
+        return self.ranks.scatter(slices), self.ranks.bcast(rest)
 
     def _joined(self, fluid, states):
         """The state of all: the same where the root's slice is the same, as a backend knows it by what it is."""
@@ -125,7 +125,7 @@ class OnTheRoot:
         self._part, self._free = mesh.part, ~held
         entries, ids = matrix.tocoo(), mesh.part.vertices
         sent = (entries.data, ids[entries.coords[0]], ids[entries.coords[1]], ids, held)
-        pieces = mesh.ranks.collected(sent)
+        pieces = mesh.ranks.gather(sent)
         if pieces is not None:
             data, rows, columns, vertices, fixed = map(np.concatenate, zip(*pieces, strict=True))
             count = mesh.part.counts[0]
@@ -134,14 +134,14 @@ class OnTheRoot:
             self._solver = FactorisedExtension(csc_array((data, (rows, columns)), shape=(count, count)), everywhere)
 
     def fill(self, values):
-        pieces = self._part.ranks.collected((self._part.vertices, values))
+        pieces = self._part.ranks.gather((self._part.vertices, values))
         everywhere = None
         if pieces is not None:
             everywhere = np.empty(self._part.counts[0])
             for vertices, given in pieces:
                 everywhere[vertices] = given
             self._solver.fill(everywhere)
-        values[self._free] = self._part.ranks.shared(everywhere)[self._part.vertices[self._free]]
+        values[self._free] = self._part.ranks.bcast(everywhere)[self._part.vertices[self._free]]
 
 
 def world():

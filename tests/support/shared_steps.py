@@ -25,7 +25,7 @@ def started(scene, **fluid):
 def go_on(simulation, steps):
     """With a new mesh every second one."""
     for _ in range(steps):
-        simulation.mover.asks = lambda state, _: state.count % EVERY == 1
+        simulation.mesh_updater.needs_remesh = lambda state, _: state.count % EVERY == 1
         simulation.step()
 
 

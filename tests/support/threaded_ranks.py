@@ -13,24 +13,24 @@ class ThreadedRanks(Ranks):
     def __init__(self, rank, board):
         self.rank, self.size, self._board = rank, len(board.items), board
 
-    def gathered(self, item):
+    def allgather(self, item):
         self._board.barrier.wait()
         self._board.items[self.rank] = pickle.dumps(item)
         self._board.barrier.wait()
         return [pickle.loads(each) for each in self._board.items]
 
-    def collected(self, item):
-        items = self.gathered(item)
+    def gather(self, item):
+        items = self.allgather(item)
         return items if self.is_root else None
 
-    def shared(self, item):
-        return self.gathered(item if self.is_root else None)[ROOT]
+    def bcast(self, item):
+        return self.allgather(item if self.is_root else None)[ROOT]
 
-    def scattered(self, items):
-        return self.gathered(items)[ROOT][self.rank]
+    def scatter(self, items):
+        return self.allgather(items)[ROOT][self.rank]
 
-    def exchanged(self, items):
-        return [theirs[self.rank] for theirs in self.gathered(items)]
+    def alltoall(self, items):
+        return [theirs[self.rank] for theirs in self.allgather(items)]
 
     def abort(self):
         self._board.barrier.abort()

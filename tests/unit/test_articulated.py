@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.contact.proximity import surroundings
+from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
@@ -35,7 +35,7 @@ def chain(*wholes, x=(0.2, 0.41, 0.62), mesh=False, **contact):
 
 def pairs(scene):
     system = build_system(scene)
-    contacts, gaps = surroundings(system, system.pose, None)
+    contacts, gaps = detect_contacts_and_gaps(system, system.pose, None)
     contacts = select(contacts, contacts.gap <= system.law.range)
     return list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True)), gaps
 

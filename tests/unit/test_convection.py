@@ -6,7 +6,7 @@ import fluid_contacts as scenes
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.contact_path import BodiesPath
+from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -17,13 +17,13 @@ from rigidfluid.core.run.simulation import Simulation
 STEP, SPEED, MASS = 1e-3, 7.0, 0.14
 
 
-def path_to(simulation: Simulation, moved: float) -> BodiesPath:
+def path_to(simulation: Simulation, moved: float) -> BodyStep:
     """A disk's way that ends so far above its start, with a coupling that knows its velocity in x and y."""
     state, count = simulation.state, np.array([0, 1])
     pose = Pose(state.pose.position + [[0.0, moved]], state.pose.orientation)
     zero = np.zeros(2)
     model = ReducedModel(count, np.eye(2) / np.sqrt(MASS), zero, Asked(zero, zero), False)
-    return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1, coupling=Coupling(model, zero, zero, zero))
+    return BodyStep(pose, state.twist, nothing(pose), 0.0, 0.0, 1, coupling=Coupling(model, zero, zero, zero))
 
 
 def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArray:

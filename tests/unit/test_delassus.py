@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box_walls, ellipsoid, upright
 
-from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.delassus import delassus
-from rigidfluid.core.mechanics.movement import FreeMovement
+from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.reduced_model import Asked, Coupling, reduced_model
@@ -45,7 +45,7 @@ def test_free_bodies(dimension):
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     mass, inertia = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3])[:, None, None] * np.eye(k)
     driven = np.array([False, True, False])
-    movement = FreeMovement(pose, twist, mass, inertia, np.zeros_like(pose.position), driven, lambda _: np.zeros(0))
+    movement = DryDynamics(pose, twist, mass, inertia, np.zeros_like(pose.position), driven, lambda _: np.zeros(0))
     inverse = np.concatenate([1.0 / mass[:, None] * np.ones(dimension), [[10.0] * k, [5.0] * k, [10 / 3] * k]], axis=1)
     inverse[driven] = 0.0
     rates = gap_rates(contacts, pose)
@@ -71,7 +71,7 @@ def test_bodies_in_a_fluid_answer_to_each_other(dimension):
     )
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     blocks = np.zeros((count, dimension, dimension)), np.zeros((count, k, k))
-    movement = CoupledMovement(
+    movement = CoupledDynamics(
         pose, twist, np.zeros((count, dimension + k)), *blocks, Coupling(model, *np.zeros((3, size)))
     )
     rates, time = gap_rates(contacts, pose), 0.02

@@ -190,7 +190,7 @@ def bounce(steps_in_contact: int) -> Bounce:
 
     step = contact_time() / steps_in_contact
     start = Pose(np.array([[3.0, RADIUS + RANGE + 3.3 * SPEED * step]]), np.zeros((1, 1)))
-    bodies = Bodies(np.array([MASS]), MASS * ball.gyration[None], wrench)
+    bodies = Bodies(np.array([MASS]), MASS * ball.unit_inertia[None], wrench)
     steps = np.full(int(1.2 * steps_in_contact) + 10, step)
     poses, twists = simulate(bodies, start, Twist(np.array([[0.0, -SPEED]]), np.zeros((1, 1))), steps)
     gaps = np.array([contacts(pose).gap[0] for pose in poses])

@@ -73,7 +73,7 @@ def test_equal_axes_make_a_ball(dimension: int) -> None:
     ball, round_one = Sphere(SphereOptions(radius=0.3), dimension), ellipsoid(*[0.3] * dimension)
     assert round_one.radius == 0.3
     assert round_one.volume == pytest.approx(ball.volume, rel=1e-15)
-    np.testing.assert_allclose(round_one.gyration, ball.gyration, rtol=1e-15)
+    np.testing.assert_allclose(round_one.unit_inertia, ball.unit_inertia, rtol=1e-15)
     assert ellipsoid(0.3, 0.2).radius is None
 
 

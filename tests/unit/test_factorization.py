@@ -11,7 +11,7 @@ from scipy import sparse
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import factorization
 from rigidfluid.taylor_hood.factorization import factorise
-from rigidfluid.taylor_hood.stale_factors import StaleFactors
+from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 
 N = 400
 RIGHT = np.cos(np.arange(N))
@@ -92,7 +92,7 @@ def test_where_pardiso_refuses_by_the_old_analysis_there_is_another(monkeypatch)
 
 @with_pardiso
 def test_renewals_by_wasted_iterations_analyse_once_until_all_is_forgotten(phases):
-    solver = StaleFactors(2)
+    solver = LaggedFactors(2)
     spread = [matrix(0)]
     for power in range(1, 4):
         spread.append(spread[0].copy())

@@ -128,8 +128,8 @@ def test_contacts_that_cannot_be(install: Install, fault: str, found: str) -> No
         "bounding_radius = 0.0",
         "volume = -1.0",
         "volume = float('inf')",
-        "gyration = np.array([[-1.0]])",
-        "gyration = np.eye(2)",
+        "unit_inertia = np.array([[-1.0]])",
+        "unit_inertia = np.eye(2)",
         "semi_axes = np.array([0.1, -0.1])",
     ],
 )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, ellipsoid
 
-from rigidfluid.core.contact.followed import FollowedContacts
+from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import Pose, Wall
@@ -22,7 +22,7 @@ def later(time):
 
 def test_balls_are_followed_exactly():
     detector = SphereDetector(PartOptions(), [ball(0.1), ball(0.12)], [FLOOR])
-    followed = FollowedContacts(detector.detect(START, None, np.inf), START).at(later(1.0))
+    followed = ExtrapolatedContacts(detector.detect(START, None, np.inf), START).at(later(1.0))
     found = detector.detect(later(1.0), None, np.inf)
     for name in ("body_a", "body_b", "gap", "normal", "point_a", "point_b"):
         np.testing.assert_allclose(getattr(followed, name), getattr(found, name), atol=1e-14, err_msg=name)
@@ -31,7 +31,7 @@ def test_balls_are_followed_exactly():
 @pytest.mark.parametrize("contact", [0, 1, 2])
 def test_other_shapes_to_first_order(contact):
     detector = EllipsoidDetector(PartOptions(), [ellipsoid(0.14, 0.07), ellipsoid(0.12, 0.08)], [FLOOR])
-    follow = FollowedContacts(detector.detect(START, None, np.inf), START)
+    follow = ExtrapolatedContacts(detector.detect(START, None, np.inf), START)
     errors = [
         abs(follow.at(later(time)).gap[contact] - detector.detect(later(time), None, np.inf).gap[contact])
         for time in (0.4, 0.2, 0.1)

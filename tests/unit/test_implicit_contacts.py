@@ -9,8 +9,8 @@ from touching import contact
 import rigidfluid
 from rigidfluid.core.contact import implicit_contacts
 from rigidfluid.core.contact.contact_newton import discrete_gradient
-from rigidfluid.core.contact.redetected import RedetectedContacts
 from rigidfluid.core.contact.repulsion import RepulsionOptions
+from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Pose, Wrench
 from rigidfluid.core.setup.build import build_system
@@ -174,7 +174,7 @@ def test_a_driven_body_pushes_and_takes_no_push():
 def test_a_pair_that_was_not_foreseen_rejects_the_step():
     pair = [ball([x, 0.5], [0.0, 0.0]) for x in (0.25, 0.75)]
     system = build_system(implicit(spring(1e4), *pair, end=0.1, step=0.01))
-    contacts = RedetectedContacts(system, system.pose, reach=0.16)
+    contacts = TrackedPairs(system, system.pose, reach=0.16)
     assert contacts.start.gap == pytest.approx([0.15, 0.15])
 
     def right_at(x):

@@ -17,12 +17,15 @@ from rigidfluid.core.mechanics.leverage import ELLIPSOIDS, most_leverage
 from rigidfluid.core.run.simulation import Simulation
 
 
-def shape(dimension: int, points: Any, gyration: Any) -> Any:
+def shape(dimension: int, points: Any, unit_inertia: Any) -> Any:
     """A shape that is no ellipsoid, of these surface points."""
     farthest = float(np.linalg.norm(points, axis=1).max())
     known = {"dimension": dimension, "radius": None, "semi_axes": None, "volume": 1.0}
     return SimpleNamespace(
-        **known, gyration=np.asarray(gyration), bounding_radius=farthest, sample_surface=lambda _: np.asarray(points)
+        **known,
+        unit_inertia=np.asarray(unit_inertia),
+        bounding_radius=farthest,
+        sample_surface=lambda _: np.asarray(points),
     )
 
 
@@ -40,7 +43,7 @@ def test_a_rod_has_that_of_the_text_book() -> None:
 @pytest.mark.parametrize("axes", [(1.0, 1.0, 0.99), (1.0, 0.3, 0.2), (1.0, 0.01, 0.01), (1.0, 1.0, 0.01)])
 def test_ellipsoids_have_no_more_than_is_said(axes: tuple[float, ...]) -> None:
     body = Ellipsoid(Ellipsoid.Options(semi_axes=list(axes)), 3)
-    hidden = shape(3, body.sample_surface(2000), body.gyration)
+    hidden = shape(3, body.sample_surface(2000), body.unit_inertia)
     assert most_leverage(hidden) <= 1.001 * ELLIPSOIDS
     assert most_leverage(body) == ELLIPSOIDS
 

@@ -6,7 +6,7 @@ from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.marching.field import distance_field, march_from
 from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology
-from rigidfluid.marching.walk import walk_to_vertex
+from rigidfluid.marching.walk import local_search_to_vertex
 from rigidfluid.marching.workspace import new_workspace
 
 SIZE = {2: 0.06, 3: 0.2}
@@ -156,7 +156,7 @@ def test_a_walk_over_a_convex_surface_ends_on_the_nearest_facet(dimension):
     for vertex in range(len(mesh.points))[-1:0:-101]:
         point = mesh.points[vertex]
         facing = [facet for facet in seeds if middle[facet] @ point > 0.2 * np.linalg.norm(point) * 0.3]
-        ends = [walk_to_vertex(mesh.points, vertex, topology.surfaces, wanted, facet)[0] for facet in facing]
+        ends = [local_search_to_vertex(mesh.points, vertex, topology.surfaces, wanted, facet)[0] for facet in facing]
         nearest = naive_distances(point[None], mesh.points, mesh.facets[seeds])[0]
         np.testing.assert_allclose(np.sqrt(ends), nearest, rtol=1e-12)
 

@@ -161,7 +161,7 @@ def test_bodies_far_apart_are_not_marched(monkeypatch):
 
 
 def test_a_band_narrower_than_the_range_is_refused():
-    assert narrow_band([], []).sight(0.02) == pytest.approx(0.03)
-    assert narrow_band([], [], band_width=0.1).sight(0.02) == 0.1
+    assert narrow_band([], []).preferred_reach(0.02) == pytest.approx(0.03)
+    assert narrow_band([], [], band_width=0.1).preferred_reach(0.02) == 0.1
     with pytest.raises(SceneError, match=r"contact.band_width: found 0.01.*at least the range, 0.02"):
-        narrow_band([], [], band_width=0.01).sight(0.02)
+        narrow_band([], [], band_width=0.01).preferred_reach(0.02)

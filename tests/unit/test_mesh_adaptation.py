@@ -12,7 +12,7 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.core.mesh import mesh_adaptation
-from rigidfluid.core.mesh.mesh_adaptation import TANGLED, Mover
+from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
@@ -31,10 +31,10 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda mesh, points: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
     system: Any = None
-    mover = Mover(system, None, asked, 1)
-    monkeypatch.setattr(mover, "_map", lambda reference: still)
+    mesh_updater = MeshUpdater(system, None, asked, 1)
+    monkeypatch.setattr(mesh_updater, "_map", lambda reference: still)
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
-    assert mover.asks(state, state) is anew
+    assert mesh_updater.needs_remesh(state, state) is anew
 
 
 def test_a_rejected_attempt_changes_nothing(monkeypatch):

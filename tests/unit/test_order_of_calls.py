@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from falling import falling_disk
 
-from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.run import step, stepper
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.stepper import Stepper
@@ -40,9 +40,9 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     recorded(Stepper, "longest", "propose a level")
     recorded(stepper, "expected_coupling", "expect the coupling")
     recorded(stepper, "follow", "follow the bodies")
-    recorded(Mover, "adapted", "adapt the mesh")
-    recorded(Mover, "moved", "move the mesh")
-    recorded(step, "surroundings", "detect contacts")
+    recorded(MeshUpdater, "remesh_if_needed", "adapt the mesh")
+    recorded(MeshUpdater, "deform", "move the mesh")
+    recorded(step, "detect_contacts_and_gaps", "detect contacts")
     recorded(stepper, "shown_coupling", "show the coupling")
     recorded(Simulation, "_record", "record")
     return made

@@ -254,9 +254,9 @@ def test_a_tangled_cell_of_one_rank_is_everyone_s(monkeypatch):
         simulation = Simulation(scene, None, False)
         if ranks.rank == 1:
             monkeypatch.setattr(mesh_adaptation, "cell_quality", tangled)
-        ranks.gathered(None)
+        ranks.allgather(None)
         with pytest.raises(StepRejected, match=r"a cell of quality 0\.000"):
-            simulation.mover.moved(simulation.state, simulation.state.pose)
+            simulation.mesh_updater.deform(simulation.state, simulation.state.pose)
 
     on_ranks(2, work)
 
@@ -311,7 +311,7 @@ def test_a_rank_that_leaves_ends_the_others():
     def work(ranks):
         if ranks.rank == 0:
             ranks.abort()
-        ranks.gathered(None)
+        ranks.allgather(None)
 
     with pytest.raises(BrokenBarrierError):
         on_ranks(2, work)

@@ -39,8 +39,8 @@ def divergence(discretisation, points, velocity):
 def test_both_levels_are_carried_over(spinning):
     before = spinning.state
     energy = kinetic_energy(on(spinning, before.mesh), before.mesh.points, before.fluid["velocity"])
-    spinning.mover.asks = lambda *_: True
-    after = spinning.mover.adapted(
+    spinning.mesh_updater.needs_remesh = lambda *_: True
+    after = spinning.mesh_updater.remesh_if_needed(
         before, predict_pose(before.pose, before.twist, before.past_twist, 0.004, before.past_step)
     )
     assert after.mesh is not before.mesh

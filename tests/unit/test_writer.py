@@ -11,7 +11,7 @@ from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.output.tables import Table, read_rows
 from rigidfluid.core.run.simulation import Simulation
@@ -158,7 +158,7 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
     monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
-    monkeypatch.setattr(Mover, "is_worn", lambda *_: True)
+    monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: True)
     summary = rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})).summary
     assert summary["status"] == "complete"
     assert 0 < summary["failed_remeshes"] == len(tried) <= 4

@@ -26,7 +26,7 @@ class EllipsoidOptions(PartOptions):
 
 
 class Ellipsoid(Body):
-    """An ellipsoid Σ (x_i/a_i)² = 1, volume πab or 4πabc/3, gyration (a² + b²)/4 or diag(b² + c², …)/5.
+    """An ellipsoid Σ (x_i/a_i)² = 1, volume πab or 4πabc/3, unit_inertia (a² + b²)/4 or diag(b² + c², …)/5.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Ellipsoid(Body):
         return (pi if self.dimension == 2 else 4 / 3 * pi) * prod(self.options.semi_axes)
 
     @property
-    def gyration(self) -> FloatArray:
+    def unit_inertia(self) -> FloatArray:
         """(a² + b²)/4 (1, 1) in 2D, diag(b² + c², c² + a², a² + b²)/5 (3, 3) in 3D [length²]."""
         squares = self.semi_axes**2
         if self.dimension == 2:

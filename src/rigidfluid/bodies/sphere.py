@@ -20,7 +20,7 @@ class SphereOptions(PartOptions):
 
 
 class Sphere(Body):
-    """A ball of radius a: |x| = a, volume πa² or 4πa³/3, gyration a²/2 or (2/5)a² I.
+    """A ball of radius a: |x| = a, volume πa² or 4πa³/3, unit_inertia a²/2 or (2/5)a² I.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class Sphere(Body):
         return pi * self.radius**2 if self.dimension == 2 else 4 / 3 * pi * self.radius**3
 
     @property
-    def gyration(self) -> FloatArray:
+    def unit_inertia(self) -> FloatArray:
         """a²/2 (1, 1) in 2D, (2/5)a² I (3, 3) in 3D [length²]."""
         return self.radius**2 * (np.full((1, 1), 0.5) if self.dimension == 2 else 0.4 * np.eye(3))
 

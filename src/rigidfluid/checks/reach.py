@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.contact.loads import impact_energy
 from rigidfluid.core.contact.meetings import free, kinds
-from rigidfluid.core.contact.proximity import may_repel
+from rigidfluid.core.contact.proximity import interacting
 from rigidfluid.core.mechanics.shapes import inscribed_radius
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import Body, ForceLaw
@@ -37,7 +37,7 @@ def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Fin
     """
     repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
     near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
-    near = select(near, may_repel(system, near))
+    near = select(near, interacting(system, near))
     if len(near) == 0:
         return
     stored, impact = law.energy(near), impact_energy(near, system.loads)

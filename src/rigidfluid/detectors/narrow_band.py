@@ -35,7 +35,7 @@ class NarrowBandDetector(MarchingDetector):
     Options: ClassVar[type[PartOptions]] = NarrowBandOptions
     options: NarrowBandOptions
 
-    def sight(self, law_range: float) -> float:
+    def preferred_reach(self, law_range: float) -> float:
         """``band_width``, or 1.5 ``law_range`` [length]; raises SceneError if the band is narrower than the range."""
         width = self.options.band_width
         if width is None:

@@ -14,8 +14,8 @@ from numba import njit
 
 from rigidfluid.marching.band import square_in_band
 from rigidfluid.marching.convex import is_convex
-from rigidfluid.marching.tree import no_tree, plant, search_to_vertex
-from rigidfluid.marching.walk import walk_to_vertex
+from rigidfluid.marching.tree import build_tree, empty_tree, search_to_vertex
+from rigidfluid.marching.walk import local_search_to_vertex
 from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 
 
@@ -33,7 +33,7 @@ def seed(points, surfaces, seeds, whole, work):
                 work.touched[touched] = vertex
                 touched += 1
     convex = whole and is_convex(points, surfaces, seeds)
-    return touched, no_tree(points.shape[1]) if convex else plant(points, surfaces.facets, seeds)
+    return touched, empty_tree(points.shape[1]) if convex else build_tree(points, surfaces.facets, seeds)
 
 
 @njit(cache=True, nogil=True)
@@ -54,7 +54,7 @@ def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first,
             other = members[k]
             if state[other] != FAR:
                 continue
-            square, nearest = walk_to_vertex(points, other, surfaces, wanted, facet)
+            square, nearest = local_search_to_vertex(points, other, surfaces, wanted, facet)
             square, nearest = search_to_vertex(points, other, surfaces.facets, tree, square, nearest)
             if square_in_band(points, neighbours, other, square, width, slack):
                 state[other], key[other], nearest_facet[other] = KNOWN, square, nearest
@@ -83,7 +83,7 @@ def accept(vertices, key, facet, work, touched):
 def measure(points, surfaces, wanted, tree, work, touched):
     """Put the exact squared distance in place of any other key that the touched vertices have."""
     for vertex in work.touched[:touched]:
-        square, facet = walk_to_vertex(points, vertex, surfaces, wanted, work.facet[vertex])
+        square, facet = local_search_to_vertex(points, vertex, surfaces, wanted, work.facet[vertex])
         square, facet = search_to_vertex(points, vertex, surfaces.facets, tree, square, facet)
         work.key[vertex], work.facet[vertex] = square, facet
 

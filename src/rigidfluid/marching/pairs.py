@@ -12,7 +12,7 @@ from numba import njit
 
 from rigidfluid.marching.simplices import facet_to_facet
 from rigidfluid.marching.tree import search_to_facet
-from rigidfluid.marching.walk import walk_to_facet
+from rigidfluid.marching.walk import local_search_to_facet
 from rigidfluid.marching.workspace import KNOWN
 
 
@@ -81,7 +81,7 @@ def _facet_gap(points, surfaces, wanted, tree, facet, work):
     for corner in surfaces.facets[facet]:
         if work.state[corner] == KNOWN and work.key[corner] < nearest:
             nearest, start = work.key[corner], work.facet[corner]
-    square, partner = walk_to_facet(points, facet, surfaces, wanted, start)
+    square, partner = local_search_to_facet(points, facet, surfaces, wanted, start)
     square, partner = search_to_facet(points, facet, surfaces.facets, tree, square, partner)
     return sqrt(square), partner
 

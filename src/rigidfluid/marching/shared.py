@@ -41,15 +41,15 @@ class SharedMesh:
         assert mesh.part is not None
         self.mesh, self._ranks, place = mesh, mesh.ranks, mesh.part
         facets, markers, across = self._boundary(mesh)
-        shared = np.concatenate(self._ranks.gathered(place.vertices[~place.owned]))
+        shared = np.concatenate(self._ranks.allgather(place.vertices[~place.owned]))
         self.part = part_of(place.vertices[mesh.cells], facets, markers, across, shared)
         self._own_facets = np.zeros(len(facets), dtype=bool)
         self._own_facets[place.facets] = True
         self._posted = np.flatnonzero(place.owned & np.isin(place.vertices, np.append(facets, across)))
-        posted = np.concatenate(self._ranks.gathered(place.vertices[self._posted]))
+        posted = np.concatenate(self._ranks.allgather(place.vertices[self._posted]))
         self._post, _ = _found(self.part.vertices, posted)
         self._border = place.vertices[self.part.border]
-        self._met, self._meets = _found(self._border, np.concatenate(self._ranks.gathered(self._border)))
+        self._met, self._meets = _found(self._border, np.concatenate(self._ranks.allgather(self._border)))
         self.exchanges = 0
 
     def facets_of(self, surface: int) -> Numbers:
@@ -61,13 +61,13 @@ class SharedMesh:
         """Where the vertices of the part and of the boundary are now, (n, d) [length]."""
         points = np.empty((len(self.part.vertices), mesh.points.shape[1]))
         points[: len(mesh.points)] = mesh.points
-        points[self._post] = np.concatenate(self._ranks.gathered(mesh.points[self._posted]))
+        points[self._post] = np.concatenate(self._ranks.allgather(mesh.points[self._posted]))
         return points
 
     def neighbours(self, points: FloatArray) -> Neighbours:
         """The part's, with the longest edges elsewhere, when its vertices are at ``points`` (n, d)."""
         own, border = self.part.topology.neighbours, self.part.border
-        squares = np.concatenate(self._ranks.gathered(longest_edges(points, own, border)))
+        squares = np.concatenate(self._ranks.allgather(longest_edges(points, own, border)))
         elsewhere = np.zeros(len(points))
         np.maximum.at(elsewhere, border[self._met], squares[self._meets])
         return own._replace(elsewhere=elsewhere)
@@ -90,7 +90,7 @@ class SharedMesh:
         sent = [(one.facet[near], one.gap[near], one.partner[near]) for one, near in zip(gaps, found, strict=True)]
         everyone = [
             [np.concatenate(column) for column in zip(*pieces, strict=True)]
-            for pieces in zip(*self._ranks.gathered(sent), strict=True)
+            for pieces in zip(*self._ranks.allgather(sent), strict=True)
         ]
         orders = [np.argsort(facet) for facet, _, _ in everyone]
         return [
@@ -104,7 +104,7 @@ class SharedMesh:
         cells, facets = mesh.cells.astype(np.int32), mesh.facets.astype(np.int32)
         vertices, across = mesh.part.vertices, inner_vertices(facets, cells, *rows_of(cells, len(mesh.points)))
         sent = mesh.part.facets, vertices[mesh.facets], mesh.markers, vertices[across]
-        numbers, corners, markers, seen_from = map(np.concatenate, zip(*self._ranks.gathered(sent), strict=True))
+        numbers, corners, markers, seen_from = map(np.concatenate, zip(*self._ranks.allgather(sent), strict=True))
         order = np.argsort(numbers)
         return corners[order], markers[order], seen_from[order]
 
@@ -114,7 +114,7 @@ class SharedMesh:
 
         def exchange(own_key: FloatArray, own_facet: Numbers) -> tuple[FloatArray, Numbers] | None:
             new = (own_facet >= 0) & (facet < 0)
-            pieces = self._ranks.gathered((self._border[new], own_key[new], own_facet[new]))
+            pieces = self._ranks.allgather((self._border[new], own_key[new], own_facet[new]))
             self.exchanges += 1
             vertices, keys, facets = map(np.concatenate, zip(*pieces, strict=True))
             rows, mine = _found(self._border, vertices)

@@ -31,7 +31,7 @@ class Tree(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def plant(points, facets, chosen):
+def build_tree(points, facets, chosen):
     """The tree of the facets ``chosen``."""
     order = chosen[np.argsort(_curve(points, facets, chosen))]
     leaves = 1
@@ -52,7 +52,7 @@ def plant(points, facets, chosen):
 
 
 @njit(cache=True, nogil=True)
-def no_tree(dimension):
+def empty_tree(dimension):
     """A tree of no facets, in which nothing is found."""
     return Tree(np.empty(0, np.int32), np.empty((0, 2, dimension)))
 

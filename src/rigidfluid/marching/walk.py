@@ -16,7 +16,7 @@ from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def walk_to_vertex(points, vertex, surfaces, wanted, facet):
+def local_search_to_vertex(points, vertex, surfaces, wanted, facet):
     """Squared distance of a vertex to the surfaces ``wanted`` near ``facet``, and the facet it is found on."""
     facets, marker, start, members = surfaces.facets, surfaces.marker, surfaces.start, surfaces.members
     square, bits, _, _, _ = vertex_to_facet(points, vertex, facets, facet)
@@ -36,7 +36,7 @@ def walk_to_vertex(points, vertex, surfaces, wanted, facet):
 
 
 @njit(cache=True, nogil=True)
-def walk_to_facet(points, target, surfaces, wanted, facet):
+def local_search_to_facet(points, target, surfaces, wanted, facet):
     """Squared distance of the facet ``target`` to the surfaces ``wanted`` near ``facet``, and where it is found."""
     facets, marker, start, members = surfaces.facets, surfaces.marker, surfaces.start, surfaces.members
     square, bits = _facet_to_facet(points, facets, target, facet)

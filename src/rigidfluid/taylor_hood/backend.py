@@ -119,7 +119,7 @@ class TaylorHoodBackend(FluidBackend):
         # All processes ask alike: the root asks, and shares the answer.
         samples = Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
         found = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
-        return mesh.ranks.shared(found)
+        return mesh.ranks.bcast(found)
 
     @final
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:

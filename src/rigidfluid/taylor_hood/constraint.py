@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
-from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
 # Entries of ω × r: (velocity component, component of ω, component of r, sign).
 CROSS = {
@@ -37,9 +37,9 @@ class Constraint:
         self.controlled = controlled
         self._numbering = numbering = surfaces.numbering
         free = np.concatenate([surfaces.velocity_free.ravel(), np.ones(numbering.vertices, dtype=bool)])
-        self.pinned = far_vertex(surfaces, mesh) if surfaces.enclosed else None
-        if self.pinned is not None:
-            free[surfaces.velocity_free.size + self.pinned] = False
+        self.pressure_pin = pinned_vertex(surfaces, mesh) if surfaces.enclosed else None
+        if self.pressure_pin is not None:
+            free[surfaces.velocity_free.size + self.pressure_pin] = False
         self.free_unknowns = np.flatnonzero(free)
         self._build_pattern()
 

@@ -49,7 +49,7 @@ class Numbering:
         if mesh.part is None:
             return np.unique(self.facet_nodes(facets))
         number = mesh.part.vertices
-        whole = np.concatenate(mesh.ranks.gathered(number[facets]))
+        whole = np.concatenate(mesh.ranks.allgather(number[facets]))
         edges = np.concatenate([whole[:, pair] for pair in facet_edges(self.dimension)])
         count = int(mesh.part.counts[0])
         on_edge = np.isin(_keys(number[self.edges], count), _keys(edges, count))

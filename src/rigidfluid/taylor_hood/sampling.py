@@ -25,11 +25,11 @@ class Samples:
     def __init__(self, mesh: Mesh, numbering: Numbering, targets: FloatArray) -> None:
         self._numbering, self._ranks, self._count = numbering, mesh.ranks, len(targets)
         asked = _candidates(mesh, targets)
-        answers = [_located(mesh, points) for points in self._ranks.exchanged([targets[to] for to in asked])]
-        depths = self._ranks.exchanged([depth for _, depth in answers])
+        answers = [_located(mesh, points) for points in self._ranks.alltoall([targets[to] for to in asked])]
+        depths = self._ranks.alltoall([depth for _, depth in answers])
         chosen = _deepest(asked, depths, len(targets))
         self._places = [np.flatnonzero(chosen == rank) for rank in range(self._ranks.size)]
-        wanted = self._ranks.exchanged([chosen[to] == rank for rank, to in enumerate(asked)])
+        wanted = self._ranks.alltoall([chosen[to] == rank for rank, to in enumerate(asked)])
         self._served = [
             _Served(found.cell[keep], found.coordinates[keep]) for (found, _), keep in zip(answers, wanted, strict=True)
         ]
@@ -51,7 +51,7 @@ class Samples:
 
     def _returned(self, values: list[FloatArray]) -> FloatArray:
         result = np.empty((self._count, *values[0].shape[1:]))
-        for place, found in zip(self._places, self._ranks.exchanged(values), strict=True):
+        for place, found in zip(self._places, self._ranks.alltoall(values), strict=True):
             result[place] = found
         return result
 
@@ -69,7 +69,7 @@ def _candidates(mesh: Mesh, targets: FloatArray) -> list[IntArray]:
     """For each process the targets that it may hold: those in its box, and those in nobody's that are nearest to it."""
     if mesh.part is None:
         return [np.arange(len(targets))]
-    boxes = mesh.ranks.gathered((mesh.points.min(axis=0), mesh.points.max(axis=0)))
+    boxes = mesh.ranks.allgather((mesh.points.min(axis=0), mesh.points.max(axis=0)))
     beyond = np.stack([np.maximum(lower - targets, targets - upper).max(axis=1) for lower, upper in boxes])
     margin = 1e-3 * max(float((upper - lower).max()) for lower, upper in boxes)
     asked: BoolArray = beyond <= np.maximum(beyond.min(axis=0), margin)

@@ -12,9 +12,9 @@ from scipy import sparse
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
-from rigidfluid.taylor_hood.stale_factors import StaleFactors
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
@@ -58,7 +58,7 @@ class SparseDiscretisation:
         Equations and boundary conditions.
     assembly : Assembly
         The integrals.
-    solver, inviscid_solver : StaleFactors
+    solver, inviscid_solver : LaggedFactors
         Of the matrices of steps, and of those without viscosity. Kept from topology to topology; they must have been
         told to forget the last one.
     mesh : Mesh
@@ -71,8 +71,8 @@ class SparseDiscretisation:
         self,
         problem: FluidProblem,
         assembly: Assembly,
-        solver: StaleFactors,
-        inviscid_solver: StaleFactors,
+        solver: LaggedFactors,
+        inviscid_solver: LaggedFactors,
         mesh: Mesh,
         controlled: BoolArray,
     ) -> None:
@@ -166,8 +166,8 @@ class SparseDiscretisation:
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
         constraint, pressure = self._constraint, system.pressure
-        if constraint.pinned is not None:
-            pressure = pressure - pressure[constraint.pinned]
+        if constraint.pressure_pin is not None:
+            pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)
         guess[constraint.free_columns] = np.concatenate([system.velocity.ravel(), pressure])[constraint.free_unknowns]
         guess[twists] = system.twist[~system.matrix.controlled].ravel()

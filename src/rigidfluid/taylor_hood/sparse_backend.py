@@ -19,10 +19,10 @@ class SparseBackend(TaylorHoodBackend):
     """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
-        from rigidfluid.taylor_hood.stale_factors import StaleFactors
+        from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 
         super().__init__(options, problem)
-        self._solver, self._inviscid_solver = (StaleFactors(self.problem.dimension) for _ in range(2))
+        self._solver, self._inviscid_solver = (LaggedFactors(self.problem.dimension) for _ in range(2))
         self._assembly: Assembly | None = None
 
     @abstractmethod

@@ -123,19 +123,19 @@ def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:
     return np.asarray(twist[:d] + cross(twist[d:], arm))
 
 
-def far_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
+def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
     """The vertex farthest from all bodies: where an enclosed flow's pressure is pinned, so that no gap feels it.
 
     Not on the boundary, if there is another: a corner's pressure may be felt by nobody. None in all processes but one.
     """
     ranks, bodies = surfaces.ranks, len(surfaces.body_nodes)
-    on_bodies = np.concatenate(ranks.gathered(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
+    on_bodies = np.concatenate(ranks.allgather(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
     origin = on_bodies if len(on_bodies) else mesh.points[:1]
     distance = np.asarray(cKDTree(origin).query(mesh.points)[0])
     inside = surfaces.velocity_free[: len(mesh.points)].all(axis=1)
     preference = distance + np.where(inside, float(ranks.greatest(distance.max())), 0.0)
     local = int(np.argmax(preference))
-    return local if int(np.argmax(ranks.gathered(preference[local]))) == ranks.rank else None
+    return local if int(np.argmax(ranks.allgather(preference[local]))) == ranks.rank else None
 
 
 def _free_components(condition: BoundaryCondition, dimension: int) -> BoolArray:

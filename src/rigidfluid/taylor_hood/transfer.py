@@ -15,7 +15,7 @@ from rigidfluid.taylor_hood.state import at_rest
 from rigidfluid.taylor_hood.surfaces import rigid_velocity
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
-"""What divergence is left shows, over the step, as a blow of pressure: projections are solved so much better."""
+"""What divergence is left shows, over the step, as a burst of pressure: projections are solved so much better."""
 
 
 def transfer(
@@ -31,7 +31,7 @@ def transfer(
 
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
-    are not divergence-free on the new mesh, which would show as a blow of pressure at the next step: each level is
+    are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
     projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
     """
     on_nodes = Samples(old, source, target.numbering.node_points(new.points))
@@ -52,7 +52,7 @@ def transfer(
 def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
     """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
 
-    A blow on the bodies sends a wave of pressure through the fluid, which is projection: the flow is a potential flow.
+    An impact on the bodies sends a wave of pressure through the fluid, which is projection: the flow is potential.
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
     if target.surfaces.ranks.greatest(bool(state["velocity"].any())):

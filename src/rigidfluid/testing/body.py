@@ -20,7 +20,7 @@ class BodyContract:
     tolerance: ClassVar[float] = 1e-10
     """Accuracy of points and distances, relative to the bounding radius."""
     quadrature_tolerance: ClassVar[float] = 5e-3
-    """Accuracy of volume and gyration as counted on a grid of points."""
+    """Accuracy of volume and unit_inertia as counted on a grid of points."""
     cad_tolerance: ClassVar[float] = 1e-5
     """Accuracy of the volume of the CAD shape (the kernel integrates numerically)."""
 
@@ -44,9 +44,9 @@ class BodyContract:
         """Gyration = mean of |r|² I - r rᵀ over the inside, in 2D its scalar."""
         inside = _inside(body)
         counted = _gyration(inside)
-        assert body.gyration.shape == counted.shape
+        assert body.unit_inertia.shape == counted.shape
         np.testing.assert_allclose(
-            body.gyration, counted, rtol=0, atol=self.quadrature_tolerance * np.abs(counted).max()
+            body.unit_inertia, counted, rtol=0, atol=self.quadrature_tolerance * np.abs(counted).max()
         )
 
     def test_closest_point_is_signed_distance_away(self, body: Body) -> None:

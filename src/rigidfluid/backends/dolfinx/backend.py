@@ -30,14 +30,14 @@ class Dolfinx(TaylorHoodBackend):
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from mpi4py import MPI
 
-        from rigidfluid.backends.dolfinx.krylov import StaleLU, StaleSchur
+        from rigidfluid.backends.dolfinx.krylov import LaggedLU, LaggedSchur
         from rigidfluid.core.model.ranks import MpiRanks
 
         super().__init__(options, problem)
         if MPI.COMM_WORLD.size > 1:
             self.ranks = MpiRanks(MPI.COMM_WORLD)
         by_schur = self.options.solver == "schur" or (self.options.solver == "auto" and self.problem.dimension == 3)
-        kind = StaleSchur if by_schur else StaleLU
+        kind = LaggedSchur if by_schur else LaggedLU
         self._solver, self._inviscid_solver = (
             kind(self.ranks, self.problem.dimension, self.options.petsc) for _ in range(2)
         )

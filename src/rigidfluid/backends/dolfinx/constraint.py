@@ -28,21 +28,21 @@ class DistributedConstraint:
         Nodes on bodies and faces.
     controlled : (n,) bool
         Bodies whose twist is given.
-    pinned : int or None
+    pressure_pin : int or None
         A vertex of this process where the pressure is zero.
     """
 
-    def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pinned: int | None) -> None:
+    def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pressure_pin: int | None) -> None:
         self._space, ranks = space, surfaces.ranks
         d = space.numbering.dimension
         self._free_bodies = np.flatnonzero(~controlled)
         self._velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
-        self._pressure_free = space.owned_vertices != (-1 if pinned is None else pinned)
+        self._pressure_free = space.owned_vertices != (-1 if pressure_pin is None else pressure_pin)
         self.velocities, self.pressures = int(self._velocity_free.sum()), int(self._pressure_free.sum())
         width = d + (1 if d == 2 else 3)
         self.twists = width * len(self._free_bodies) if ranks.is_root else 0
         self.columns = self.velocities + self.twists + self.pressures
-        counts = ranks.gathered((self.columns, self.velocities))
+        counts = ranks.allgather((self.columns, self.velocities))
         self.first_column = sum(columns for columns, _ in counts[: ranks.rank])
         self.unknowns = sum(columns for columns, _ in counts)
         self._first_twist = counts[0][1]

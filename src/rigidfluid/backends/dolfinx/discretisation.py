@@ -10,14 +10,14 @@ from scipy.linalg import block_diag
 
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
 from rigidfluid.backends.dolfinx.forms import Forms
-from rigidfluid.backends.dolfinx.krylov import Krylov, StaleLU
+from rigidfluid.backends.dolfinx.krylov import Krylov, LaggedLU
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces, far_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
 
 class Topology:
@@ -74,9 +74,11 @@ class PetscDiscretisation:
         self.numbering = topology.numbering
         self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies)
         self._topology, self._solver, self._inviscid_solver = topology, solver, inviscid_solver
-        pinned = far_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, StaleLU) else None
-        self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pinned)
-        self._pinned = pinned
+        pressure_pin = (
+            pinned_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, LaggedLU) else None
+        )
+        self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pressure_pin)
+        self._pinned = pressure_pin
 
     @property
     def unknowns(self) -> int:
@@ -109,7 +111,7 @@ class PetscDiscretisation:
         answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
         found = np.zeros_like(wrenches)
         on_root = answers[self._constraint.twist_slice]
-        found[~matrix.controlled] = self.surfaces.ranks.shared(on_root).reshape(-1, *wrenches.shape[1:])
+        found[~matrix.controlled] = self.surfaces.ranks.bcast(on_root).reshape(-1, *wrenches.shape[1:])
         return found
 
     def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
@@ -152,5 +154,5 @@ class PetscDiscretisation:
         reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
         twist = system.twist.copy()
         free = ~system.matrix.controlled
-        twist[free] = ranks.shared(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
+        twist[free] = ranks.bcast(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
         return Solution(space.velocities(everything[:size]), space.pressures(everything[size:]), twist, reaction)

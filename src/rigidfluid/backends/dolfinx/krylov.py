@@ -14,14 +14,14 @@ from rigidfluid.backends.dolfinx.schur import CahouetChabard, velocity_options
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.stale_factors import StaleFactors
-from rigidfluid.taylor_hood.stale_solver import StaleSolver
+from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 
 Settings = Mapping[str, str | float | int | bool]
 _PREFIX = "rigidfluid_"
 
 
-class Krylov(StaleSolver[Reduced]):
+class Krylov(LaggedSolver[Reduced]):
     """Right-preconditioned, so that the norm that stops the iteration is the true residual's.
 
     Parameters
@@ -118,16 +118,16 @@ class Krylov(StaleSolver[Reduced]):
 
 
 @final
-class StaleLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `StaleFactors`, to agree to round-off.
+class LaggedLU(Krylov):
+    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `LaggedFactors`, to agree to round-off.
 
-    Each renewal analyses the matrix again and costs about three times their price in 2D, which makes the sum of
+    Each renewal analyses the matrix again and costs about three times their rebuild_cost in 2D, which makes the sum of
     renewals and of iterations beyond fresh ones' a seventh dearer than it could be.
     """
 
-    price: ClassVar[Mapping[int, int]] = StaleFactors.price
-    when_fresh: ClassVar[int] = StaleFactors.when_fresh
-    most: ClassVar[int] = StaleFactors.most
+    rebuild_cost: ClassVar[Mapping[int, int]] = LaggedFactors.rebuild_cost
+    fresh_iterations: ClassVar[int] = LaggedFactors.fresh_iterations
+    most: ClassVar[int] = LaggedFactors.most
     defaults: ClassVar[Settings] = {
         "ksp_type": "fgmres",  # keeps what the factors gave: one back-substitution less than gmres
         "ksp_gmres_restart": 60,
@@ -144,11 +144,11 @@ class StaleLU(Krylov):
 
 
 @final
-class StaleSchur(Krylov):
+class LaggedSchur(Krylov):
     """Upper block triangle [[A, Bᵀ], [0, S]]: A, with the bodies' rows, by an inner iteration, S by Cahouet–Chabard."""
 
-    price: ClassVar[Mapping[int, int]] = {2: 8, 3: 8}
-    when_fresh: ClassVar[int] = 20
+    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 8, 3: 8}
+    fresh_iterations: ClassVar[int] = 20
     most: ClassVar[int] = 200
     sharper: ClassVar[float] = 1e-2  # factors leave far less than they are asked for, this leaves a slow error
     defaults: ClassVar[Settings] = {

@@ -43,7 +43,7 @@ def schur_data(
 ) -> SchurData:
     """For the mesh at ``points``."""
     numbering = space.numbering
-    volume = surfaces.ranks.least(np.abs(cell_volumes(points, numbering.cells)).min())
+    volume = surfaces.ranks.min(np.abs(cell_volumes(points, numbering.cells)).min())
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
         if face.condition.type == "pressure":

@@ -1,4 +1,5 @@
-"""Asks the backend how bodies near contacts answer to impulses, and no more often than their surroundings change."""
+"""Asks the backend how bodies near contacts answer to impulses, and no more often than their surroundings
+change."""
 
 from __future__ import annotations
 

@@ -8,14 +8,14 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.detection import detect
-from rigidfluid.core.contact.followed import FollowedContacts
-from rigidfluid.core.contact.implicit_contacts import cross_contacts
-from rigidfluid.core.contact.proximity import arms, may_repel, refuse_overlap
-from rigidfluid.core.contact.redetected import RedetectedContacts
+from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
+from rigidfluid.core.contact.proximity import arms, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
-from rigidfluid.core.mechanics.movement import FreeMovement, Movement
+from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotation_matrices
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
@@ -46,11 +46,11 @@ ROUNDING = 1e-9
 """What is left of a step below this part of it is the rounding of sums."""
 
 
-M = TypeVar("M", bound=Movement)
+M = TypeVar("M", bound=BodyDynamics)
 
 
 @dataclass(frozen=True, slots=True)
-class BodiesPath:
+class BodyStep:
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
@@ -68,7 +68,7 @@ class BodiesPath:
     coupling: Coupling | None = None
 
 
-def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodiesPath:
+def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
     """Follow the bodies through one step, kicked by their contacts in velocity Verlet substeps.
 
     Without a fluid the substeps are the whole motion. In a fluid they take the place of the fluid's own small steps:
@@ -89,7 +89,7 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
 
     Returns
     -------
-    BodiesPath
+    BodyStep
         Of all bodies.
 
     Raises
@@ -101,14 +101,14 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
         return _follow_free(system, state, start, size)
     if coupling is None or system.law is None:
         pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
-        return BodiesPath(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
+        return BodyStep(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
     return _follow_coupled(system, system.law, state, size, coupling)
 
 
-def first_step_again(state: State, end_twist: Twist, size: float) -> BodiesPath:
+def first_step_again(state: State, end_twist: Twist, size: float) -> BodyStep:
     """The first step of bodies that touch nothing, once more: by the mean of the twists at its start and its end."""
     pose = start_pose(state.pose, state.twist, end_twist, size)
-    return BodiesPath(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
+    return BodyStep(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
 
 
 def near_contacts(system: System, state: State, size: float) -> Contacts:
@@ -123,8 +123,8 @@ def near_contacts(system: System, state: State, size: float) -> Contacts:
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
-def _follow_free(system: System, state: State, start: float, size: float) -> BodiesPath:
-    movement = FreeMovement(
+def _follow_free(system: System, state: State, start: float, size: float) -> BodyStep:
+    movement = DryDynamics(
         state.pose,
         state.twist,
         system.mass,
@@ -141,7 +141,7 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
 
-def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodiesPath:
+def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodyStep:
     movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
     if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
         movement.vary_load(size)
@@ -150,7 +150,7 @@ def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, co
     else:
         contacts_at: Callable[[Pose], Contacts]
         if system.detector.needs_mesh:
-            contacts_at, span = FollowedContacts(near, state.pose).at, size
+            contacts_at, span = ExtrapolatedContacts(near, state.pose).at, size
         else:
             reach, span = _horizon(system, movement, size)
             contacts_at = _detected(system, reach)
@@ -159,29 +159,29 @@ def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, co
     return replace(path, coupling=coupling)
 
 
-def _cross_free(system: System, law: ForceLaw, movement: FreeMovement, size: float) -> BodiesPath:
-    """One implicit step; contacts are foreseen at four times the fastest speed, as blows may double that of both."""
+def _cross_free(system: System, law: ForceLaw, movement: DryDynamics, size: float) -> BodyStep:
+    """One implicit step; contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
     reach = law.range + 4.0 * _fastest(system, movement, size) * size
-    contacts = RedetectedContacts(system, movement.pose, reach)
+    contacts = TrackedPairs(system, movement.pose, reach)
     if len(contacts.start) == 0:
         return _coast(movement, size)
     return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
 
 
-def _cross_coupled(system: System, law: ForceLaw, movement: CoupledMovement, near: Contacts, size: float) -> BodiesPath:
+def _cross_coupled(system: System, law: ForceLaw, movement: CoupledDynamics, near: Contacts, size: float) -> BodyStep:
     """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
 
     In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
     be too great for the fluid's mass.
     """
     part, impulse, lost, held = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
-    followed = FollowedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    followed = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
     reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
     for _ in range(IMPLICIT_PARTS):
         if followed is not None:
             start, contacts_at = followed.at(movement.pose), followed.at
         else:
-            contacts = RedetectedContacts(system, movement.pose, reach)
+            contacts = TrackedPairs(system, movement.pose, reach)
             start, contacts_at = contacts.start, contacts.at
         if len(start) == 0:
             _coast(movement, part)
@@ -189,7 +189,7 @@ def _cross_coupled(system: System, law: ForceLaw, movement: CoupledMovement, nea
         path, movement = _crossed(system, law, movement, start, contacts_at, part)
         impulse = _added(impulse, path.impulse, 1.0)
         lost, held = lost + path.dissipated, held + path.held
-    return BodiesPath(movement.pose, movement.twist, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
+    return BodyStep(movement.pose, movement.twist, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
 
 
 def _crossed(
@@ -199,19 +199,19 @@ def _crossed(
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     size: float,
-) -> tuple[BodiesPath, M]:
+) -> tuple[BodyStep, M]:
     """One implicit step, and the movement at its end."""
-    end, wrench, lost = cross_contacts(law, movement, start, contacts_at, size)
+    end, wrench, lost = implicit_contact_step(law, movement, start, contacts_at, size)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     mean = Twist(
         0.5 * (movement.twist.velocity + end.twist.velocity),
         0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
     )
     held = -float(power(impulse, mean)[system.controlled].sum())
-    return BodiesPath(end.pose, end.twist, impulse, lost, held, 1), end
+    return BodyStep(end.pose, end.twist, impulse, lost, held, 1), end
 
 
-def _horizon(system: System, movement: Movement, size: float) -> tuple[float, float]:
+def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
     """Up to which gap contacts are foreseen [length], and for how long that is enough [time]."""
     law_range = system.law.range if system.law else 0.0
     if system.substeps:
@@ -227,17 +227,17 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
 
     def contacts_at(pose: Pose) -> Contacts:
         near = detect(system, pose, None, reach)
-        chosen = may_repel(system, near)
+        chosen = interacting(system, near)
         return near if chosen.all() else select(near, chosen)
 
     return contacts_at
 
 
-def _coupled(system: System, state: State, coupling: Coupling) -> CoupledMovement:
+def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamics:
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
     linear, angular = _mobility(system, state)
     rate = _accelerations(system, state)
-    return CoupledMovement(state.pose, state.twist, rate, linear, angular, coupling)
+    return CoupledDynamics(state.pose, state.twist, rate, linear, angular, coupling)
 
 
 def _accelerations(system: System, state: State) -> FloatArray:
@@ -261,17 +261,22 @@ def _mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
     return free * np.linalg.inv(mass), free * inverse_lab_inertia(system.inertia, orientation)
 
 
-def _coast(movement: Movement, size: float) -> BodiesPath:
+def _coast(movement: BodyDynamics, size: float) -> BodyStep:
     none = nothing(movement.pose)
     movement.kick(none, 0.5 * size)
     movement.drift(size)
     movement.kick(none, 0.5 * size)
-    return BodiesPath(movement.pose, movement.twist, none, 0.0, 0.0, 1)
+    return BodyStep(movement.pose, movement.twist, none, 0.0, 0.0, 1)
 
 
 def _resolve(
-    system: System, law: ForceLaw, movement: Movement, contacts_at: Callable[[Pose], Contacts], size: float, span: float
-) -> BodiesPath:
+    system: System,
+    law: ForceLaw,
+    movement: BodyDynamics,
+    contacts_at: Callable[[Pose], Contacts],
+    size: float,
+    span: float,
+) -> BodyStep:
     """Velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
 
     Substeps are planned for a ``span`` [time] at a time, as far as contacts can be foreseen, and anew when the contacts
@@ -300,10 +305,10 @@ def _resolve(
         left = left - part if left - part > ROUNDING * size else 0.0
         if count == MOST_SUBSTEPS and left > 0.0:
             raise _too_stiff(system, contacts, part)
-    return BodiesPath(movement.pose, movement.twist, impulse, dissipated, held, count)
+    return BodyStep(movement.pose, movement.twist, impulse, dissipated, held, count)
 
 
-def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: Movement, size: float, span: float) -> Plan:
+def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
     planned = plan(law, contacts, movement, _surfaces(system), size, span)
@@ -317,14 +322,14 @@ def _surfaces(system: System) -> Reach:
 
 
 class _Push(NamedTuple):
-    """What the contacts do at one moment: their ``wrench``, the power that their dampers take and that hands give."""
+    """What the contacts do at one moment: their ``wrench``, the power that their dampers take and that drives give."""
 
     wrench: Wrench
     loss: float
     held: float
 
 
-def _push(system: System, law: ForceLaw, contacts: Contacts, movement: Movement) -> _Push:
+def _push(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _Push:
     if len(contacts) == 0:
         return _Push(nothing(movement.pose), 0.0, 0.0)
     force, loss = law.force(contacts), 0.0
@@ -357,7 +362,7 @@ def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
     )
 
 
-def _fastest(system: System, movement: Movement, size: float) -> float:
+def _fastest(system: System, movement: BodyDynamics, size: float) -> float:
     """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
     twist = movement.twist
     turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)

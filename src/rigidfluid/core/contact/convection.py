@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.answers import CHANGED
-from rigidfluid.core.contact.contact_path import BodiesPath
+from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
@@ -13,7 +13,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, Step
 
 
-def turning(system: System, state: State, path: BodiesPath, step: Step) -> FloatArray:
+def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:
     """Impulses that give what convects the bodies' velocity on the mesh, (n, d+k) [force·time | force·length·time].
 
     Extrapolated velocities do not know of an impact, but the mesh has gone with the bodies: fluid would seem to flow
@@ -27,7 +27,7 @@ def turning(system: System, state: State, path: BodiesPath, step: Step) -> Float
         Bodies and fluid.
     state : State
         At the start of the step.
-    path : BodiesPath
+    path : BodyStep
         The bodies' way through it, with its coupling.
     step : Step
         The weights of its time scheme.
@@ -46,7 +46,7 @@ def turning(system: System, state: State, path: BodiesPath, step: Step) -> Float
     return none
 
 
-def _on_the_mesh(system: System, state: State, path: BodiesPath, step: Step) -> FloatArray:
+def _on_the_mesh(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:
     """Twists (n, d+k) by the poses, differenced as the mesh's velocity is; balls turn without it, as on their path."""
     d0, _, d2 = step.derivative
     found = d0 * _way(state.pose, path.pose)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.answers import updated_model
-from rigidfluid.core.contact.contact_path import BodiesPath, near_contacts
+from rigidfluid.core.contact.contact_path import BodyStep, near_contacts
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
@@ -51,7 +51,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
 
 
-def shown_coupling(system: System, state: State, candidate: State, path: BodiesPath, step: Step) -> Coupling:
+def shown_coupling(system: System, state: State, candidate: State, path: BodyStep, step: Step) -> Coupling:
     """The coupling that the solution of a step has shown: answers on the mesh at its end, and loads in it.
 
     Parameters
@@ -60,7 +60,7 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodiesP
         Bodies, backend.
     state, candidate : State
         At the start of the step and at its end.
-    path : BodiesPath
+    path : BodyStep
         The path that led to the candidate.
     step : Step
         What was solved.
@@ -104,7 +104,7 @@ def _correction(system: System, model: ReducedModel, step: Step, missed: FloatAr
     return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
 
-def settled(found: Coupling, path: BodiesPath, state: State, candidate: State) -> bool:
+def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
     """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else."""
     assert path.coupling is not None
     used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.movement import Movement
+from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.model.types import Contacts
 
 
-def delassus(contacts: Contacts, movement: Movement, time: float) -> sparse.csr_matrix:
+def delassus(contacts: Contacts, movement: BodyDynamics, time: float) -> sparse.csr_matrix:
     """D = G M⁻¹ Gᵀ, where G takes the bodies' twists to the speeds at which the gaps open.
 
     Parameters
     ----------
     contacts : Contacts
         m contacts.
-    movement : Movement
+    movement : BodyDynamics
         The n bodies where the contacts are; walls, and bodies that are driven, do not give way.
     time : float
         For how long the contacts' forces last [time].
@@ -31,7 +31,7 @@ def delassus(contacts: Contacts, movement: Movement, time: float) -> sparse.csr_
     return sparse.csr_matrix(gap_rates @ movement.inverse_masses(time) @ gap_rates.T)
 
 
-def _gap_rates(contacts: Contacts, movement: Movement) -> sparse.csr_matrix:
+def _gap_rates(contacts: Contacts, movement: BodyDynamics) -> sparse.csr_matrix:
     """G, (m, n·(d+k))."""
     position = movement.pose.position
     count, dimension = position.shape

@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.substep import relative_motion
-from rigidfluid.core.mechanics.movement import Movement
+from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray, Motion, Pose, Wrench
@@ -32,7 +32,7 @@ _STILL = 1e-6
 _ROUNDING = 1e-14
 
 
-M = TypeVar("M", bound=Movement)
+M = TypeVar("M", bound=BodyDynamics)
 
 
 class Crossing(NamedTuple, Generic[M]):
@@ -43,7 +43,7 @@ class Crossing(NamedTuple, Generic[M]):
     lost: float
 
 
-def cross_contacts(
+def implicit_contact_step(
     law: ForceLaw, movement: M, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
 ) -> Crossing[M]:
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
@@ -58,7 +58,7 @@ def cross_contacts(
     ----------
     law : ForceLaw
         Gives force, energy, stiffness and damping.
-    movement : Movement
+    movement : BodyDynamics
         The n bodies at the start; left as it is.
     start : Contacts
         The m contacts there that may come into range in the step.
@@ -91,20 +91,20 @@ def cross_contacts(
         spring = (force + dampers.across * (gap + offset)) / look.scale
         push = force[:, None] * look.middle.normal + dampers.along
         before = look
-        look = _looked(law, movement, start, contacts_at, contact_wrench(look.middle, push, look.pose), size)
+        look = _evaluate(law, movement, start, contacts_at, contact_wrench(look.middle, push, look.pose), size)
         used = dampers
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, look, size)
         else:
             look = look._replace(scale=before.scale)
         wanted = (look.scale * spring - dampers.across * look.way)[:, None] * look.middle.normal + dampers.along
-        if _settled(law, look, gap, wanted - push):
+        if _converged(law, look, gap, wanted - push):
             return _crossing(look, used, size)
         gap = look.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
 
-class _Look(NamedTuple, Generic[M]):
+class _Iterate(NamedTuple, Generic[M]):
     """Where some forces take the bodies.
 
     ``movement`` at the end; ``pose``, contacts and mean motion in mid-step; ``way`` n·Δx and ``gap`` at the end (m,)
@@ -129,24 +129,24 @@ class _Dampers(NamedTuple):
     along: FloatArray
 
 
-def _straight_on(movement: M, start: Contacts, size: float) -> _Look[M]:
+def _straight_on(movement: M, start: Contacts, size: float) -> _Iterate[M]:
     """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial)
     way = size * _normal_part(motion.velocity, start)
     scale, compliance = np.ones(len(start)), _compliance(start, movement, size)
-    return _Look(trial, movement.pose, start, motion, way, start.gap + way, scale, compliance, none)
+    return _Iterate(trial, movement.pose, start, motion, way, start.gap + way, scale, compliance, none)
 
 
-def _looked(
+def _evaluate(
     law: ForceLaw,
     movement: M,
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     wrench: Wrench,
     size: float,
-) -> _Look[M]:
+) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size)
     trial.drift(0.5 * size)
@@ -160,15 +160,15 @@ def _looked(
     way = size * _normal_part(motion.velocity, middle)
     moves = np.abs(way) > _STILL * law.range
     scale = np.divide(gap - start.gap, way, out=np.ones_like(way), where=moves)
-    return _Look(trial, pose, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
+    return _Iterate(trial, pose, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
 
 
-def _compliance(contacts: Contacts, movement: Movement, size: float) -> Any:
+def _compliance(contacts: Contacts, movement: BodyDynamics, size: float) -> Any:
     matrix = 0.5 * size**2 * delassus(contacts, movement, 0.5 * size)
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
 
-def _dampers(law: ForceLaw, look: _Look[M], size: float) -> _Dampers:
+def _dampers(law: ForceLaw, look: _Iterate[M], size: float) -> _Dampers:
     if not law.dissipative:
         return _Dampers(np.zeros_like(look.way), np.zeros_like(look.middle.normal))
     speed, normal = _normal_part(look.motion.velocity, look.middle), look.middle.normal
@@ -179,14 +179,14 @@ def _dampers(law: ForceLaw, look: _Look[M], size: float) -> _Dampers:
     return _Dampers(-_normal_part(straight, look.middle) / speed / size, along)
 
 
-def _settled(law: ForceLaw, look: _Look[M], gap: FloatArray, missing: FloatArray) -> bool:
+def _converged(law: ForceLaw, look: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
     """Whether gaps are as foreseen, and what the forces still lack moves nothing."""
     enough = TOLERANCE * law.range + _ROUNDING * np.abs(look.pose.position).max()
     moved = look.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(look.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _crossing(look: _Look[M], dampers: _Dampers, size: float) -> Crossing[M]:
+def _crossing(look: _Iterate[M], dampers: _Dampers, size: float) -> Crossing[M]:
     """The step is done, unless dampers that were not renewed to the end would give energy."""
     lost = float(np.sum(dampers.across * look.way**2) - size * np.sum(dampers.along * look.motion.velocity))
     if lost < 0.0:

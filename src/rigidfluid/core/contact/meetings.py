@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.contact.proximity import may_repel
+from rigidfluid.core.contact.proximity import interacting
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.system import System
@@ -65,7 +65,7 @@ def body_meetings(system: System, bodies: Sequence[int]) -> Contacts:
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     met = _touching(system, first, second, np.eye(system.dimension)[0])
-    return select(met, may_repel(system, met))
+    return select(met, interacting(system, met))
 
 
 def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:

@@ -13,7 +13,7 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, P
 from rigidfluid.errors import StepRejected
 
 
-def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
+def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
     """The contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
 
     Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
@@ -24,10 +24,10 @@ def surroundings(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contact
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, may_repel(system, near)), gaps
+    return select(near, interacting(system, near)), gaps
 
 
-def may_repel(system: System, contacts: Contacts) -> BoolArray:
+def interacting(system: System, contacts: Contacts) -> BoolArray:
     """Which contacts (m,) are not between parts of one articulated body."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]

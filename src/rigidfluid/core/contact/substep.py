@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.stiffness import greatest_stiffness, on_the_way
-from rigidfluid.core.mechanics.movement import Movement
+from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -40,7 +40,7 @@ class Plan(NamedTuple):
     substep: float
 
 
-def plan(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach, size: float, span: float) -> Plan:
+def plan(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach, size: float, span: float) -> Plan:
     """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
 
     Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
@@ -54,7 +54,7 @@ def plan(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach, si
         Gives energy, stiffness and damping.
     contacts : Contacts
         All that may come into range in the span.
-    movement : Movement
+    movement : BodyDynamics
         The n bodies as they move now.
     reach : Reach
         Of the bodies' surfaces.
@@ -89,7 +89,7 @@ class _Approach(NamedTuple):
     parting: BoolArray
 
 
-def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reach) -> _Approach:
+def _approach(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach) -> _Approach:
     """Normals of balls turn with the line of centres; those of other shapes may turn anywhere."""
     twist, arm = movement.twist, _of_both(reach.arms, contacts)
     spin = _of_both(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
@@ -105,7 +105,7 @@ def _approach(law: ForceLaw, contacts: Contacts, movement: Movement, reach: Reac
 
 
 def _radial_energy(
-    contacts: Contacts, movement: Movement, velocity: FloatArray, opening: FloatArray, inside: FloatArray
+    contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, opening: FloatArray, inside: FloatArray
 ) -> FloatArray:
     """Of two balls, m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins [energy].
 
@@ -121,7 +121,7 @@ def _radial_energy(
     return np.asarray(0.5 * mass * square)
 
 
-def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArray, reach: Reach) -> FloatArray:
+def _tumbling_energy(contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, reach: Reach) -> FloatArray:
     """As if all mass had the speed that the kinetic energy can give to the fastest point of a free body, (m,) [energy].
 
     Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A driven body is
@@ -139,7 +139,9 @@ def _tumbling_energy(contacts: Contacts, movement: Movement, velocity: FloatArra
     return np.asarray((1.0 + _of_both(reach.leverage, contacts).max(axis=1)) * kinetic)
 
 
-def _resolved(law: ForceLaw, contacts: Contacts, movement: Movement, approach: _Approach, pull: FloatArray) -> float:
+def _resolved(
+    law: ForceLaw, contacts: Contacts, movement: BodyDynamics, approach: _Approach, pull: FloatArray
+) -> float:
     """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time]."""
     stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
     inverse = approach.inverse
@@ -189,7 +191,7 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     return greatest_stiffness(law, contacts, deepest), damping
 
 
-def relative_motion(contacts: Contacts, movement: Movement) -> Motion:
+def relative_motion(contacts: Contacts, movement: BodyDynamics) -> Motion:
     """Velocity of a relative to b half-way between the contact points, and the effective mass of the pair,
     zero where both are driven.
 
@@ -197,7 +199,7 @@ def relative_motion(contacts: Contacts, movement: Movement) -> Motion:
     ----------
     contacts : Contacts
         m contacts.
-    movement : Movement
+    movement : BodyDynamics
         The n bodies as they move now; walls rest, and are heavy beyond measure.
 
     Returns
@@ -236,7 +238,7 @@ def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray)
     return twist.velocity[body] + cross(twist.angular_velocity[body], point - pose.position[body])
 
 
-def _inverse_masses(contacts: Contacts, movement: Movement) -> FloatArray:
+def _inverse_masses(contacts: Contacts, movement: BodyDynamics) -> FloatArray:
     """1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
     inverse = np.zeros((len(contacts), 2))
     for side, body in enumerate([contacts.body_a, contacts.body_b]):

@@ -52,7 +52,7 @@ def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> floa
 def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
     """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
 
-    It is what differencing momentum less the impulses received so far comes to: a blow shorter than the step changes
+    It is what differencing momentum less the impulses received so far comes to: an impact shorter than the step changes
     the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
     """
     latest, before = state.contact_wrench, state.past_step or 0.0

@@ -32,6 +32,6 @@ def most_leverage(body: Body) -> float:
     points = body.sample_surface(_SAMPLES)
     points = points * (body.bounding_radius / np.linalg.norm(points, axis=1).max())  # samples may miss the farthest one
     if body.dimension == 2:
-        return float(body.bounding_radius**2 / body.gyration[0, 0])
+        return float(body.bounding_radius**2 / body.unit_inertia[0, 0])
     across = np.cross(points[:, None, :], np.eye(3)[None])  # rows r × e
-    return float(np.linalg.eigvalsh(across @ np.linalg.inv(body.gyration) @ np.swapaxes(across, 1, 2)).max())
+    return float(np.linalg.eigvalsh(across @ np.linalg.inv(body.unit_inertia) @ np.swapaxes(across, 1, 2)).max())

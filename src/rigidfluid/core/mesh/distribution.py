@@ -53,7 +53,7 @@ def distributed(mesh: Mesh | None, ranks: Ranks) -> Mesh:
     if ranks.size == 1:
         assert mesh is not None
         return mesh
-    part = ranks.scattered(None if mesh is None else _parts(mesh, ranks.size))
+    part = ranks.scatter(None if mesh is None else _parts(mesh, ranks.size))
     assert part.part is not None
     return replace(part, part=replace(part.part, ranks=ranks))
 
@@ -65,7 +65,7 @@ def whole(mesh: Mesh) -> Mesh | None:
     part = mesh.part
     own = part.owned
     sent = (part.vertices[own], mesh.points[own], part.cells, part.vertices[mesh.cells])
-    pieces = part.ranks.collected((*sent, part.facets, part.vertices[mesh.facets], mesh.markers))
+    pieces = part.ranks.gather((*sent, part.facets, part.vertices[mesh.facets], mesh.markers))
     if pieces is None:
         return None
     vertices, points, cells, corners, facets, facet_corners, markers = map(np.concatenate, zip(*pieces, strict=True))
@@ -78,7 +78,7 @@ def surface_vertices(mesh: Mesh, surface: int) -> IntArray:
     own: IntArray = np.unique(mesh.facets[mesh.markers == surface])
     if mesh.part is None:
         return own
-    anywhere = np.concatenate(mesh.part.ranks.gathered(mesh.part.vertices[own]))
+    anywhere = np.concatenate(mesh.part.ranks.allgather(mesh.part.vertices[own]))
     return np.flatnonzero(np.isin(mesh.part.vertices, anywhere))
 
 

@@ -27,7 +27,7 @@ NEARLY_TANGLED = 2.0 * TANGLED
 """A moved mesh is made anew before a cell tangles, however low a quality is asked for."""
 
 
-class Mover:
+class MeshUpdater:
     """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
 
     Parameters
@@ -48,7 +48,7 @@ class Mover:
         self._sizes = sizes
         self._quality = quality
         self._pause = pause
-        self.asks: Callable[[State, Pose], bool] = self.is_worn
+        self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
         self._motion: MeshMotion | None = None
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
@@ -58,12 +58,12 @@ class Mover:
         if self._sizes is None:
             return None
         s, ranks = self._system, self._system.backend.ranks
-        with ranks.together():
+        with ranks.raise_on_all():
             args = s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes
             mesh = initial_mesh(*args) if ranks.is_root else None
         return distributed(mesh, ranks)
 
-    def moved(self, state: State, pose: Pose) -> Mesh | None:
+    def deform(self, state: State, pose: Pose) -> Mesh | None:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
@@ -77,11 +77,11 @@ class Mover:
             )
         return replace(state.reference.mesh, points=points)
 
-    def adapted(self, state: State, pose: Pose) -> State:
+    def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
         if state.reference is None or state.reference.tick == state.tick:
             return state
-        if self._waits(state.reference, state, pose) or not self.asks(state, pose):
+        if self._waits(state.reference, state, pose) or not self.needs_remesh(state, pose):
             return state
         assert state.mesh is not None
         try:
@@ -101,7 +101,7 @@ class Mover:
     def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
         assert self._sizes is not None
         s, ranks, present = self._system, mesh.ranks, whole(mesh)
-        with ranks.together():
+        with ranks.raise_on_all():
             made = None if present is None else remesh(present, s.bodies, pose, s.walls, self._sizes)
         return distributed(made, ranks)
 
@@ -143,7 +143,7 @@ def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Referen
 
 def worst_quality(mesh: Mesh, points: FloatArray) -> float:
     """Quality of the worst cell of the whole mesh, with its vertices at ``points`` (N, d) [1]."""
-    return float(mesh.ranks.least(cell_quality(points, mesh.cells).min()))
+    return float(mesh.ranks.min(cell_quality(points, mesh.cells).min()))
 
 
 def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:

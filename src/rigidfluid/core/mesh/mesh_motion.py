@@ -98,7 +98,7 @@ def held_components(mesh: Mesh, bodies: int) -> BoolArray:
 def stiffness(mesh: Mesh) -> csc_array:
     """Matrix of ∫(1 + τ) ∇u·∇v for linear elements over this rank's cells, (N, N)."""
     volume = np.abs(cell_volumes(mesh.points, mesh.cells))
-    smallest, largest = mesh.ranks.least(volume.min()), mesh.ranks.greatest(volume.max())
+    smallest, largest = mesh.ranks.min(volume.min()), mesh.ranks.greatest(volume.max())
     tau = (1.0 - smallest / largest) / (volume / largest)
     corners = mesh.points[mesh.cells]
     inner = np.linalg.inv(corners[:, 1:] - corners[:, :1])

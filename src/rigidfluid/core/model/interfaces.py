@@ -72,7 +72,7 @@ class Body(Part):
 
     @property
     @abstractmethod
-    def gyration(self) -> FloatArray:
+    def unit_inertia(self) -> FloatArray:
         """Inertia over mass, ∫(|r|² I - r rᵀ) / volume, shape (k, k) [length²]."""
 
     @property
@@ -129,7 +129,7 @@ class Detector(Part):
         self.bodies = tuple(bodies)
         self.walls = tuple(walls)
 
-    def sight(self, law_range: float) -> float:
+    def preferred_reach(self, law_range: float) -> float:
         """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""
         return math.inf
 

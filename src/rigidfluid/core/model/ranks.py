@@ -31,23 +31,23 @@ class Ranks(ABC):
         return self.rank == ROOT
 
     @abstractmethod
-    def gathered(self, item: T) -> list[T]:
+    def allgather(self, item: T) -> list[T]:
         """Everyone's ``item``, in the order of ranks, for all."""
 
     @abstractmethod
-    def collected(self, item: T) -> list[T] | None:
+    def gather(self, item: T) -> list[T] | None:
         """Everyone's ``item``, in the order of ranks, for the root; None for the others."""
 
     @abstractmethod
-    def shared(self, item: T) -> T:
+    def bcast(self, item: T) -> T:
         """The root's ``item``, for all."""
 
     @abstractmethod
-    def scattered(self, items: Sequence[T] | None) -> T:
+    def scatter(self, items: Sequence[T] | None) -> T:
         """Of the root's ``items``, one for each rank, this rank's; the others pass None."""
 
     @abstractmethod
-    def exchanged(self, items: Sequence[T]) -> list[T]:
+    def alltoall(self, items: Sequence[T]) -> list[T]:
         """``items`` has one for each rank; what the ranks have for this one, in their order."""
 
     @abstractmethod
@@ -56,25 +56,25 @@ class Ranks(ABC):
 
     def sum(self, value: Any) -> Any:
         """Sum of everyone's ``value``, a number or an array; the same bits for all."""
-        return np.sum(self.gathered(value), axis=0)
+        return np.sum(self.allgather(value), axis=0)
 
-    def least(self, value: Any) -> Any:
+    def min(self, value: Any) -> Any:
         """The smallest of everyone's ``value``, element by element."""
-        return np.min(self.gathered(value), axis=0)
+        return np.min(self.allgather(value), axis=0)
 
     def greatest(self, value: Any) -> Any:
         """The largest of everyone's ``value``, element by element."""
-        return np.max(self.gathered(value), axis=0)
+        return np.max(self.allgather(value), axis=0)
 
     @contextmanager
-    def together(self) -> Iterator[None]:
+    def raise_on_all(self) -> Iterator[None]:
         """An error on one rank becomes the same error on all, so that nobody waits for one who has left."""
         error: RigidfluidError | None = None
         try:
             yield
         except RigidfluidError as raised:
             error = raised
-        first = next((each for each in self.gathered(error) if each is not None), None)
+        first = next((each for each in self.allgather(error) if each is not None), None)
         if error is not None:
             raise error
         if first is not None:
@@ -87,27 +87,27 @@ class Alone(Ranks):
     rank = 0
     size = 1
 
-    def gathered(self, item: T) -> list[T]:
+    def allgather(self, item: T) -> list[T]:
         return [item]
 
-    def collected(self, item: T) -> list[T] | None:
+    def gather(self, item: T) -> list[T] | None:
         return [item]
 
-    def shared(self, item: T) -> T:
+    def bcast(self, item: T) -> T:
         return item
 
-    def scattered(self, items: Sequence[T] | None) -> T:
+    def scatter(self, items: Sequence[T] | None) -> T:
         assert items is not None
         return items[0]
 
-    def exchanged(self, items: Sequence[T]) -> list[T]:
+    def alltoall(self, items: Sequence[T]) -> list[T]:
         return list(items)
 
     def abort(self) -> None:
         """Nobody waits."""
 
     @contextmanager
-    def together(self) -> Iterator[None]:
+    def raise_on_all(self) -> Iterator[None]:
         """Nothing to agree on."""
         yield
 
@@ -129,22 +129,22 @@ class MpiRanks(Ranks):
         self.rank: int = communicator.rank
         self.size: int = communicator.size
 
-    def gathered(self, item: T) -> list[T]:
+    def allgather(self, item: T) -> list[T]:
         return list(self.communicator.allgather(item))
 
-    def collected(self, item: T) -> list[T] | None:
+    def gather(self, item: T) -> list[T] | None:
         items: list[T] | None = self.communicator.gather(item, root=ROOT)
         return items
 
-    def shared(self, item: T) -> T:
+    def bcast(self, item: T) -> T:
         held: T = self.communicator.bcast(item, root=ROOT)
         return held
 
-    def scattered(self, items: Sequence[T] | None) -> T:
+    def scatter(self, items: Sequence[T] | None) -> T:
         own: T = self.communicator.scatter(items, root=ROOT)
         return own
 
-    def exchanged(self, items: Sequence[T]) -> list[T]:
+    def alltoall(self, items: Sequence[T]) -> list[T]:
         return list(self.communicator.alltoall(list(items)))
 
     def abort(self) -> None:

@@ -34,7 +34,7 @@ class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces and
-    hands had. ``created``: the lowest residual after the first step, less that step's own, with its sign changed.
+    driven bodies had. ``created``: the lowest residual after the first step, less that step's own, its sign changed.
     ``lost``: the highest, without what friction between the fluid's solutions explains. ``unaccounted``: the residual
     at the end. ``path_friction``: that friction, until the end.
     """
@@ -122,7 +122,7 @@ def _excess(balance: FloatArray) -> FloatArray:
 def _cause(energy: Table, excess: FloatArray, pushed: BoolArray) -> tuple[str, str]:
     """The likely cause of the largest excess (s,), and what helps.
 
-    A blow acts in its step and, by BDF2, in the next: both are steps with contacts.
+    An impact acts in its step and, by BDF2, in the next: both are steps with contacts.
     """
     worst = int(excess.argmax())
     near = pushed | np.concatenate([[False], pushed[:-1]])

@@ -78,7 +78,7 @@ class Writer:
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
-        with self._ranks.together():
+        with self._ranks.raise_on_all():
             for name, table in self._tables.items():
                 with writing(table_path(self.out, name)):
                     table.extend(records[name])
@@ -92,7 +92,7 @@ class Writer:
             names = [f"{FIELDS}/{i:06d}.pvtu" for i in range(len(times))]
             pieces = [f"{len(times) - 1:06d}.{rank}.vtu" for rank in range(self._ranks.size)]
             own = f"{FIELDS}/{pieces[self._ranks.rank]}"
-        with self._ranks.together(), writing(self.out / own):
+        with self._ranks.raise_on_all(), writing(self.out / own):
             write_vtu(self.out / own, fields)
         with self._writing_once(self.out / names[-1]) as is_mine:
             if is_mine and pieces:
@@ -104,7 +104,7 @@ class Writer:
         """Replace the checkpoint, no rank before all have written theirs."""
         path = self.out / checkpoint_name(self._ranks.rank)
         for work in (partial(stage_checkpoint, path, checkpoint), partial(adopt_checkpoint, path)):
-            with self._ranks.together(), writing(path):
+            with self._ranks.raise_on_all(), writing(path):
                 work()
 
     def summary(self, summary: dict[str, Any]) -> None:
@@ -124,12 +124,12 @@ class Writer:
         checkpoints = [checkpoint_name(rank) for rank in range(self._ranks.size)]
         names = [*(f"{name}.csv" for name in self._tables), SERIES, *checkpoints]
         present = [str(self.out / name) for name in names if (self.out / name).exists()]
-        return self._ranks.shared([*present, str(self.out / SUMMARY)])
+        return self._ranks.bcast([*present, str(self.out / SUMMARY)])
 
     @contextmanager
     def _writing_once(self, path: Path) -> Iterator[bool]:
         """Whether this rank is to write a file that is there once; its failure is everyone's."""
-        with self._ranks.together(), writing(path):
+        with self._ranks.raise_on_all(), writing(path):
             yield self._ranks.is_root
 
 
@@ -159,12 +159,12 @@ def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
     """
     path = out / checkpoint_name(ranks.rank)
     for my_turn in (ranks.is_root, not ranks.is_root):
-        with ranks.together():
+        with ranks.raise_on_all():
             if my_turn:
                 checkpoint = read_checkpoint(path, ranks)
                 _refuse_other_ranks(out, checkpoint.ranks, ranks.size)
     latest = int(ranks.greatest(checkpoint.state.tick))
-    with ranks.together():
+    with ranks.raise_on_all():
         return checkpoint if checkpoint.state.tick == latest else _caught_up(path, checkpoint.state.tick, latest, ranks)
 
 

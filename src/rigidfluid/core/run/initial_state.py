@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.contact.proximity import surroundings
+from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.mesh.mesh_adaptation import Mover, reference_of
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -15,11 +15,11 @@ START_LEVEL = 6
 """In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
 
 
-def initial_state(system: System, mover: Mover, clock: Clock) -> State:
+def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none."""
     zero = nothing(system.pose)
-    mesh = mover.first_mesh()
-    contacts, gaps = surroundings(system, system.pose, mesh)
+    mesh = mesh_updater.first_mesh()
+    contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
     kinetic += bodies_energy(system, system.pose, system.twist)
     stored = contact_energy(system, contacts)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
@@ -83,8 +83,8 @@ class Simulation:
     processes : int or None
         How many processes were started to share the run; None if the backend's own ranks are those.
 
-    Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller and ``mover.asks`` another
-    rule of re-meshing.
+    Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller, and
+    ``mesh_updater.needs_remesh`` another rule of re-meshing.
     """
 
     def __init__(
@@ -98,9 +98,9 @@ class Simulation:
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, self.system)
         quality = scene.mesh.quality if scene.mesh else 0.0
-        self.mover = Mover(self.system, sizes, quality, self.clock.ticks(0))
+        self.mesh_updater = MeshUpdater(self.system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
-        self.stepper = Stepper(self.system, self.clock, self.mover, self.watch)
+        self.stepper = Stepper(self.system, self.clock, self.mesh_updater, self.watch)
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(self.system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
@@ -269,8 +269,8 @@ class Simulation:
         self._elapsed_before = 0.0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
-            self.state = initial_state(self.system, self.mover, self.clock)
-        if self._ranks.shared(out is not None and (out / CHECKPOINT).exists()):
+            self.state = initial_state(self.system, self.mesh_updater, self.clock)
+        if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
         self._record()

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodiesPath
+from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.contact.convection import turning
-from rigidfluid.core.contact.proximity import refuse_overlap, surroundings
+from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import power
-from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import Past, State
@@ -29,7 +29,7 @@ WIDEST_OPENING = 2.0
 
 
 def attempt(
-    system: System, clock: Clock, mover: Mover, watch: Stopwatch, state: State, level: int, path: BodiesPath
+    system: System, clock: Clock, mesh_updater: MeshUpdater, watch: Stopwatch, state: State, level: int, path: BodyStep
 ) -> tuple[State, Step]:
     """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
 
@@ -43,12 +43,12 @@ def attempt(
     pose = path.pose
     refuse_lost_pose(system.surfaces, pose)
     with watch("move mesh"):
-        mesh = mover.moved(state, pose)
+        mesh = mesh_updater.deform(state, pose)
     with watch("detect"):
-        contacts, gaps = surroundings(system, pose, mesh)
+        contacts, gaps = detect_contacts_and_gaps(system, pose, mesh)
         nearest = int(np.argmin(gaps))
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
-    with watch("advance"), system.backend.ranks.together():
+    with watch("advance"), system.backend.ranks.raise_on_all():
         step = step_to(system, state, time, size, pose, path.impulse, mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
@@ -83,7 +83,7 @@ def attempt(
 
 
 def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
-    """Kinetic energy of the free bodies; what a hand drives has no energy of its own in the balance."""
+    """Kinetic energy of the free bodies; what is driven has no energy of its own in the balance."""
     free = ~system.controlled
     return kinetic_energy(system.mass * free, system.inertia * free[:, None, None], pose, twist)
 
@@ -103,7 +103,7 @@ def _power(system: System, advance: Advance) -> Power:
     return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 
 
-def _work(system: System, state: State, path: BodiesPath) -> Work:
-    """Of the submerged weight of the free bodies, of the hands against the contacts, and of dampers in contacts."""
+def _work(system: System, state: State, path: BodyStep) -> Work:
+    """Of the free bodies' submerged weight, of what drives bodies against the contacts, and of dampers in contacts."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)

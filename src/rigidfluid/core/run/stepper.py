@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodiesPath, first_step_again, follow
+from rigidfluid.core.contact.contact_path import BodyStep, first_step_again, follow
 from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen
-from rigidfluid.core.contact.proximity import least_gaps, surroundings, travel
-from rigidfluid.core.mesh.mesh_adaptation import Mover
+from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, least_gaps, travel
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -44,7 +44,7 @@ class Stepper:
         What moves; it may be replaced between steps by one with another motion of its controlled bodies.
     clock : Clock
         Ticks and levels of steps.
-    mover : Mover
+    mesh_updater : MeshUpdater
         Of the mesh.
     watch : Stopwatch
         Of the stages of a step.
@@ -53,8 +53,8 @@ class Stepper:
     controller. Another may be put in the place of `longest`.
     """
 
-    def __init__(self, system: System, clock: Clock, mover: Mover, watch: Stopwatch) -> None:
-        self.system, self._clock, self._mover, self._watch = system, clock, mover, watch
+    def __init__(self, system: System, clock: Clock, mesh_updater: MeshUpdater, watch: Stopwatch) -> None:
+        self.system, self._clock, self._mesh_updater, self._watch = system, clock, mesh_updater, watch
         self.counts = Counts()
         self.propose: Callable[[State], int] = self.longest
 
@@ -82,15 +82,15 @@ class Stepper:
     def _on_its_mesh(self, state: State, pose: Pose) -> State:
         """The state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
         with self._watch("mesh"):
-            adapted = self._mover.adapted(state, pose)
+            adapted = self._mesh_updater.remesh_if_needed(state, pose)
         self.counts.remeshes += adapted.mesh is not state.mesh
         self.counts.failed_remeshes += adapted.remesh_failed not in (None, state.remesh_failed)
         return adapted
 
-    def _tried(self, state: State, level: int, path: BodiesPath) -> tuple[State, bool]:
+    def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
         """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
-            candidate, step = attempt(self.system, self._clock, self._mover, self._watch, state, level, path)
+            candidate, step = attempt(self.system, self._clock, self._mesh_updater, self._watch, state, level, path)
             if level < self._clock.levels and unforeseen(self.system, state, candidate):
                 raise _too_fast()
             if path.coupling is None:
@@ -109,7 +109,7 @@ class Stepper:
                 raise _too_fast()
         return replace(candidate, coupling=found), agreed
 
-    def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodiesPath:
+    def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodyStep:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
         time, size = self._clock.time(state.tick), self._clock.size(level)
         if coupling is None:
@@ -119,7 +119,7 @@ class Stepper:
             path = follow(self.system, state, time, size, coupling)
         return self._as_given(path, state, level)
 
-    def _as_given(self, path: BodiesPath, state: State, level: int) -> BodiesPath:
+    def _as_given(self, path: BodyStep, state: State, level: int) -> BodyStep:
         """The path with the poses of controlled bodies at its end evaluated, and not integrated."""
         given = self.system.controlled_pose(self._clock.time(state.tick + self._clock.ticks(level)))
         is_given = self.system.controlled[:, None]
@@ -127,7 +127,7 @@ class Stepper:
         orientation = np.where(is_given, given.orientation, path.pose.orientation)
         return replace(path, pose=Pose(position, orientation))
 
-    def _first_level(self, state: State) -> tuple[int, BodiesPath | None]:
+    def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
         """The longest step, of those proposed and shorter ones, that changes no gap too fast, and the way it takes."""
         level = self.propose(state)
         while level < self._clock.levels:
@@ -149,11 +149,11 @@ class Stepper:
         if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
             return False  # too far away for that: no need to measure
         try:
-            mesh = self._mover.moved(state, pose) if self.system.detector.needs_mesh else None
+            mesh = self._mesh_updater.deform(state, pose) if self.system.detector.needs_mesh else None
         except StepRejected:
             return True
         with self._watch("detect"):
-            _, gaps = surroundings(self.system, pose, mesh)
+            _, gaps = detect_contacts_and_gaps(self.system, pose, mesh)
         film = state.gaps < (self.system.law.range if self.system.law else 0.0)
         opens = film & (gaps > WIDEST_OPENING * state.gaps)
         return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())

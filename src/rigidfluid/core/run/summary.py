@@ -71,7 +71,7 @@ def _cells(mesh: Mesh) -> int:
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:
     """The sum over the processes, where each knows its own [byte]."""
-    each = [part for part in ranks.gathered(memory) if part is not None]
+    each = [part for part in ranks.allgather(memory) if part is not None]
     return sum(each) if len(each) == ranks.size else None
 
 

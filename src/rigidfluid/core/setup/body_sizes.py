@@ -15,9 +15,9 @@ def refuse_lost_body(body: Body, at: str) -> None:
         size = getattr(body, name)
         if size is not None or name in ("volume", "bounding_radius"):
             _refuse_lost_size(body, at, name, np.shape(size) == shape and np.min(size) > 0.0)
-    inertia = np.asarray(body.gyration)
+    inertia = np.asarray(body.unit_inertia)
     sound = inertia.shape == (turns, turns) and np.isfinite(inertia).all()
-    _refuse_lost_size(body, at, "gyration", sound and np.linalg.eigvalsh(inertia)[0] > 0.0)
+    _refuse_lost_size(body, at, "unit_inertia", sound and np.linalg.eigvalsh(inertia)[0] > 0.0)
 
 
 def _refuse_lost_size(body: Body, at: str, name: str, positive: bool | np.bool_) -> None:

@@ -25,7 +25,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions, face_planes, faces
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
-from rigidfluid.core.setup.parts import Parts, resolve
+from rigidfluid.core.setup.parts import Parts, select_plugins
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
 
@@ -52,7 +52,7 @@ def build_system(scene: Scene) -> System:
     SceneError
         If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
     """
-    parts, boundary = resolve(scene), conditions(scene)
+    parts, boundary = select_plugins(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
     pose = _initial_pose(scene)
@@ -74,7 +74,7 @@ def build_system(scene: Scene) -> System:
         upper=np.array(scene.domain.upper),
         mass=mass,
         added_mass=added,
-        inertia=mass[:, None, None] * np.array([body.gyration for body in parts.bodies]),
+        inertia=mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies]),
         weight=weight,
         pose=pose,
         twist=_initial_twist(scene, controlled, motion(0.0)),
@@ -162,7 +162,7 @@ def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProb
 def _reach(detector: Detector, law: ForceLaw | None) -> float:
     """As far as the detector sees, and no further than is worth its while."""
     law_range = law.range if law else 0.0
-    return min(detector.sight(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
+    return min(detector.preferred_reach(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
 
 
 def gap_reach(system: System) -> float:

@@ -22,7 +22,7 @@ AUTO = "auto"
 
 
 @dataclass(frozen=True)
-class Choice(Generic[P]):
+class Selected(Generic[P]):
     """A class that a scene names, and its validated options."""
 
     part: type[P]
@@ -37,15 +37,15 @@ class Parts:
     without a mesh.
     """
 
-    backend: Choice[FluidBackend]
+    backend: Selected[FluidBackend]
     bodies: tuple[Body, ...]
-    detector: Choice[Detector]
-    law: Choice[ForceLaw] | None
+    detector: Selected[Detector]
+    law: Selected[ForceLaw] | None
     detector_why: str
     exact_detector: type[Detector]
 
 
-def resolve(scene: Scene) -> Parts:
+def select_plugins(scene: Scene) -> Parts:
     """Find the parts that a scene names and validate their options.
 
     Parameters
@@ -121,10 +121,10 @@ def _body(scene: Scene, registry: Registry, number: int) -> Body:
     return body
 
 
-def _backend(table: FluidTable, registry: Registry) -> Choice[FluidBackend]:
+def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     part = registry.get(FLUID_BACKEND, table.backend)
     _refuse_unread(table.options, [part], type(table).model_fields, "fluid")
-    return Choice(part, read_table(part.Options, table.options, "fluid"))
+    return Selected(part, read_table(part.Options, table.options, "fluid"))
 
 
 def _law(table: ContactTable, registry: Registry) -> type[ForceLaw] | None:
@@ -154,9 +154,9 @@ def _refuse_contact(
         raise SceneError("contact.detector", f"{detector.name!r} without a mesh", "a detector that needs none", remedy)
 
 
-def _choose(part: type[P], table: ContactTable) -> Choice[P]:
+def _choose(part: type[P], table: ContactTable) -> Selected[P]:
     mine = {key: value for key, value in table.options.items() if key in part.Options.model_fields}
-    return Choice(part, read_table(part.Options, mine, "contact"))
+    return Selected(part, read_table(part.Options, mine, "contact"))
 
 
 def _refuse_unread(

@@ -20,7 +20,7 @@ from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 STEP = 0.01
 """Of what is asked with the mass alone, where none counts [time]."""
 
-BLOW = 1e-3
+IMPACT = 1e-3
 """A step so short that viscosity does little in it [time]."""
 
 SHORT = 10.0 ** -np.arange(2.0, 6.0)
@@ -114,7 +114,7 @@ class ResponsesContract(FluidContract):
         flow, units = self._free_balls(dimension), _units(self._free_balls(dimension))
         twist = 5.0 * np.random.default_rng(6).normal(size=len(units))
         turning = (_mass(flow) @ twist).reshape(units[0].shape)
-        blown = replace(flow.after(BLOW, impulse=turning), past=None)
+        blown = replace(flow.after(IMPACT, impulse=turning), past=None)
         still, turned, expected = (
             at.backend.response(at.fluid, at.mesh, replace(at.step_after(STEP), turning=given), units).by_step
             for at, given in ((flow, np.zeros_like(turning)), (flow, turning), (blown, np.zeros_like(turning)))
@@ -213,10 +213,10 @@ def _added_to_two_disks(across: bool) -> FloatArray:
     all doublets in it less the area times its velocity.
     """
     added = -np.diag(np.pi * RADII**2)
-    for mover in range(2):
-        body, strength, inside = mover, RADII[mover] ** 2, 0.0
+    for mesh_updater in range(2):
+        body, strength, inside = mesh_updater, RADII[mesh_updater] ** 2, 0.0
         for _ in range(100):
-            added[body, mover] += 2.0 * np.pi * strength
+            added[body, mesh_updater] += 2.0 * np.pi * strength
             body, away = 1 - body, RADII.sum() + GAP - inside
             strength *= (1.0 if across else -1.0) * (RADII[body] / away) ** 2
             inside = RADII[body] ** 2 / away

@@ -1,4 +1,4 @@
-"""States that come from elsewhere: from another mesh, or from bodies set in motion by a blow."""
+"""States that come from elsewhere: from another mesh, or from bodies set in motion by an impact."""
 
 from __future__ import annotations
 

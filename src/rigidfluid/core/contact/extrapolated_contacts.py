@@ -10,7 +10,7 @@ from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Pose
 
 
-class FollowedContacts:
+class ExtrapolatedContacts:
     """Contacts of one pose, carried along by the bodies' rigid motion.
 
     Between balls, and of balls with flat walls, gap and normal are exact. Other surfaces are followed by their points,

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.detection import detect
-from rigidfluid.core.contact.proximity import may_repel, travel
+from rigidfluid.core.contact.proximity import interacting, travel
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, IntArray, Pose
 from rigidfluid.errors import StepRejected
 
 
-class RedetectedContacts:
+class TrackedPairs:
     """The same pairs in the same order at any pose, by a detector that needs no mesh.
 
     Parameters
@@ -46,7 +46,7 @@ class RedetectedContacts:
 
     def _detected(self, pose: Pose, reach: float) -> Contacts:
         near = detect(self._system, pose, None, reach)
-        return select(near, may_repel(self._system, near))
+        return select(near, interacting(self._system, near))
 
     def _numbers(self, contacts: Contacts) -> IntArray:
         """One for each pair, in the detectors' order."""

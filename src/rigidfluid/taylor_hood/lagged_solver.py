@@ -15,23 +15,23 @@ from rigidfluid.errors import StepRejected
 Matrix = TypeVar("Matrix")
 
 
-class StaleSolver(ABC, Generic[Matrix]):
+class LaggedSolver(ABC, Generic[Matrix]):
     """Solves A x = b for a matrix that changes little from step to step.
 
-    The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the price
+    The preconditioner is renewed when the iterations beyond those that a fresh one would have taken add up to the cost
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
-    ``price`` of a preconditioner in iterations by dimension, ``when_fresh``, those that a solve then takes, and the
-    ``most`` that may be spent on one. A stale one is given up when it has wasted its price twice.
+    ``rebuild_cost`` of a preconditioner in iterations by dimension; ``fresh_iterations``, that a solve then takes; and
+    the ``most`` that may be spent on one. A stale one is given up when it has wasted that cost twice.
     """
 
-    price: ClassVar[Mapping[int, int]]
-    when_fresh: ClassVar[int]
+    rebuild_cost: ClassVar[Mapping[int, int]]
+    fresh_iterations: ClassVar[int]
     most: ClassVar[int]
 
     def __init__(self, ranks: Ranks, dimension: int) -> None:
         self._ranks = ranks
-        self._price = self.price[dimension]
+        self._rebuild_cost = self.rebuild_cost[dimension]
         self._solves = 0
         self._wasted = 0
         self._is_made = False
@@ -59,9 +59,9 @@ class StaleSolver(ABC, Generic[Matrix]):
             raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
         if start <= tolerance:
             return np.zeros_like(residual), 0
-        if not self._is_made or self._wasted > self._price:
+        if not self._is_made or self._wasted > self._rebuild_cost:
             self._renew(matrix)
-        most = self.most if self._solves == 0 else min(self.most, self.when_fresh + 2 * self._price)
+        most = self.most if self._solves == 0 else min(self.most, self.fresh_iterations + 2 * self._rebuild_cost)
         correction, iterations, converged = self.iterate(apply, residual, tolerance, most)
         if not converged and self._solves > 0:
             self._renew(matrix)
@@ -75,7 +75,7 @@ class StaleSolver(ABC, Generic[Matrix]):
                 "Shorten time.step or loosen fluid.tolerance.",
             )
         self._solves += 1
-        self._wasted += max(0, iterations - self.when_fresh)
+        self._wasted += max(0, iterations - self.fresh_iterations)
         return correction, iterations
 
     @final
@@ -142,7 +142,7 @@ class StaleSolver(ABC, Generic[Matrix]):
             if enough == 0.0:
                 continue
             found[:, column], iterations, converged = self.iterate(apply, right_side, enough, self.most)
-            wasted += max(0, iterations - self.when_fresh)
+            wasted += max(0, iterations - self.fresh_iterations)
             if not converged:
                 return None, wasted
         return found, wasted

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rigidfluid.core.contact.coupled_movement import CoupledMovement
+from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel, reduced_model
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 
@@ -39,8 +39,8 @@ def coupling_of(model: ReducedModel, load: FloatArray, before: FloatArray | None
     return Coupling(model, load, unknown if before is None else before, np.zeros(len(load)))
 
 
-def movement(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledMovement:
-    return CoupledMovement(START, twist, RATE, LINEAR, ANGULAR, coupling_of(model_of(MASS, friction), load))
+def movement(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledDynamics:
+    return CoupledDynamics(START, twist, RATE, LINEAR, ANGULAR, coupling_of(model_of(MASS, friction), load))
 
 
 def joined(twist: Twist) -> FloatArray:
@@ -51,7 +51,7 @@ def flat_wrench() -> FloatArray:
     return np.concatenate([WRENCH.force, WRENCH.torque], axis=1).ravel()
 
 
-def moved(bodies: CoupledMovement, time: float, substeps: int) -> CoupledMovement:
+def moved(bodies: CoupledDynamics, time: float, substeps: int) -> CoupledDynamics:
     """By constant forces for so long, in so many kicks before and after a drift."""
     part = time / substeps
     for _ in range(substeps):
@@ -123,7 +123,7 @@ def test_forces_do_not_move_driven_bodies():
     model = model_of(MASS[3:, 3:], FRICTION[3:, 3:], INSIDE[3:])
     linear, angular = LINEAR.copy(), ANGULAR.copy()
     linear[0], angular[0] = 0.0, 0.0
-    bodies = CoupledMovement(START, TWIST, none, linear, angular, coupling_of(model, LOAD[3:]))
+    bodies = CoupledDynamics(START, TWIST, none, linear, angular, coupling_of(model, LOAD[3:]))
     moved(bodies, 0.4, 6)
     np.testing.assert_array_equal(joined(bodies.twist)[0], joined(TWIST)[0])
     np.testing.assert_allclose(bodies.pose.position[0], START.position[0] + 0.4 * TWIST.velocity[0], rtol=1e-12)
@@ -144,14 +144,14 @@ ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), Asked(np.o
 """Of mass 4, friction 32."""
 
 
-def one_body() -> CoupledMovement:
+def one_body() -> CoupledDynamics:
     still = Twist(np.zeros((1, 2)), np.zeros((1, 1)))
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
     zero = np.zeros((1, 3))
-    return CoupledMovement(pose, still, zero, np.zeros((1, 2, 2)), np.zeros((1, 1, 1)), coupling_of(ONE, np.zeros(1)))
+    return CoupledDynamics(pose, still, zero, np.zeros((1, 2, 2)), np.zeros((1, 1, 1)), coupling_of(ONE, np.zeros(1)))
 
 
-def pushed(bodies: CoupledMovement, forces: FloatArray, part: float) -> FloatArray:
+def pushed(bodies: CoupledDynamics, forces: FloatArray, part: float) -> FloatArray:
     """Kick and drift by each of the forces along x; the velocities while drifting."""
     speeds = []
     for force in forces:
@@ -192,7 +192,7 @@ def test_friction_of_a_jump_beyond_a_linear_velocity():
 def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_known_stays():
     before = np.where(np.arange(len(LOAD)) == 1, np.nan, -LOAD)
     coupling = coupling_of(model_of(MASS, 0.0 * FRICTION), LOAD, before)
-    bodies = CoupledMovement(START, TWIST, RATE, LINEAR, ANGULAR, coupling)
+    bodies = CoupledDynamics(START, TWIST, RATE, LINEAR, ANGULAR, coupling)
     bodies.vary_load(0.2)
     for _ in range(4):
         bodies.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.05)

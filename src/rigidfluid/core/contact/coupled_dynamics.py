@@ -8,14 +8,14 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.movement import block_diagonal
+from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 
-class CoupledMovement:
+class CoupledDynamics:
     """dU/dt = A + M⁻¹F, and of the velocities in a `ReducedModel` dU/dt = M⁻¹ (Φ + F - R (U - Uⁿ)), in modes exactly.
 
     Parameters

@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood import stale_factors
-from rigidfluid.taylor_hood.stale_factors import StaleFactors
+from rigidfluid.taylor_hood import lagged_factors
+from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 
 N = 200
 RIGHT = np.eye(N)[0]
@@ -17,13 +17,13 @@ SHIFT = sparse.csr_array(np.roll(np.eye(N), 1, axis=0))  # GMRES does not get an
 @pytest.fixture
 def made(monkeypatch):
     count = []
-    factorise = stale_factors.factorise
-    monkeypatch.setattr(stale_factors, "factorise", lambda *given: count.append(1) or factorise(*given))
+    factorise = lagged_factors.factorise
+    monkeypatch.setattr(lagged_factors, "factorise", lambda *given: count.append(1) or factorise(*given))
     return count
 
 
 def test_stale_factors_that_fail_are_renewed_once(made):
-    solver = StaleFactors(2)
+    solver = LaggedFactors(2)
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     found, _ = solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)
     np.testing.assert_allclose(SHIFT @ found, RIGHT, atol=1e-9)
@@ -31,7 +31,7 @@ def test_stale_factors_that_fail_are_renewed_once(made):
 
 
 def test_stale_factors_are_given_up_when_they_have_wasted_their_price_twice(made):
-    solver, applied = StaleFactors(2), []
+    solver, applied = LaggedFactors(2), []
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
 
     def shift(x):
@@ -39,17 +39,17 @@ def test_stale_factors_are_given_up_when_they_have_wasted_their_price_twice(made
         return SHIFT @ x
 
     assert solver.solve(shift, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
-    assert len(applied) <= StaleFactors.when_fresh + 2 * StaleFactors.price[2] + 5  # and what judges both solutions
+    assert len(applied) <= LaggedFactors.fresh_iterations + 2 * LaggedFactors.rebuild_cost[2] + 5
     assert len(made) == 2
 
 
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
-        StaleFactors(2).solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
+        LaggedFactors(2).solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
 
 
 def test_after_a_refusal_the_next_matrix_has_factors_of_its_own():
-    solver = StaleFactors(2)
+    solver = LaggedFactors(2)
     with pytest.raises(StepRejected):
         solver.solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     assert solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
@@ -59,7 +59,7 @@ def test_after_factors_that_cannot_be_made_others_are():
     def refused():
         raise StepRejected("a", "b", "c", "d")
 
-    solver = StaleFactors(2)
+    solver = LaggedFactors(2)
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     with pytest.raises(StepRejected, match="found b"):
         solver.solve(SHIFT.__matmul__, refused, RIGHT, 1e-9)
@@ -67,11 +67,11 @@ def test_after_factors_that_cannot_be_made_others_are():
 
 
 def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made):
-    solver = StaleFactors(2)
+    solver = LaggedFactors(2)
     other = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 20))
     solver.solve(IDENTITY.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)
     iterations = [solver.solve(other.__matmul__, lambda: other, np.ones(N), 1e-9)[1] for _ in range(5)]
-    assert iterations[0] > 3 + StaleFactors.price[2]
+    assert iterations[0] > 3 + LaggedFactors.rebuild_cost[2]
     assert iterations[1:] == [1, 1, 1, 1]
     assert len(made) == 2
 
@@ -84,9 +84,9 @@ def test_each_iteration_takes_one_solve_by_the_factors_and_the_end_none(monkeypa
             solves.append(1)
             return vector
 
-    monkeypatch.setattr(stale_factors, "factorise", lambda *_: Identity())
+    monkeypatch.setattr(lagged_factors, "factorise", lambda *_: Identity())
     matrix = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 5))
-    found, iterations = StaleFactors(2).solve(matrix.__matmul__, lambda: matrix, np.ones(N), 1e-9)
+    found, iterations = LaggedFactors(2).solve(matrix.__matmul__, lambda: matrix, np.ones(N), 1e-9)
     np.testing.assert_allclose(matrix @ found, np.ones(N), atol=1e-9)
     assert len(solves) == iterations == 5
 
@@ -94,8 +94,8 @@ def test_each_iteration_takes_one_solve_by_the_factors_and_the_end_none(monkeypa
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_what_is_not_finite_is_refused(value):
     with pytest.raises(StepRejected, match=f"found a residual of {value}"):
-        StaleFactors(2).solve(IDENTITY.__matmul__, lambda: IDENTITY, np.full(N, value), 1e-9)
+        LaggedFactors(2).solve(IDENTITY.__matmul__, lambda: IDENTITY, np.full(N, value), 1e-9)
 
 
 def test_nothing_to_do():
-    assert StaleFactors(2).solve(IDENTITY.__matmul__, lambda: IDENTITY, np.zeros(N), 0.0)[1] == 0
+    assert LaggedFactors(2).solve(IDENTITY.__matmul__, lambda: IDENTITY, np.zeros(N), 0.0)[1] == 0

@@ -12,22 +12,22 @@ from scipy.sparse.linalg import LinearOperator, gcrotmk
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
-from rigidfluid.taylor_hood.stale_solver import StaleSolver
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 
 _LEAST = float(np.finfo(float).tiny)
 """In place of no tolerance at all, that of a right side of zero."""
 
 
 @final
-class StaleFactors(StaleSolver["sparse.csr_array"]):
+class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     """LU by `factorise`.
 
-    The price is that of PARDISO's factors for a pattern that it has analysed: 8 to 12 iterations in 2D (5,000 to
+    The rebuild_cost is that of PARDISO's factors for a pattern that it has analysed: 8 to 12 iterations in 2D (5,000 to
     100,000 unknowns), 64 in 3D (24,000). With the analysis it is 30 and 100.
     """
 
-    price: ClassVar[Mapping[int, int]] = {2: 10, 3: 60}
-    when_fresh: ClassVar[int] = 3
+    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 10, 3: 60}
+    fresh_iterations: ClassVar[int] = 3
     most: ClassVar[int] = 40
 
     most_sweeps: ClassVar[int] = 6
@@ -87,12 +87,12 @@ class StaleFactors(StaleSolver["sparse.csr_array"]):
         assert self._factors is not None
         enough = tolerance * np.linalg.norm(right_sides, axis=0)
         found = self._factors.solve(right_sides)
-        least, price = np.inf, max(1, right_sides.shape[1] // 4)
+        least, rebuild_cost = np.inf, max(1, right_sides.shape[1] // 4)
         for sweep in range(self.most_sweeps):
             left = right_sides - apply(found)
             rest = float(np.max(np.linalg.norm(left, axis=0) / np.maximum(enough, _LEAST), initial=0.0))
             if rest <= 1.0:
-                return found, price * sweep
+                return found, rebuild_cost * sweep
             least, rate = rest, rest / least
             if rate ** (self.most_sweeps - sweep) * rest > 1.0 and sweep > 0:
                 break

@@ -17,7 +17,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, T
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 
 
-class Movement(Protocol):
+class BodyDynamics(Protocol):
     """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
 
     pose: Pose
@@ -54,7 +54,7 @@ class Movement(Protocol):
         """Change the pose as the twist does in ``time``."""
 
 
-class FreeMovement:
+class DryDynamics:
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
     Parameters
