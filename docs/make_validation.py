@@ -380,10 +380,10 @@ are; not with dampers that steps do not resolve. One explicit substep only where
 
 `studies/contact_stepping.toml`, the plot above. Substeps find the moment of an impact within a step, and are exact to
 four digits with the longest steps. They stay the same through an impact, however many steps it lasts. In the second
-impact the disks hit a wall and, before they leave it, the floor; where that is foreseen in a later step, substeps change
-in the midst of the impact, which costs some energy, most with steps of 5e-5. The implicit step keeps the energy to 1e-8 at all
-steps; its error is when the impact takes place, so it is of first order until steps resolve the contact, and then of
-second.
+one the disks hit a wall and, before they leave it, the floor; where that is foreseen in a later step, substeps change
+in the midst of the impact, which costs some energy, most with steps of 5e-5. The implicit step keeps the energy to
+1e-8 at all steps; its error is when the impact takes place, so it is of first order until steps resolve the contact,
+and then of second.
 
 {dry}
 

@@ -77,7 +77,7 @@ def test_a_thousand_periods_keep_energy_and_momentum():
         }
     )
     run = Simulation(scene, None, False)
-    run.system = replace(run.system, inertia=np.diag(INERTIA)[None])
+    run.stepper.system = replace(run.system, inertia=np.diag(INERTIA)[None])
     run.go()
     history, momentum = run.history.bodies, INERTIA * START
     orientation = np.column_stack([history[name] for name in ("qw", "qx", "qy", "qz")])

@@ -86,7 +86,8 @@ def test_memory_does_not_grow_with_a_run_that_is_on_disk(tmp_path):
     simulation = Simulation(dry_scene({}, *balls, end=1.0, step=0.01, upper=[5.0, 3.0]), tmp_path, False)
     held = []
     tracemalloc.start()
-    simulation.go(lambda _: held.append(tracemalloc.get_traced_memory()[0]))
+    simulation.observe(lambda _: held.append(tracemalloc.get_traced_memory()[0]))
+    simulation.go()
     tracemalloc.stop()
     simulation.close()
     assert held[-1] - held[20] < 80 * 1000

@@ -91,18 +91,18 @@ class Simulation:
         self, scene: Scene, out: Path | None = None, resume: bool = False, processes: int | None = None
     ) -> None:
         self.scene = scene
-        self.system = build_system(scene)
-        self._ranks = self.system.backend.ranks
-        _refuse_lone_ranks(self.system.backend, processes)
+        system = build_system(scene)
+        self._ranks = system.backend.ranks
+        _refuse_lone_ranks(system.backend, processes)
         earlier = _earlier(scene, out, self._ranks) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
-        sizes = _sizes(scene, self.system)
+        sizes = _sizes(scene, system)
         quality = scene.mesh.quality if scene.mesh else 0.0
-        self.mesh_updater = MeshUpdater(self.system, sizes, quality, self.clock.ticks(0))
+        self.mesh_updater = MeshUpdater(system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
-        self.stepper = Stepper(self.system, self.clock, self.mesh_updater, self.watch)
+        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch)
         self.history = History(scene.dimension, folder=out)
-        self.extremes = Extremes.none(len(self.system.bodies))
+        self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start = time.perf_counter()
         self._writer: Writer | None = None
@@ -117,6 +117,11 @@ class Simulation:
         except BaseException:
             self.close()
             raise
+
+    @property
+    def system(self) -> System:
+        """What moves."""
+        return self.stepper.system
 
     @property
     def alone(self) -> bool:
@@ -218,8 +223,7 @@ class Simulation:
         tables["body"][number] = body
         self.scene = scene_from_dict(tables)
         motion = prescribed_motion(self.scene, self.state.pose, self.time)
-        self.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
-        self.stepper.system = self.system
+        self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
             self.state = replace(self.state, level=start_level(self.clock))
 
@@ -247,7 +251,7 @@ class Simulation:
             )
         self.system.backend.forget()
         self.scene, self.state, self.extremes = saved.scene, saved.state, saved.extremes
-        self.system = self.stepper.system = saved.system
+        self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         for (schedule, _), latest in zip(self._observers, saved.met, strict=False):
