@@ -43,6 +43,13 @@ def test_stale_factors_are_given_up_when_they_have_wasted_their_price_twice(made
     assert len(made) == 2
 
 
+def test_factors_that_columns_have_made_are_stale_for_another_matrix(made):
+    solver = LaggedFactors(2)
+    solver.solve_columns(IDENTITY.__matmul__, lambda: IDENTITY, np.asfortranarray(np.eye(N)[:, :2]), 1e-9)
+    assert solver.solve(SHIFT.__matmul__, lambda: SHIFT, RIGHT, 1e-9)[1] == 1
+    assert len(made) == 2
+
+
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
         LaggedFactors(2).solve(SHIFT.__matmul__, lambda: IDENTITY, RIGHT, 1e-9)

@@ -32,7 +32,6 @@ class LaggedSolver(ABC, Generic[Matrix]):
     def __init__(self, ranks: Ranks, dimension: int) -> None:
         self._ranks = ranks
         self._rebuild_cost = self.rebuild_cost[dimension]
-        self._solves = 0
         self._wasted = 0
         self._is_made = False
 
@@ -59,11 +58,12 @@ class LaggedSolver(ABC, Generic[Matrix]):
             raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
         if start <= tolerance:
             return np.zeros_like(residual), 0
-        if not self._is_made or self._wasted > self._rebuild_cost:
+        fresh = not self._is_made or self._wasted > self._rebuild_cost
+        if fresh:
             self._renew(matrix)
-        most = self.most if self._solves == 0 else min(self.most, self.fresh_iterations + 2 * self._rebuild_cost)
+        most = self.most if fresh else min(self.most, self.fresh_iterations + 2 * self._rebuild_cost)
         correction, iterations, converged = self.iterate(apply, residual, tolerance, most)
-        if not converged and self._solves > 0:
+        if not converged and not fresh:
             self._renew(matrix)
             correction, iterations, converged = self.iterate(apply, residual, tolerance, self.most)
         if not converged:
@@ -74,7 +74,6 @@ class LaggedSolver(ABC, Generic[Matrix]):
                 "a converging one",
                 "Shorten time.step or loosen fluid.tolerance.",
             )
-        self._solves += 1
         self._wasted += max(0, iterations - self.fresh_iterations)
         return correction, iterations
 
@@ -152,4 +151,4 @@ class LaggedSolver(ABC, Generic[Matrix]):
         self.make_room()
         self.make(matrix())
         self._is_made = True
-        self._solves = self._wasted = 0
+        self._wasted = 0
