@@ -138,7 +138,8 @@ Made on {date} by `python benchmarks/contact_step.py --page docs/validation/cont
 means over the steps of full length; re-meshing is in them. A contact step is one with a contact in range, or one that
 may come into it. It solves for the fluid about twice, and asks for the answers of the bodies where those have changed
 ([numerics](../numerics.md#contacts)). What is free of contacts is the same run before, for the hundred disks the same
-disks further apart.
+disks further apart. Of the shipped hundred disks it is the steps before the first contact; their [whole
+run](hundred_disks.md) says what contacts took of it.
 
 {table}
 """
