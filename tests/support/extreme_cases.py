@@ -347,14 +347,14 @@ def _by(stepping: Stepping, *steps: float) -> list[Run]:
 
 
 def _wet() -> Iterator[Case]:
-    yield from _wet_blows()
+    yield from _wet_impacts()
     yield from _wet_films()
     yield from _wet_crowds()
     yield from _wet_shapes()
     yield from _wet_rest()
 
 
-def _wet_blows() -> Iterator[Case]:
+def _wet_impacts() -> Iterator[Case]:
     """One or a few impacts."""
     sub, imp = partial(_by, "substeps"), partial(_by, "implicit")
     two, three, made = (4, 1), (4, 2, 1), "energy created"

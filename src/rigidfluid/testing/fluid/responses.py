@@ -109,7 +109,7 @@ class ResponsesContract(FluidContract):
         self._assert_answers(told, twists[1] - twists[0])
         assert np.abs(told).max() > 1e-3
 
-    def test_what_turns_convects_as_the_flow_of_a_blow(self, dimension: int) -> None:
+    def test_what_turns_convects_as_the_flow_of_an_impact(self, dimension: int) -> None:
         """In fluid at rest a step with impulses that turn answers much as one in the flow that these have just made."""
         flow, units = self._free_balls(dimension), _units(self._free_balls(dimension))
         twist = 5.0 * np.random.default_rng(6).normal(size=len(units))
