@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.api import FLUID_BACKEND, FloatArray, Registry
-from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.api import FLUID_BACKEND, FloatArray, Registry, Simulation
 from rigidfluid_ngsolve import NGSolve
 
 SCENES = Path(__file__).parents[3] / "scenes"
@@ -54,7 +53,7 @@ def test_steps_are_those_of_scikit_fem(dimension: int, model: str) -> None:
     ours, theirs = (Simulation(two_balls(backend, dimension, model), None, False) for backend in BACKENDS)
     for _ in range(3):
         for simulation in (ours, theirs):
-            simulation._advance()
+            simulation.step()
         assert set(ours.state.fluid) == set(theirs.state.fluid)
         for name, expected in theirs.state.fluid.items():
             close(ours.state.fluid[name], expected)
