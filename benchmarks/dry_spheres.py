@@ -66,7 +66,7 @@ def measure(law: str, side: int, steps: int, repeats: int) -> dict[str, Any]:
         engine.command(f"run {steps} post no")
         for _ in range(repeats):
             start = time.perf_counter()
-            follow(run.system, run.state, run.clock.time(run.state.tick), run.clock.size(0))
+            follow(run.system, run.state, run.time, run.clock.size(0), None)
             middle = time.perf_counter()
             engine.command(f"run {steps} post no")
             ours.append(1e3 * (middle - start) / steps)
