@@ -165,13 +165,13 @@ def test_where_nothing_is_near_nobody_is_asked(monkeypatch):
 
 def sent_by(monkeypatch):
     """What the ranks are going to hand each other."""
-    sent, gathered = [], ThreadedRanks.gathered
+    sent, allgather = [], ThreadedRanks.allgather
 
     def recorded(ranks, item):
         sent.append(item)
-        return gathered(ranks, item)
+        return allgather(ranks, item)
 
-    monkeypatch.setattr(ThreadedRanks, "gathered", recorded)
+    monkeypatch.setattr(ThreadedRanks, "allgather", recorded)
     return sent
 
 
