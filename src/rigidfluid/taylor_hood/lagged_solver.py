@@ -22,7 +22,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
     of a new one: a rule of counts, not of clock time, so that a run can be repeated to the last bit.
 
     ``rebuild_cost`` of a preconditioner in iterations by dimension; ``fresh_iterations``, that a solve then takes; and
-    the ``most`` that may be spent on one. A stale one is given up when it has wasted that cost twice.
+    the ``most`` that may be spent on one. An old one is given up when it has wasted that cost twice.
     """
 
     rebuild_cost: ClassVar[Mapping[int, int]]
@@ -87,7 +87,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
     ) -> FloatArray:
         """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm; raises StepRejected.
 
-        What stale factors waste counts like that of a step.
+        What old factors waste counts like that of a step.
         """
         fresh = not self._is_made
         if fresh:

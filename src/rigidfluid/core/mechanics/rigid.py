@@ -65,10 +65,7 @@ def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
     (n,) array
         Angle, in 2D whole turns included [rad].
     """
-    if start.shape[-1] == 1:
-        return np.abs(end - start)[:, 0]
-    opposite = np.minimum(np.linalg.norm(end - start, axis=1), np.linalg.norm(end + start, axis=1))
-    return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * opposite, 1.0)))
+    return np.asarray(np.linalg.norm(rotation_between(start, end), axis=1))
 
 
 def rotation_between(start: FloatArray, end: FloatArray) -> FloatArray:

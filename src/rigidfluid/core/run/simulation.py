@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -288,7 +288,7 @@ class Simulation:
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self.stepper.counts = Counts(*(getattr(earlier, count.name) for count in fields(Counts)))
+        self.stepper.counts = Counts(earlier.rejected, earlier.unsettled, earlier.remeshes, earlier.failed_remeshes)
         self._elapsed_before, self._times = earlier.elapsed, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes

@@ -86,7 +86,7 @@ class TransferContract(FluidContract):
         assert energy == 0.0
 
     def test_bodies_set_in_motion_take_fluid_along(self, dimension: int) -> None:
-        """``initial``: rigid on the bodies, energy ½ ρ ∫ |u|², and no blow of pressure in the first step."""
+        """``initial``: rigid on the bodies, energy ½ ρ ∫ |u|², and no burst of pressure in the first step."""
         twist = np.random.default_rng(2).normal(size=(2, 3 if dimension == 2 else 6))
         pose = balls_pose(dimension)
         flow = self.with_balls(problem(dimension, bodies=2), twist=twist)
