@@ -58,6 +58,11 @@ class Ledger:
         return incoming - outgoing - (self.kinetic + self.contact - self.initial)
 
     @property
+    def put_in(self) -> float:
+        """What was stored at the start and what came in since, as far as more came in than went out the same way."""
+        return self.initial + sum(max(work, 0.0) for work in (self.gravity, self.boundary, self.control))
+
+    @property
     def relative_residual(self) -> float:
         """The residual over the energy that has passed through."""
         passed = max(abs(self.gravity) + abs(self.boundary) + abs(self.control), self.kinetic, self.initial)

@@ -24,7 +24,7 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 CLOSEST_APPROACH = 0.5
 """A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
 
-WIDEST_OPENING = 2.0
+WIDEST_OPENING = 1.5
 """A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
 
 
@@ -77,6 +77,7 @@ def attempt(
             advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
             contact_energy(system, contacts),
         ),
+        impact=state.impact,
         remesh_failed=state.remesh_failed,
     )
     return candidate, step

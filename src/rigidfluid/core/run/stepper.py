@@ -16,6 +16,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.errors import StepError, StepRejected
@@ -107,7 +108,7 @@ class Stepper:
             path = self._path(state, level, found)
             if level < self._clock.levels and self._changes_gaps_too_fast(state, path.pose):
                 raise _too_fast()
-        return replace(candidate, coupling=found), agreed
+        return replace(candidate, coupling=found, impact=impact_tick(state, path, candidate.tick)), agreed
 
     def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodyStep:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
@@ -128,14 +129,15 @@ class Stepper:
         return replace(path, pose=Pose(position, orientation))
 
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
-        """The longest step, of those proposed and shorter ones, that changes no gap too fast, and the way it takes."""
-        level = self.propose(state)
+        """The longest step, of those proposed and shorter ones, that changes no gap too fast and resolves its impacts,
+        and the way it takes."""
+        level = level_after_impact(state, self._clock, self.propose(state))
         while level < self._clock.levels:
             try:
                 path = self._path(state, level)
             except StepRejected:
                 break
-            if not self._changes_gaps_too_fast(state, path.pose):
+            if not (is_unresolved(state, path, level) or self._changes_gaps_too_fast(state, path.pose)):
                 return level, path
             level += 1
         return level, None

@@ -1,0 +1,40 @@
+"""How long a step may be in an impact that it does not resolve, and after one."""
+
+from __future__ import annotations
+
+from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.model.state import State
+from rigidfluid.core.run.clock import Clock
+
+TOLERATED = 3e-4
+"""What friction may take on the bodies' path of one step, over the energy put in since the start. Where it takes more,
+the step is halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
+
+FELT = 0.1
+"""Of what is tolerated: an impact that takes less leaves the fluid as it was."""
+
+HALVINGS = 3
+"""An impact halves a step so many times at most: it may last a millionth of it."""
+
+
+def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
+    """Whether a step of this ``level`` is to be halved for what an impact on its ``path`` would lose."""
+    return level < HALVINGS and path.friction > TOLERATED * state.ledger.put_in
+
+
+def impact_tick(state: State, path: BodyStep, end: int) -> int | None:
+    """The ``end`` of a step with an impact on its ``path``, and of other steps the end of the one before it."""
+    return end if path.friction > FELT * TOLERATED * state.ledger.put_in else state.impact
+
+
+def level_after_impact(state: State, clock: Clock, level: int) -> int:
+    """The first level, from ``level`` on, of a step not longer than the one before or half the time since an impact.
+
+    The layer that an impact leaves in the fluid decays over times as long as it is old.
+    """
+    if state.impact is None or state.past is None:
+        return level
+    longest = max(state.past.step, 0.5 * (clock.time(state.tick) - clock.time(state.impact)))
+    while level < clock.levels and clock.size(level) > longest:
+        level += 1
+    return level
