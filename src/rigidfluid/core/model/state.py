@@ -36,9 +36,9 @@ class State:
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
-    wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an impact
-    shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh could not be made
-    anew, None if it has not been tried.
+    wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
+    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh
+    could not be made anew, None if it has not been tried.
     """
 
     tick: int

@@ -32,9 +32,9 @@ def level_after_impact(state: State, clock: Clock, level: int) -> int:
 
     The layer that an impact leaves in the fluid decays over times as long as it is old.
     """
-    if state.impact is None or state.past is None:
+    if state.impact is None or state.level is None:
         return level
-    longest = max(state.past.step, 0.5 * (clock.time(state.tick) - clock.time(state.impact)))
-    while level < clock.levels and clock.size(level) > longest:
+    age = state.tick - state.impact
+    while level < state.level and 2 * clock.ticks(level) > age:
         level += 1
     return level

@@ -1,0 +1,72 @@
+"""Steps about impacts that they do not resolve: shorter ones in them, longer ones again as the fluid calms down."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import fluid_contacts as scenes
+import numpy as np
+import pytest
+
+from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.state import State
+from rigidfluid.core.run.impacts import HALVINGS, TOLERATED, impact_tick, is_unresolved, level_after_impact
+from rigidfluid.core.run.simulation import Simulation
+
+STEP = 4e-3
+PUT_IN = 2.0
+
+
+@pytest.fixture(scope="module")
+def run() -> Simulation:
+    """Until after the first impact of a thrown disk, and a while longer."""
+    simulation = Simulation(scenes.bounce(STEP))
+    simulation.go(0.02)
+    return simulation
+
+
+@pytest.fixture
+def state(run: Simulation) -> State:
+    ledger = Ledger(kinetic=1.0, contact=0.0, initial=0.5 * PUT_IN, gravity=0.5 * PUT_IN, boundary=-3.0)
+    return replace(run.state, ledger=ledger)
+
+
+def path(state: State, friction: float) -> BodyStep:
+    return BodyStep(state.pose, state.twist, nothing(state.pose), 0.0, 0.0, 1, friction)
+
+
+def test_what_comes_in_counts_as_put_in_and_what_goes_out_does_not(state):
+    assert state.ledger.put_in == PUT_IN
+
+
+def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
+    too_much, enough = path(state, 1.01 * TOLERATED * PUT_IN), path(state, 0.99 * TOLERATED * PUT_IN)
+    assert [is_unresolved(state, too_much, level) for level in range(HALVINGS + 1)] == [True] * HALVINGS + [False]
+    assert not is_unresolved(state, enough, 0)
+
+
+def test_an_impact_is_remembered_where_friction_took_a_tenth_of_that(state):
+    before = replace(state, impact=7)
+    assert impact_tick(before, path(state, 0.11 * TOLERATED * PUT_IN), 99) == 99
+    assert impact_tick(before, path(state, 0.09 * TOLERATED * PUT_IN), 99) == 7
+
+
+def test_steps_grow_no_faster_than_the_impact_ages(run, state):
+    clock, lately = run.clock, replace(state, level=3)
+
+    def level(age: int) -> int:
+        """Some steps of level 3 after the impact."""
+        return level_after_impact(replace(lately, impact=state.tick - age * clock.ticks(3)), clock, 0)
+
+    assert [level(age) for age in (0, 1, 2, 3, 4, 7, 8, 15, 16)] == [3, 3, 3, 3, 2, 2, 1, 1, 0]
+    assert level_after_impact(replace(lately, impact=None), clock, 0) == 0
+
+
+def test_a_run_goes_through_an_impact_by_short_steps(run):
+    times = run.history.energy["time"]
+    sizes, speed = np.diff(times), run.history.bodies["vy"]
+    hit = int(np.flatnonzero((speed[:-1] < 0.0) & (speed[1:] > 0.0))[0])
+    assert sizes[hit] <= STEP / 4.0
+    assert sizes[-1] == pytest.approx(STEP)
