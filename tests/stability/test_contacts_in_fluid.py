@@ -75,7 +75,7 @@ def dropped(step: float, stepping: Stepping) -> History:
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "off", "lost"), [(4.0, 0.1, 0.3), (2.0, 0.05, 0.15), (1.0, 0.02, 0.055)])
+@pytest.mark.parametrize(("step", "off", "lost"), [(4.0, 0.025, 0.05), (2.0, 0.01, 0.04), (1.0, 0.005, 0.025)])
 def test_a_dropped_disk_bounces_as_high_as_at_fine_steps(step, off, lost, stepping):
     history = dropped(step, stepping)
     assert created_and_lost(history)[1] <= lost
@@ -89,18 +89,14 @@ def test_a_dropped_disk_gains_nothing(step, created, stepping):
 
 
 @pytest.mark.parametrize(
-    ("step", "stepping", "created", "off"),
-    [
-        (4.0, "substeps", 0.03, 0.85),
-        (1.0, "substeps", 0.01, 0.15),
-        (4.0, "implicit", 0.03, 0.94),
-        (1.0, "implicit", 0.01, 0.19),
-    ],
+    ("step", "stepping", "lost"),
+    [(4.0, "substeps", 0.03), (1.0, "substeps", 0.01), (4.0, "implicit", 0.03), (1.0, "implicit", 0.01)],
 )
-def test_a_bounce(step, stepping, created, off):
+def test_a_bounce(step, stepping, lost):
+    """After two impacts it rises at 1.75 with steps of .25 ms."""
     history = rigidfluid.run(scenes.bounce(step * MILLISECOND, stepping))
-    refuse_imbalance(history, created)
-    assert history.bodies["vy"][-1] == pytest.approx(1.69, abs=off)
+    refuse_imbalance(history, 0.003, lost)
+    assert history.bodies["vy"][-1] == pytest.approx(1.75, abs=0.1)
 
 
 @pytest.mark.parametrize("density", [3.0, 0.2])
@@ -111,7 +107,7 @@ def test_a_cradle_gains_nothing_at_fine_steps(step, density):
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.03, 0.045, 0.1), (1.0, 0.01, 0.01, 0.04)])
+@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.001, 0.01, 0.07), (1.0, 0.001, 0.01, 0.02)])
 def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
     history = rigidfluid.run(scenes.cradle(step * MILLISECOND, stepping))
     refuse_imbalance(history, created, lost)
@@ -119,15 +115,12 @@ def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "lost", "off"), [(4.0, 0.13, 0.4), (1.0, 0.05, 0.4)])
-def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, off, stepping):
-    """Fluid that seems to flow through the disks' surfaces, as they turn back, would take 1.3 at the longer step.
-
-    At .25 ms they part at 6.40, of which .3 comes from a new mesh on the way, which these steps do not ask for.
-    """
+@pytest.mark.parametrize(("step", "lost"), [(4.0, 0.03), (1.0, 0.01)])
+def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, stepping):
+    """Fluid that seems to flow through the disks' surfaces, as they turn back, would take 1.3 at the longer step."""
     history = rigidfluid.run(scenes.head_on(step * MILLISECOND, stepping))
-    refuse_imbalance(history, 0.01, lost)
-    np.testing.assert_allclose(track(history, "vx")[-1], [-6.4, 6.4], atol=off)
+    refuse_imbalance(history, 0.003, lost)
+    np.testing.assert_allclose(track(history, "vx")[-1], [-6.4, 6.4], atol=0.06)
 
 
 @pytest.mark.parametrize("height", [0.19, 0.198, 0.206])
@@ -135,11 +128,11 @@ def test_rebounds_depend_little_on_when_in_its_step_the_impact_is(height):
     """Against those at .125 ms, of the fall."""
     fine = {0.19: 0.4950, 0.198: 0.5067, 0.206: 0.5236}
     scene = in_fluid(repulsion("substeps", 1e-9), heavy(0.4, height), end=0.07, step=4.0 * MILLISECOND)
-    assert first_rebound(rigidfluid.run(scene)) / (height - RADIUS) == pytest.approx(fine[height], rel=0.08)
+    assert first_rebound(rigidfluid.run(scene)) / (height - RADIUS) == pytest.approx(fine[height], rel=0.03)
 
 
 def test_disks_that_fall_onto_each_other_gain_nothing():
-    refuse_imbalance(run_until(scenes.stacked(4.0 * MILLISECOND), 0.12), 0.03)
+    refuse_imbalance(run_until(scenes.stacked(4.0 * MILLISECOND), 0.12), 0.003)
 
 
 @pytest.mark.parametrize("step", [10.0, 1.0])
@@ -158,14 +151,14 @@ def test_without_inertia_of_the_fluid_a_disk_sinks_onto_the_floor_and_stays():
     assert np.abs(track(history, "vy")).max() <= 1.02 * freely
 
 
-def test_a_disk_that_two_walls_squeeze_gains_nothing():
-    refuse_imbalance(rigidfluid.run(scenes.squeezed(4.0 * MILLISECOND)), 0.03)
+def test_a_disk_that_two_walls_squeeze_gains_and_loses_next_to_nothing():
+    refuse_imbalance(rigidfluid.run(scenes.squeezed(4.0 * MILLISECOND)), 0.003, 0.05)
 
 
-def test_a_film_opens_without_gaining_energy():
+def test_a_film_opens_and_keeps_its_energy():
     history = rigidfluid.run(scenes.film(4.0 * MILLISECOND))
-    refuse_imbalance(history, 0.03)
-    assert history.bodies["y"][-1] == pytest.approx(0.238, abs=0.016)
+    refuse_imbalance(history, 0.002, 0.06)
+    assert history.bodies["y"][-1] == pytest.approx(0.238, abs=0.008)
 
 
 # What each part is for: tests that fail when it is left out.
