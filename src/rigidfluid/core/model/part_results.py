@@ -45,25 +45,25 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose) -> N
         ("force", wrench.force, pose.position.shape),
         ("torque", wrench.torque, turning),
     ):
-        _refuse_shape(key, quantity, values, shape, "body")
+        refuse_shape(key, quantity, values, shape, "body")
         _refuse_lost_bodies(names, quantity, values, key)
     for quantity in ("kinetic_energy", "dissipation", "dissipation_midway", "boundary_power"):
         refuse_no_number("fluid", quantity, getattr(advance, quantity), key)
 
 
-def refuse_lost_forces(contacts: Contacts, force: FloatArray) -> None:
+def refuse_lost_forces(contacts: Contacts, force: FloatArray, key: str = "contact.law") -> None:
     """Raise an error unless a law's ``force`` (m, d) has a row of finite numbers for each contact."""
-    _refuse_shape("contact.law", "forces", force, contacts.normal.shape, "contact")
-    refuse_no_number("contacts", "force", force, "contact.law")
+    refuse_shape(key, "forces", force, contacts.normal.shape, "contact")
+    refuse_no_number("contacts", "force", force, key)
 
 
 def refuse_lost_contacts(contacts: Contacts, bodies: int, surfaces: int, dimension: int) -> None:
     """Raise an error unless a detector's contacts are finite, and between surfaces that there are."""
     key, count, vectors = "contact.detector", len(contacts), ("point_a", "point_b", "normal")
     for name in vectors:
-        _refuse_shape(key, name, getattr(contacts, name), (count, dimension), "contact")
+        refuse_shape(key, name, getattr(contacts, name), (count, dimension), "contact")
     for name in ("body_a", "body_b", "gap"):
-        _refuse_shape(key, name, getattr(contacts, name), (count,), "contact")
+        refuse_shape(key, name, getattr(contacts, name), (count,), "contact")
     if not _exist(contacts.body_a, contacts.body_b, bodies, surfaces):
         found = "a contact of surfaces that there are not"
         allowed = f"body_a from 0 to {bodies - 1}, body_b from 0 to {surfaces - 1}"
@@ -79,7 +79,8 @@ def _refuse_lost_bodies(names: Sequence[str], quantity: str, values: FloatArray,
         refuse_no_number(f"body {names[lost]}", quantity, values[lost], key)
 
 
-def _refuse_shape(key: str, quantity: str, found: Any, wanted: tuple[int, ...], owner: str) -> None:
+def refuse_shape(key: str, quantity: str, found: Any, wanted: tuple[int, ...], owner: str) -> None:
+    """Raise PluginError unless an array that a part gave has the shape ``wanted``, a row for each ``owner``."""
     shape = np.shape(found)
     if shape != wanted:
         raise PluginError(key, f"{quantity} of shape {shape}", f"{wanted}, a row for each {owner}", _remedy(key))
