@@ -176,6 +176,27 @@ def test_the_stiffness_on_the_way_sees_each_range() -> None:
     np.testing.assert_array_equal(greatest_stiffness(both, touching(0.0), np.zeros(1)), alone)
 
 
+def test_the_stiffness_on_the_way_is_not_that_further_in() -> None:
+    """Where a contact turns before it comes into the shorter range, that one's stiffness and what lies within are out."""
+    long, short = NormalLaw(NormalOptions(epsilon=1e-6), 0.1), NormalLaw(NormalOptions(epsilon=1e-9), 0.001)
+    both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", (), 2) for i, law in enumerate((short, long))])
+    deepest = np.full(1, 0.05)
+    np.testing.assert_array_equal(greatest_stiffness(both, touching(0.0), deepest), 2.0 * 0.05 / 1e-6)
+
+
+def test_a_fall_to_the_shortest_range_is_expected() -> None:
+    falling = {"body": [LEFT], "fluid": {"backend": "dry", "gravity": [0.0, -10.0]}}
+    one, two = (
+        build_system(scene_from_dict(tables(NORMAL, *more, **falling))) for more in ([], [NORMAL | {"range": 0.1}])
+    )
+    np.testing.assert_array_equal(two.loads.speed, one.loads.speed)
+
+
+def test_auto_is_told_of_the_wall_that_a_law_names() -> None:
+    rows = run(NORMAL | {"epsilon": "auto", "names": ["top"]}, end=1e-3).summary["auto_epsilon"]
+    assert [row["between"] for row in rows] == [["left_disk", "wall"]]
+
+
 def test_a_law_is_not_asked_for_contacts_of_others() -> None:
     class Picky(NormalLaw):
         def force(self, contacts: Contacts) -> np.ndarray:

@@ -93,5 +93,4 @@ def turning_gap(law: ForceLaw, contacts: Contacts, energy: FloatArray, weight: F
 def _grid(law: ForceLaw, contacts: Contacts) -> FloatArray:
     """Gaps (m, G) from contact to range; contact itself only where a law is defined there."""
     fractions = _FRACTIONS if law.overlap == "unbounded" else np.append(0.0, _FRACTIONS)
-    gaps = np.unique(np.concatenate([begin * fractions for begin in law.ranges]))
-    return np.tile(gaps, (len(contacts), 1))
+    return np.tile(law.range * fractions, (len(contacts), 1))

@@ -99,11 +99,9 @@ class SumOfLaws(ForceLaw):
         return self._sum(contacts, np.zeros_like(contacts.gap), lambda law, some, _: law.stiffness(some))
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
-        """What the dissipative laws add on ``body_a``, (m, d) [force]."""
+        """Σ of what the laws' dampers add on ``body_a``, (m, d) [force]."""
 
         def damping(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            if not law.dissipative:
-                return np.zeros_like(some.normal)
             return law.damping(some, Motion(motion.velocity[chosen], motion.mass[chosen]))
 
         return self._sum(contacts, np.zeros_like(contacts.normal), damping)
