@@ -177,7 +177,7 @@ def test_the_stiffness_on_the_way_sees_each_range() -> None:
 
 
 def test_the_stiffness_on_the_way_is_not_that_further_in() -> None:
-    """Where a contact turns before it comes into the shorter range, that one's stiffness and what lies within are out."""
+    """Where a contact turns before it comes into the shorter range, what lies within is out."""
     long, short = NormalLaw(NormalOptions(epsilon=1e-6), 0.1), NormalLaw(NormalOptions(epsilon=1e-9), 0.001)
     both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", (), 2) for i, law in enumerate((short, long))])
     deepest = np.full(1, 0.05)
