@@ -25,8 +25,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
-from rigidfluid.core.setup.parts import exact_detector
-from rigidfluid.registry import Registry
+from rigidfluid.core.setup.parts import known_parts
 
 
 @dataclass(frozen=True)
@@ -89,8 +88,7 @@ def check(scene: Scene) -> Report:
         If the scene cannot be built at all.
     """
     with no_exit():
-        system = build_system(scene)
-        detector = exact_detector(system.bodies, Registry.load())
+        system, detector = build_system(scene), known_parts(scene).exact_detector
         start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
         return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))

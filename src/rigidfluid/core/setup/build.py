@@ -27,7 +27,7 @@ from rigidfluid.core.setup.boundary import conditions, face_planes, faces
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
-from rigidfluid.core.setup.parts import Parts, select_plugins
+from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
 
@@ -52,7 +52,7 @@ def build_system(scene: Scene) -> System:
     SceneError
         If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
     """
-    parts, boundary = select_plugins(scene), conditions(scene)
+    parts, boundary = known_parts(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
     pose = _initial_pose(scene)

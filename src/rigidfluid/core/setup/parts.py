@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -21,6 +22,10 @@ P = TypeVar("P", bound=Part)
 
 AUTO = "auto"
 """What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+
+
+_KNOWN: dict[int, Parts] = {}
+"""Of the scenes that exist, by their id."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,27 @@ def select_plugins(scene: Scene) -> Parts:
     exact = exact_detector(bodies, registry)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
     return Parts(backend, bodies, found, chosen, why, exact)
+
+
+def known_parts(scene: Scene) -> Parts:
+    """The parts of a scene, selected and built when they are first asked for, and known as long as the scene is.
+
+    They are known of this very object: an equal scene may have been read where other plug-ins were installed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables hold the options of the parts beside their own keys.
+
+    Returns
+    -------
+    Parts
+        As `select_plugins` gives them, which also raises.
+    """
+    if id(scene) not in _KNOWN:
+        _KNOWN[id(scene)] = select_plugins(scene)
+        weakref.finalize(scene, _KNOWN.pop, id(scene))
+    return _KNOWN[id(scene)]
 
 
 def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
