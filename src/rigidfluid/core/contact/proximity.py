@@ -48,7 +48,7 @@ def refuse_overlap(surface: str, gap: float) -> None:
             f"body {surface}",
             f"a gap of {gap:.3e}",
             "a positive gap to every other surface",
-            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
+            "Strengthen the contact force, widen its range or refine mesh.size_body.",
         )
 
 
