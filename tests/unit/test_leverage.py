@@ -61,7 +61,7 @@ def test_substeps_are_as_short_as_the_leverage_asks(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_point_that_gives_way_easily_may_hit_with_more_speed() -> None:
-    """A contact is then met with more energy: `barrier` is exponentially stiff in that, and its ε takes but a factor."""
+    """A contact is then met with more energy, in which `barrier` is exponentially stiff."""
     counts = []
     law = {"law": "barrier", "range": 0.05, "epsilon": 3e-2}
     disk = ball([0.5, 0.13], [0.0, -1.0], type="ellipsoid", semi_axes=[0.1, 0.09])
