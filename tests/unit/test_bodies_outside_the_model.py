@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.contact.contact_path import follow
+from rigidfluid.core.contact.contact_path import follow, near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
@@ -31,13 +32,13 @@ BODY: dict[int, dict[str, Any]] = {
 }
 
 
-def moving(dimension: int) -> System:
+def moving(dimension: int, gravity: float = 0.0) -> System:
     """An ellipse or ellipsoid aslant, far from all walls."""
     return build_system(
         scene_from_dict(
             {
                 "scene": {"name": "outside", "dimension": dimension},
-                "fluid": {"density": 2.0, "viscosity": 0.1},
+                "fluid": {"density": 2.0, "viscosity": 0.1, "gravity": [gravity] + [0.0] * (dimension - 1)},
                 "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
                 "body": [{"type": "ellipsoid", "density": 3.0, "position": [0.5] * dimension} | BODY[dimension]],
                 "contact": {"law": "normal", "range": 0.02, "epsilon": 1e-6},
@@ -101,3 +102,15 @@ def test_what_contacts_gave_in_the_latest_step_does_not_go_on(dimension: int) ->
         (end.twist.angular_velocity, system.twist.angular_velocity, angular),
     ):
         np.testing.assert_allclose(found, kept, rtol=0, atol=1e-6 * STEP * np.abs(given).max())
+
+
+def test_contacts_that_weight_can_close_in_a_step_are_near() -> None:
+    """From rest, by twice the size of the step times what weight can make of the speed in it."""
+    system = moving(2, gravity=-1000.0)
+    at_rest = Twist(np.zeros((1, 2)), np.zeros((1, 1)))
+    state = replace(state_after(system, at_rest, Wrench(np.zeros((1, 2)), np.zeros((1, 1)))), twist=at_rest, past=None)
+    left = state.contacts.body_b == 1
+    pull = abs(accelerations(system, system.weight[0], np.zeros(1))[0])
+    needed = np.sqrt((state.contacts.gap[left][0] - 0.02) / (2.0 * np.linalg.norm(pull)))
+    assert len(near_contacts(system, state, 0.99 * needed)) == 0
+    assert near_contacts(system, state, 1.01 * needed).body_b.tolist() == [1, 2]  # left and right alike
