@@ -1,15 +1,11 @@
 """Refuses results of parts that no run may go on with: no numbers, or arrays that would be read beyond their end."""
 
-# numba compiles for the types that come; annotations would be a second, unchecked signature.
-# mypy: disallow-untyped-defs=False
-
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Pose
 from rigidfluid.errors import PluginError, StepRejected
@@ -57,22 +53,6 @@ def refuse_lost_forces(contacts: Contacts, force: FloatArray, key: str = "contac
     refuse_no_number("contacts", "force", force, key)
 
 
-def refuse_lost_contacts(contacts: Contacts, bodies: int, surfaces: int, dimension: int) -> None:
-    """Raise an error unless a detector's contacts are finite, and between surfaces that there are."""
-    key, count, vectors = "contact.detector", len(contacts), ("point_a", "point_b", "normal")
-    for name in vectors:
-        refuse_shape(key, name, getattr(contacts, name), (count, dimension), "contact")
-    for name in ("body_a", "body_b", "gap"):
-        refuse_shape(key, name, getattr(contacts, name), (count,), "contact")
-    if not _exist(contacts.body_a, contacts.body_b, bodies, surfaces):
-        found = "a contact of surfaces that there are not"
-        allowed = f"body_a from 0 to {bodies - 1}, body_b from 0 to {surfaces - 1}"
-        raise PluginError(key, found, allowed, _remedy(key))
-    if not _finite(contacts.gap, contacts.point_a, contacts.point_b, contacts.normal):
-        for name in ("gap", *vectors):
-            refuse_no_number("contacts", name, getattr(contacts, name), key)
-
-
 def _refuse_lost_bodies(names: Sequence[str], quantity: str, values: FloatArray, key: str) -> None:
     if not np.isfinite(values).all():
         lost = int(np.argmin(np.isfinite(values).all(axis=1)))
@@ -83,28 +63,9 @@ def refuse_shape(key: str, quantity: str, found: Any, wanted: tuple[int, ...], o
     """Raise PluginError unless an array that a part gave has the shape ``wanted``, a row for each ``owner``."""
     shape = np.shape(found)
     if shape != wanted:
-        raise PluginError(key, f"{quantity} of shape {shape}", f"{wanted}, a row for each {owner}", _remedy(key))
+        raise PluginError(key, f"{quantity} of shape {shape}", f"{wanted}, a row for each {owner}", remedy(key))
 
 
-def _remedy(key: str) -> str:
+def remedy(key: str) -> str:
+    """What to do about a part that gives arrays that none should give."""
     return f"Mend the part that {key} names; its contract test in rigidfluid.testing shows more."
-
-
-@njit(cache=True)
-def _exist(body_a, body_b, bodies, surfaces):
-    missing = 0
-    for i in range(len(body_a)):
-        missing += not (0 <= body_a[i] < bodies and 0 <= body_b[i] < surfaces)
-    return missing == 0
-
-
-@njit(cache=True)
-def _finite(gap, *vectors):
-    """In one loop, as a detector is asked in every substep."""
-    lost = 0
-    for i in range(len(gap)):
-        lost += not np.isfinite(gap[i])
-        for vector in vectors:
-            for k in range(vector.shape[1]):
-                lost += not np.isfinite(vector[i, k])
-    return lost == 0
