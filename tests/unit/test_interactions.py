@@ -352,6 +352,6 @@ def test_what_a_scene_switches_on_says_where() -> None:
     )
     (forces,) = (one for one in report.features if one.name == "contact forces")
     wanted = (
-        "law 'normal' below a gap of 0.02 at walls; law 'lubrication' below a gap of 0.01 of left_disk and right_disk"
+        "law 'normal' below a gap of 0.02 at walls; law 'lubrication' below a gap of 0.01 (left_disk and right_disk)"
     )
     assert forces.why == wanted

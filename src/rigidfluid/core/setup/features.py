@@ -83,7 +83,7 @@ def _law(system: System, interaction: Interaction) -> str:
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)
-    return f"{text} of {names}" if names else text
+    return f"{text} ({names})" if names else text
 
 
 def _measured(reach: float) -> Feature:
