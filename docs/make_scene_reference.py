@@ -53,7 +53,8 @@ def _parts() -> Iterator[str]:
 
 def _named(entry: Entry) -> str:
     table, _, key = entry.kind.field.partition(".")
-    return f'[{table}] {key} = "{entry.name}"'.replace("[body]", "[[body]]")
+    place = {"body": "[[body]]", "contact.law": "[contact] or [[interaction]]"}
+    return f'{place.get(entry.kind.field, place.get(table, f"[{table}]"))} {key} = "{entry.name}"'
 
 
 def _table(schema: Schema) -> str:

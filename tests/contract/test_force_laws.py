@@ -3,6 +3,7 @@ import pytest
 from touching import unstacked
 
 from rigidfluid.core.contact.repulsion import Repulsion
+from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
@@ -39,6 +40,21 @@ class TestSpringDashpot(ForceLawContract):
     )
     def law(self, request: pytest.FixtureRequest) -> ForceLaw:
         return SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, **request.param), RANGE)
+
+
+class TestSum(ForceLawContract):
+    """Laws for all contacts, walls, pairs and one pair, side by side, of different ranges."""
+
+    @pytest.fixture(params=["repulsions", "beside dampers"])
+    def law(self, request: pytest.FixtureRequest) -> ForceLaw:
+        normal = NormalLaw(NormalLaw.Options(epsilon=5e-6), RANGE)
+        if request.param == "repulsions":
+            laws = (normal, "all", ()), (CentreLaw(CentreLaw.Options(epsilon=2e-6), 0.63 * RANGE), "walls", ())
+        else:
+            film = LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), 0.63 * RANGE)
+            spring = SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, restitution=0.6, friction=0.4), RANGE)
+            laws = (normal, "all", ()), (film, "pairs", ()), (spring, "all", (0, 1))
+        return SumOfLaws([Interaction("interaction", *law, bodies=2) for law in laws])
 
 
 class TestLubrication(ForceLawContract):

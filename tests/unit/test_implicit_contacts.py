@@ -171,6 +171,20 @@ def test_a_driven_body_pushes_and_takes_no_push():
     assert history.summary["energy"]["control"] == pytest.approx(0.5 * MASS * 4.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("stepping", [{"stepping": "implicit"}, {"stepping": "substeps"}])
+def test_what_turns_a_paddle_works_against_its_contacts(stepping):
+    """All that the ball has in the end came by the drive, which turns and does not move."""
+    paddle = {"type": "ellipsoid", "semi_axes": [0.15, 0.04], "prescribed": {"angular_velocity": 20.0}}
+    paddle |= {"position": [0.4, 0.5], "density": 1.0}
+    struck = ball([0.5, 0.66], [0.0, 0.0])
+    history = rigidfluid.run(
+        implicit({"law": "normal", "epsilon": 1e-6} | stepping, paddle, struck, end=0.05, step=1e-3)
+    )
+    energy = history.energy
+    assert energy["kinetic"][-1] > 1e-3
+    assert energy["control"][-1] == pytest.approx(energy["kinetic"][-1] + energy["contact"][-1], rel=1e-3)
+
+
 def test_a_pair_that_was_not_foreseen_rejects_the_step():
     pair = [ball([x, 0.5], [0.0, 0.0]) for x in (0.25, 0.75)]
     system = build_system(implicit(spring(1e4), *pair, end=0.1, step=0.01))

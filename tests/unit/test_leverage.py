@@ -60,6 +60,19 @@ def test_substeps_are_as_short_as_the_leverage_asks(monkeypatch: pytest.MonkeyPa
     assert counts[1] > 1.5 * counts[0]
 
 
+def test_a_point_that_gives_way_easily_may_hit_with_more_speed() -> None:
+    """A contact is then met with more energy, in which `barrier` is exponentially stiff."""
+    counts = []
+    law = {"law": "barrier", "range": 0.05, "epsilon": 3e-2}
+    disk = ball([0.5, 0.13], [0.0, -1.0], type="ellipsoid", semi_axes=[0.1, 0.09])
+    del disk["radius"]
+    simulation = Simulation(dry_scene(law, disk, end=0.1, step=0.01), None, False)
+    for leverage in (5.0, 22.0):
+        system = replace(simulation.system, leverage=np.array([leverage]))
+        counts.append(contact_path.follow(system, simulation.state, 0.0, 0.01, None).substeps)
+    assert counts[1] > 8 * counts[0]
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_other_shapes_drag_along_at_least_what_a_ball_of_their_volume_does(dimension: int) -> None:
     points = np.eye(dimension)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import copy
 import tomllib
+import weakref
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +14,22 @@ import jsonschema
 import numpy as np
 import pytest
 
+import rigidfluid
 from rigidfluid import load_scene
+from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.checks import check
 from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 
 SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*.toml"))
+DRY = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
 
 DISK = {
     "scene": {"name": "disk", "dimension": 2},
@@ -374,11 +383,29 @@ def test_system_in_2d() -> None:
     assert not system.controlled.any()
 
 
-def test_a_system_is_built_from_one_look_at_the_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene, loads, load = scene_from_dict(DISK), [], Registry.load
-    monkeypatch.setattr(Registry, "load", lambda: loads.append(1) or load())
-    build_system(scene)
-    assert len(loads) == 1
+@pytest.mark.parametrize("work", [rigidfluid.run, check, build_system], ids=lambda work: work.__name__)
+def test_plug_ins_are_looked_up_once_and_each_body_is_built_once(
+    work: Callable[[Scene], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts: Counter[str] = Counter()
+
+    def counted(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda *given: counts.update([name]) or function(*given)
+
+    monkeypatch.setattr(Registry, "load", counted("lookups", Registry.load))
+    monkeypatch.setattr(Sphere, "__init__", counted("bodies", Sphere.__init__))
+    work(load_scene(DRY, ["time.end=2e-5", "output.every=2e-5"]))
+    assert counts == {"lookups": 1, "bodies": 2}
+
+
+def test_an_equal_scene_has_parts_of_its_own() -> None:
+    """It may have been read where other plug-ins were installed; and what no scene has is not kept."""
+    one, other = scene_from_dict(DISK), scene_from_dict(DISK)
+    assert known_parts(one) is known_parts(one)
+    assert known_parts(other).bodies[0] is not known_parts(one).bodies[0]
+    kept = weakref.ref(known_parts(other).bodies[0])
+    del other
+    assert kept() is None
 
 
 def test_system_in_3d() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from rigidfluid.core.contact.loads import (
 )
 from rigidfluid.core.contact.meetings import body_meetings, free, kinds, representatives, wall_meetings
 from rigidfluid.core.contact.stiffness import greatest_stiffness
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, Wall
@@ -33,9 +36,11 @@ class Encounters:
     ``weight`` (m,) presses the two together at rest [force], ``speed`` (m,) is that of the approach [length/time] and
     ``pair_energy`` (m,) its energy [energy]; ``stacked_weight`` (m,) and ``energy`` (m,) are the same with the bodies
     that may come to press on the contact. ``inverse_mass`` (m,) [1/mass]; ``kind`` is equal for bodies that are alike.
+    The same ``interactions`` act in all of them, together as the ``law``.
     """
 
     system: System
+    interactions: tuple[Interaction, ...]
     law: ForceLaw
     at_walls: bool
     contacts: Contacts
@@ -55,6 +60,10 @@ class Encounters:
         """The greatest on the way to the turning gaps (m,) [force/length]."""
         return greatest_stiffness(self.law, self.contacts, self.turning_gaps())
 
+    def smallest_gap(self) -> float | None:
+        """The largest that the scene asks for in these contacts, None if it asks for none [length]."""
+        return max((one.smallest_gap for one in self.interactions if one.smallest_gap is not None), default=None)
+
     def names(self, row: int) -> tuple[str, str]:
         """Of the two surfaces."""
         surfaces = self.system.surfaces
@@ -70,31 +79,65 @@ class Encounters:
         return list(first.values())[:MOST_SHOWN]
 
 
-def encounters(system: System, law: ForceLaw) -> Iterator[Encounters]:
+class Meetings(NamedTuple):
+    """Contacts made up of bodies ``at_walls`` or with each other in which the same ``interactions`` act; none is where
+    there are walls or pairs that no law keeps apart. ``pressing`` (m,): the part of the weight that acts across [1]."""
+
+    at_walls: bool
+    interactions: tuple[Interaction, ...]
+    contacts: Contacts
+    pressing: FloatArray
+
+
+def meetings(system: System) -> Iterator[Meetings]:
     """Of bodies with the wall that their weight presses them on, or else any wall; and with each other.
 
     Parameters
     ----------
     system : System
-        Bodies, walls and loads.
-    law : ForceLaw
-        Its law.
+        Bodies, walls and interactions.
+
+    Yields
+    ------
+    Meetings
+        For walls, and then for bodies, one for each set of interactions that act together.
+    """
+    bodies = representatives(system)
+    moving = free(system, bodies)
+    if system.walls and moving:
+        contacts = wall_meetings(system, moving, [_pressing(system, body) for body in moving])
+        yield from _by_interactions(system, True, contacts, _pressing_share(system, moving, contacts))
+    contacts = body_meetings(system, bodies)
+    if len(contacts):
+        yield from _by_interactions(system, False, contacts, np.ones(len(contacts)))
+
+
+def encounters(system: System) -> Iterator[Encounters]:
+    """The meetings in which a law with an energy acts, with all that is expected of them.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, walls, loads and interactions.
 
     Yields
     ------
     Encounters
-        One that is not empty for walls, and one for bodies.
+        As `meetings` gives them.
     """
-    bodies = representatives(system)
     kind = {body: number for number, alike in enumerate(kinds(system)) for body in alike}
-    moving = free(system, bodies)
-    if system.walls and moving:
-        walls = [_pressing(system, body) for body in moving]
-        contacts = wall_meetings(system, moving, walls)
-        yield _encounters(system, law, True, contacts, _pressing_share(system, moving, contacts), kind)
-    contacts = body_meetings(system, bodies)
-    if len(contacts):
-        yield _encounters(system, law, False, contacts, np.ones(len(contacts)), kind)
+    for met in meetings(system):
+        law = acting_together(met.interactions)
+        if law is not None and law.conservative:
+            yield _encounters(system, law, met, kind)
+
+
+def _by_interactions(system: System, at_walls: bool, contacts: Contacts, pressing: FloatArray) -> Iterator[Meetings]:
+    acts = np.array([interaction.acts_in(contacts) for interaction in system.interactions]).reshape(-1, len(contacts))
+    for acting in dict.fromkeys(map(tuple, acts.T.tolist())):
+        here = np.all(acts == np.array(acting)[:, None], axis=0)
+        together = tuple(one for one, acting_here in zip(system.interactions, acting, strict=True) if acting_here)
+        yield Meetings(at_walls, together, select(contacts, here), pressing[here])
 
 
 def _pressing(system: System, body: int) -> Wall:
@@ -109,23 +152,16 @@ def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> Fl
     return share
 
 
-def _encounters(
-    system: System,
-    law: ForceLaw,
-    at_walls: bool,
-    contacts: Contacts,
-    pressing: FloatArray,
-    kind: Mapping[int, int],
-) -> Encounters:
-    """``pressing`` (m,) is the part of the weight that acts across each contact [1]."""
-    loads = system.loads
+def _encounters(system: System, law: ForceLaw, met: Meetings, kind: Mapping[int, int]) -> Encounters:
+    loads, contacts = system.loads, met.contacts
     return Encounters(
         system=system,
+        interactions=met.interactions,
         law=law,
-        at_walls=at_walls,
+        at_walls=met.at_walls,
         contacts=contacts,
-        weight=pressing * held_weight(contacts, loads),
-        stacked_weight=pressing * stacked_weight(contacts, loads),
+        weight=met.pressing * held_weight(contacts, loads),
+        stacked_weight=met.pressing * stacked_weight(contacts, loads),
         pair_energy=pair_energy(contacts, loads),
         energy=impact_energy(contacts, loads),
         speed=closing_speed(contacts, loads),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rigidfluid.checks.encounters import meetings
 from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.core.contact.meetings import free, kinds
 from rigidfluid.core.contact.strength import chosen_strengths
@@ -25,16 +26,32 @@ def by_a_law(system: System) -> Iterator[Finding]:
     Yields
     ------
     Finding
-        One where nothing repels: a warning in a fluid, whose film also brakes, and an error without.
+        One where nothing repels: a warning in a fluid, whose film also brakes, and an error without. A warning for
+        walls or pairs that no law with an energy acts in, where there is such a law elsewhere.
     """
     moving = [i for i in free(system, range(len(system.bodies))) if _moves(system, i)]
-    if not moving or (system.law is not None and system.law.conservative):
+    if not moving:
+        return
+    if system.law is not None and system.law.conservative:
+        yield from _lawless(system)
         return
     text = "nothing keeps bodies apart"
-    text += ": the scene names no law" if system.law is None else f": law {system.law.name!r} only takes energy out"
+    laws = " and ".join(repr(interaction.law.name) for interaction in system.interactions)
+    text += f": law {laws} only takes energy out" if laws else ": the scene names no law"
     grade: Grade = "warning" if system.backend.needs_mesh else "error"
     remedy = 'Set contact.law = "normal", contact.range and contact.epsilon = "auto".'
     yield Finding(grade, "law", (system.surfaces[moving[0]],), text, remedy, {"moving_bodies": len(moving)})
+
+
+def _lawless(system: System) -> Iterator[Finding]:
+    for met in meetings(system):
+        if not any(interaction.law.conservative for interaction in met.interactions):
+            names = system.surfaces[met.contacts.body_a[0]], system.surfaces[met.contacts.body_b[0]]
+            laws = " and ".join(interaction.field for interaction in met.interactions)
+            text = f"nothing keeps {names[0]} and {names[1]} apart: "
+            text += f"{laws} only takes energy out" if laws else "no law acts between them"
+            remedy = "Add an [[interaction]] for them, or mean it."
+            yield Finding("warning", "law", names, text, remedy, {"pairs": len(met.contacts)})
 
 
 def by_walls(system: System) -> Iterator[Finding]:

@@ -17,15 +17,13 @@ _SLACK = 0.8
 """An impact may end at this share of the smallest gap wanted."""
 
 
-def on_impact(met: Encounters, wanted: float | None) -> Iterator[Finding]:
+def on_impact(met: Encounters) -> Iterator[Finding]:
     """Compare what the law stores up to contact with the energy of the impact, that of a stack if need be, + W range.
 
     Parameters
     ----------
     met : Encounters
         The bodies, with a wall or with each other.
-    wanted : float or None
-        The smallest gap that the scene asks for [length].
 
     Yields
     ------
@@ -41,6 +39,7 @@ def on_impact(met: Encounters, wanted: float | None) -> Iterator[Finding]:
     for row in met.worst(-share):
         if work[row] > 0.0:
             yield _finding(met, row, float(share[row]), bool(stops_two[row]), float(gaps[row]))
+    wanted = met.smallest_gap()
     if wanted is not None:
         yield from _too_near(met, gaps, wanted)
 
@@ -54,7 +53,7 @@ def _finding(met: Encounters, row: int, share: float, stops_two: bool, gap: floa
         text = f"{fast} is stopped at a gap of {figure(gap)}, if nothing else brakes it"
         return Finding("note", QUESTION, met.names(row), text, found=found)
     text = f"{fast}: up to contact the law takes up only {figure(share)} of the impact"
-    enough, remedy = stronger(met.law, met.at_walls, share)
+    enough, remedy = stronger(met, share)
     braked = met.system.backend.needs_mesh or met.law.dissipative
     if braked:
         text += (
@@ -70,7 +69,7 @@ def _too_near(met: Encounters, gaps: FloatArray, wanted: float) -> Iterator[Find
     stored = energy_along(met.law, met.contacts, np.full((len(gaps), 1), wanted))[:, 0]
     for row in met.worst(-gaps):
         if gaps[row] < _SLACK * wanted:
-            enough, remedy = stronger(met.law, met.at_walls, float(stored[row] / needed[row]))
+            enough, remedy = stronger(met, float(stored[row] / needed[row]))
             pair = " and ".join(met.names(row))
             text = f"{pair} may come as near as {figure(gaps[row])}, and smallest_gap is {figure(wanted)}"
             found = _figures(met, row, float(gaps[row]))

@@ -8,25 +8,26 @@ import numpy as np
 
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.contact.loads import impact_energy
-from rigidfluid.core.contact.meetings import free, kinds
-from rigidfluid.core.contact.proximity import interacting
+from rigidfluid.core.contact.meetings import free, kinds, wall_meetings
+from rigidfluid.core.contact.proximity import of_different_bodies
 from rigidfluid.core.mechanics.shapes import inscribed_radius
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import Body, ForceLaw
+from rigidfluid.core.model.interactions import Interaction
+from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.scene import MeshTable
 
 
-def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Finding]:
+def at_the_start(system: System, interaction: Interaction, start: Contacts) -> Iterator[Finding]:
     """Which surfaces are within range at the start, and whether what is stored there drives them apart like an impact.
 
     Parameters
     ----------
     system : System
         Bodies and loads.
-    law : ForceLaw
-        Its law.
+    interaction : Interaction
+        One of its laws.
     start : Contacts
         Of the bodies and all faces at the start.
 
@@ -36,8 +37,9 @@ def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Fin
         One, of the pair that stores most; a warning where that is more than the expected impact.
     """
     repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
+    law = interaction.law
     near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
-    near = select(near, interacting(system, near))
+    near = select(near, of_different_bodies(system, near) & interaction.acts_in(near))
     if len(near) == 0:
         return
     stored, impact = law.energy(near), impact_energy(near, system.loads)
@@ -50,19 +52,21 @@ def at_the_start(system: System, law: ForceLaw, start: Contacts) -> Iterator[Fin
         yield Finding("note", "start", names, text, found=found)
         return
     text += f", which stores {figure(energy)}: more than the expected impact of {figure(impact[most])}"
-    remedy = f"Move them apart by {figure(law.range - gap)}, or set contact.range to {at_most(gap)} or less."
+    remedy = (
+        f"Move them apart by {figure(law.range - gap)}, or set {interaction.field}.range to {at_most(gap)} or less."
+    )
     yield Finding("warning", "start", names, text, remedy, found, {"range": gap})
 
 
-def between_walls(system: System, law: ForceLaw) -> Iterator[Finding]:
+def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]:
     """Whether a body midway between opposite walls is free of both.
 
     Parameters
     ----------
     system : System
         Bodies and walls.
-    law : ForceLaw
-        Its law.
+    interaction : Interaction
+        One of its laws.
 
     Yields
     ------
@@ -76,11 +80,13 @@ def between_walls(system: System, law: ForceLaw) -> Iterator[Finding]:
             continue
         width = float(system.upper[axis] - system.lower[axis])
         for kind in kinds(system):
-            if free(system, kind):
-                yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, law.range)
+            both = wall_meetings(system, kind[:1] * 2, [walls[name] for name in pair])
+            if free(system, kind) and interaction.acts_in(both).all():
+                yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, interaction)
 
 
-def _between(name: str, body: Body, pair: list[str], width: float, law_range: float) -> Iterator[Finding]:
+def _between(name: str, body: Body, pair: list[str], width: float, interaction: Interaction) -> Iterator[Finding]:
+    law_range = interaction.law.range
     least, most = 0.5 * width - body.bounding_radius, 0.5 * width - inscribed_radius(body)
     if law_range <= least:
         return
@@ -88,19 +94,20 @@ def _between(name: str, body: Body, pair: list[str], width: float, law_range: fl
     always = law_range > most
     text = f"midway between {pair[0]} and {pair[1]} {name} has gaps of {figure(least)} to {figure(most)}"
     text += ", so that both act in every place" if always else ", so that at some angles both act in every place"
-    remedy = f"Set contact.range to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the box."
+    key = f"{interaction.field}.range"
+    remedy = f"Set {key} to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the box."
     yield Finding("warning" if always else "note", "free-gap", (name, *pair), text, remedy, found, {"range": least})
 
 
-def beside_sizes(system: System, law: ForceLaw, mesh: MeshTable | None) -> Iterator[Finding]:
+def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | None) -> Iterator[Finding]:
     """Compare the range with the smallest body and with the cells on the bodies.
 
     Parameters
     ----------
     system : System
         Bodies.
-    law : ForceLaw
-        Its law.
+    interaction : Interaction
+        One of its laws.
     mesh : MeshTable or None
         Sizes of the cells, if there are any.
 
@@ -109,14 +116,15 @@ def beside_sizes(system: System, law: ForceLaw, mesh: MeshTable | None) -> Itera
     Finding
         Warnings alone.
     """
+    law, key = interaction.law, f"{interaction.field}.range"
     smallest = min((kind[0] for kind in kinds(system)), key=lambda body: inscribed_radius(system.bodies[body]))
     name, size = system.surfaces[smallest], inscribed_radius(system.bodies[smallest])
     if law.range > size:
         text = f"the law reaches {figure(law.range)}, further than {name} is thick, {figure(size)} from its centre"
-        remedy, found = f"Set contact.range to {at_most(size)} or less.", {"range": law.range, "inscribed_radius": size}
+        remedy, found = f"Set {key} to {at_most(size)} or less.", {"range": law.range, "inscribed_radius": size}
         yield Finding("warning", "range", (name,), text, remedy, found, {"range": size})
     if mesh is not None and law.range < mesh.size_body:
         text = f"the law begins at {figure(law.range)}, within one cell of {figure(mesh.size_body)}"
-        remedy = f"Set mesh.size_body to {at_most(law.range)} or less, or widen contact.range."
+        remedy = f"Set mesh.size_body to {at_most(law.range)} or less, or widen {key}."
         found = {"range": law.range, "size_body": mesh.size_body}
         yield Finding("warning", "range", (), text, remedy, found, {"size_body": law.range})

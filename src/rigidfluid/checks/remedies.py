@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rigidfluid.checks.encounters import Encounters
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
-from rigidfluid.core.model.interfaces import ForceLaw
 
 
-def stronger(law: ForceLaw, at_walls: bool, share: float) -> tuple[Mapping[str, float], str]:
-    """How to make a law strong enough that gives only a ``share`` < 1 of what is needed.
+def stronger(met: Encounters, share: float) -> tuple[Mapping[str, float], str]:
+    """How to make laws strong enough that give only a ``share`` < 1 of what is needed.
 
     Parameters
     ----------
-    law : ForceLaw
-        The law; where it has a stiffness parameter ε, its force is proportional to 1/ε.
-    at_walls : bool
-        Whether it is too weak at walls, or between bodies.
+    met : Encounters
+        Where they are too weak; a law with a stiffness parameter ε has a force proportional to 1/ε.
     share : float
         What it gives over what is needed [1].
 
@@ -30,11 +28,16 @@ def stronger(law: ForceLaw, at_walls: bool, share: float) -> tuple[Mapping[str, 
     if share <= 0.0:
         return {}, "Take a law that repels up to contact."
     enough = {"strength": 1.0 / share}
+    repelling = [interaction for interaction in met.interactions if interaction.law.conservative]
+    if len(repelling) > 1:
+        fields = " and ".join(interaction.field for interaction in repelling)
+        return enough, f"Make the laws of {fields} {at_least(1.0 / share)} times as strong, or widen their ranges."
+    law, field = repelling[0].law, repelling[0].field
     if not isinstance(law, Repulsion):
         return enough, f"Make the law {at_least(1.0 / share)} times as strong, or widen its range."
-    given = law.options.epsilon_wall if at_walls and law.options.epsilon_wall else law.options.epsilon
+    given = law.options.epsilon_wall if met.at_walls and law.options.epsilon_wall else law.options.epsilon
     if given == AUTO:
-        return enough, "Widen contact.range, or raise contact.smallest_gap."
-    key = "epsilon_wall" if at_walls else "epsilon"
+        return enough, f"Widen {field}.range, or raise {field}.smallest_gap."
+    key = "epsilon_wall" if met.at_walls else "epsilon"
     enough[key] = float(given) * share
-    return enough, f'Set contact.{key} to {at_most(enough[key])} or less, or to "auto".'
+    return enough, f'Set {field}.{key} to {at_most(enough[key])} or less, or to "auto".'

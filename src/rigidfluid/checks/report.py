@@ -25,8 +25,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
-from rigidfluid.core.setup.parts import exact_detector
-from rigidfluid.registry import Registry
+from rigidfluid.core.setup.parts import known_parts
 
 
 @dataclass(frozen=True)
@@ -89,8 +88,7 @@ def check(scene: Scene) -> Report:
         If the scene cannot be built at all.
     """
     with no_exit():
-        system = build_system(scene)
-        detector = exact_detector(system.bodies, Registry.load())
+        system, detector = build_system(scene), known_parts(scene).exact_detector
         start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
         return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
@@ -99,19 +97,16 @@ def check(scene: Scene) -> Report:
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
-    law, mesh = system.law, scene.mesh if system.backend.needs_mesh else None
-    if law is None:
-        return
-    if law.conservative:
-        for met in encounters(system, law):
-            yield from chain(at_rest(met), under_a_stack(met))
-            yield from chain(on_impact(met, scene.contact.smallest_gap), in_steps(met, scene.time))
-            if mesh is not None:
-                yield from in_the_gap(met, mesh)
-            if mesh is not None and system.backend.problem is not None:
-                yield from in_the_fluid(met, system.backend.problem, scene.time.step)
-    yield from at_the_start(system, law, start)
-    yield from chain(between_walls(system, law), beside_sizes(system, law, mesh))
+    mesh = scene.mesh if system.backend.needs_mesh else None
+    for met in encounters(system):
+        yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
+        if mesh is not None:
+            yield from in_the_gap(met, mesh)
+        if mesh is not None and system.backend.problem is not None:
+            yield from in_the_fluid(met, system.backend.problem, scene.time.step)
+    for interaction in system.interactions:
+        yield from at_the_start(system, interaction, start)
+        yield from chain(between_walls(system, interaction), beside_sizes(system, interaction, mesh))
 
 
 def _rows(scene: Scene, system: System, start: Contacts) -> Iterator[BodyRow]:

@@ -69,7 +69,7 @@ def _stack(met: Encounters, row: int, share: float, gap: float) -> Finding:
     text = f"{' on '.join(met.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
     if share >= 1.0:
         return Finding("note", _STACK, met.names(row), f"{text}, and rests at a gap of {figure(gap)}", found=found)
-    enough, remedy = stronger(met.law, met.at_walls, share)
+    enough, remedy = stronger(met, share)
     text += f", of which the law gives at most {figure(share)}: they may press it through"
     return Finding("warning", _STACK, met.names(row), text, remedy, found, enough)
 
@@ -83,7 +83,7 @@ def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
         return Finding("note", QUESTION, met.names(row), text, found=found)
     end = "nothing stops it" if np.isnan(gap) else f"it would rest only in overlap, at a gap of {figure(gap)}"
     text = f"{pair}: the law gives at most {figure(share)} of its weight; {end}"
-    enough, remedy = stronger(met.law, met.at_walls, share)
+    enough, remedy = stronger(met, share)
     return Finding("error", QUESTION, met.names(row), text, remedy, found, enough)
 
 

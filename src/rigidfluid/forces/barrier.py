@@ -13,7 +13,7 @@ from rigidfluid.errors import StepRejected
 
 
 class BarrierOptions(RepulsionOptions):
-    """Keys of the ``[contact]`` table with law ``barrier``; ε is in length/force."""
+    """Keys of a table with law ``barrier``; ε is in length/force."""
 
 
 class BarrierLaw(Repulsion):
@@ -45,7 +45,7 @@ class BarrierLaw(Repulsion):
     """
 
     name: ClassVar[str] = "barrier"
-    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "unbounded"
+    overlap: Literal["repels", "attracts", "unbounded"] = "unbounded"
     Options: ClassVar[type[PartOptions]] = BarrierOptions
 
     def unit_force(self, contacts: Contacts) -> FloatArray:

@@ -13,7 +13,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 
 
 class CentreOptions(RepulsionOptions):
-    """Keys of the ``[contact]`` table with law ``centre``; ε is in length³/force."""
+    """Keys of a table with law ``centre``; ε is in length³/force."""
 
 
 class CentreLaw(Repulsion):

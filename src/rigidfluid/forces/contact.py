@@ -10,7 +10,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 
 
 class ContactOptions(RepulsionOptions):
-    """Keys of the ``[contact]`` table with law ``contact``; ε is in length³/force."""
+    """Keys of a table with law ``contact``; ε is in length³/force."""
 
 
 class ContactLaw(Repulsion):
@@ -45,7 +45,7 @@ class ContactLaw(Repulsion):
     """
 
     name: ClassVar[str] = "contact"
-    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "attracts"
+    overlap: Literal["repels", "attracts", "unbounded"] = "attracts"
     Options: ClassVar[type[PartOptions]] = ContactOptions
 
     def unit_force(self, contacts: Contacts) -> FloatArray:

@@ -14,7 +14,7 @@ from rigidfluid.errors import SceneError
 
 
 class LubricationOptions(PartOptions):
-    """Keys of the ``[contact]`` table with law ``lubrication``.
+    """Keys of a table with law ``lubrication``.
 
     ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
     grows no further [length].
@@ -54,8 +54,8 @@ class LubricationLaw(ForceLaw):
 
     name: ClassVar[str] = "lubrication"
     balls_only: ClassVar[bool] = True
-    conservative: ClassVar[bool] = False
-    dissipative: ClassVar[bool] = True
+    conservative: bool = False
+    dissipative: bool = True
     Options: ClassVar[type[PartOptions]] = LubricationOptions
     options: LubricationOptions
 

@@ -10,7 +10,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 
 
 class NormalOptions(RepulsionOptions):
-    """Keys of the ``[contact]`` table with law ``normal``; ε is in length²/force."""
+    """Keys of a table with law ``normal``; ε is in length²/force."""
 
 
 class NormalLaw(Repulsion):

@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray, Motion
 
 
 class SpringDashpotOptions(PartOptions):
-    """Keys of the ``[contact]`` table with law ``spring-dashpot``.
+    """Keys of a table with law ``spring-dashpot``.
 
     ``stiffness``: of the spring, k [force/length]. ``restitution`` e or ``damping`` γ [force·time/length], not both,
     say what the dashpot takes out; without either it takes nothing. ``friction``: the coefficient μ.
@@ -66,7 +66,7 @@ class SpringDashpotLaw(ForceLaw):
     """
 
     name: ClassVar[str] = "spring-dashpot"
-    dissipative: ClassVar[bool] = True
+    dissipative: bool = True
     Options: ClassVar[type[PartOptions]] = SpringDashpotOptions
     options: SpringDashpotOptions
 

@@ -54,11 +54,9 @@ def gap_plot(results: Results) -> Figure:
     draw_bodies(axes, results.time, gap, results.names)
     axes.set_yscale("log")
     axes.set_ylabel("nearest gap [length]")
-    if results.system.law is not None:
-        reach = results.system.law.range
-        axes.axhline(
-            reach, color=VERMILLION, linewidth=1.0, linestyle="--", label=f"range of the contact law {reach:g}"
-        )
+    for reach in results.system.law.ranges if results.system.law is not None else ():
+        label = f"range of the contact law {reach:g}"
+        axes.axhline(reach, color=VERMILLION, linewidth=1.0, linestyle="--", label=label)
     add_legend(figure)
     return figure
 

@@ -124,7 +124,7 @@ def contact_forces(problem: Problem, force: FloatArray, gap: FloatArray) -> tupl
         "the implicit contact step",
         f"no forces after {MOST_ITERATIONS} iterations",
         "forces that keep all gaps open",
-        "Strengthen the contact force, widen contact.range or shorten the step.",
+        "Strengthen the contact force, widen its range or shorten the step.",
     )
 
 

@@ -358,7 +358,7 @@ def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
         subject,
         f"a contact that needs substeps of {part:.1e}",
         f"at most {MOST_SUBSTEPS} substeps in a step",
-        "Soften the contact force: raise contact.epsilon, or widen contact.range.",
+        "Soften the contact force: raise its epsilon, or widen its range.",
     )
 
 

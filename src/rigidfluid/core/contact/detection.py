@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.part_results import refuse_lost_contacts
+from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 

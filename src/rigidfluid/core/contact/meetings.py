@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.contact.proximity import interacting
+from rigidfluid.core.contact.proximity import of_different_bodies
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.system import System
@@ -61,11 +61,11 @@ def free(system: System, bodies: Sequence[int]) -> list[int]:
 
 
 def body_meetings(system: System, bodies: Sequence[int]) -> Contacts:
-    """A contact of each pair of ``bodies`` that may repel and of which one is free, gap zero."""
+    """A contact of each pair of ``bodies`` that are not parts of one, and of which one is free, gap zero."""
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     met = _touching(system, first, second, np.eye(system.dimension)[0])
-    return select(met, interacting(system, met))
+    return select(met, of_different_bodies(system, met))
 
 
 def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:

@@ -8,6 +8,7 @@ from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.detection import detect
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 from rigidfluid.errors import StepRejected
@@ -28,6 +29,12 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
 
 
 def interacting(system: System, contacts: Contacts) -> BoolArray:
+    """Which contacts (m,) are not between parts of one articulated body, and are some law's, where there is any."""
+    apart = of_different_bodies(system, contacts)
+    return apart & acted_in(system.interactions, contacts) if system.interactions else apart
+
+
+def of_different_bodies(system: System, contacts: Contacts) -> BoolArray:
     """Which contacts (m,) are not between parts of one articulated body."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
@@ -41,7 +48,7 @@ def refuse_overlap(surface: str, gap: float) -> None:
             f"body {surface}",
             f"a gap of {gap:.3e}",
             "a positive gap to every other surface",
-            "Strengthen the contact force, widen contact.range or refine mesh.size_body.",
+            "Strengthen the contact force, widen its range or refine mesh.size_body.",
         )
 
 

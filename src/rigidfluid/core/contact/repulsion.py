@@ -30,7 +30,7 @@ Epsilon = Annotated[Annotated[float, Field(gt=0)] | Literal["auto"], WrapValidat
 
 
 class RepulsionOptions(PartOptions):
-    """Keys of the ``[contact]`` table that the laws with a stiffness parameter share.
+    """Keys of a table that the laws with a stiffness parameter share.
 
     ``epsilon``: stiffness parameter ε; the smaller, the stiffer. ``epsilon_wall``: the same at walls.
     """

@@ -15,9 +15,10 @@ SAMPLES = 8
 
 
 def on_the_way(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> Iterator[Contacts]:
-    """The contacts at SAMPLES gaps from the ``deepest`` (m,) on, in equal steps toward the range [length]."""
-    for part in np.linspace(0.0, 1.0, SAMPLES, endpoint=False):
-        yield replace(contacts, gap=deepest + part * (law.range - deepest))
+    """The contacts at SAMPLES gaps from the ``deepest`` (m,) on, in equal steps toward each range [length]."""
+    for begin in law.ranges:
+        for part in np.linspace(0.0, 1.0, SAMPLES, endpoint=False):
+            yield replace(contacts, gap=deepest + part * np.maximum(begin - deepest, 0.0))
 
 
 def greatest_stiffness(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> FloatArray:

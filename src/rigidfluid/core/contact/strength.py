@@ -10,8 +10,10 @@ import numpy as np
 from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.contact.meetings import body_meetings, free, representatives, wall_meetings
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.model.types import Contacts, Loads
 
 
 def chosen_strengths(system: System) -> list[dict[str, Any]]:
@@ -28,25 +30,31 @@ def chosen_strengths(system: System) -> list[dict[str, Any]]:
         Each with ``between`` (two names), ``epsilon``, ``impact_speed``, ``impact_energy``, ``weight_work`` and
         ``smallest_gap``; empty where the scene gives numbers.
     """
-    law = system.law
-    if not isinstance(law, Repulsion):
-        return []
+    return [row for interaction in system.interactions for row in _chosen(system, interaction)]
+
+
+def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]]:
+    law = interaction.law
+    if not isinstance(law, Repulsion) or law.loads is None:
+        return
     between, at_walls = law.options.epsilon, law.options.epsilon_wall
-    bodies, rows = representatives(system), []
+    bodies = representatives(system)
     if system.walls and (at_walls or between) == AUTO:
         moving = free(system, bodies)
-        rows += list(_extremes(system, law, wall_meetings(system, moving, [system.walls[0]] * len(moving))))
+        wall = next((wall for wall in system.walls if wall.surface in interaction.surfaces), system.walls[0])
+        met = wall_meetings(system, moving, [wall] * len(moving))
+        yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
     if between == AUTO:
-        rows += list(_extremes(system, law, body_meetings(system, bodies)))
-    return rows
+        met = body_meetings(system, bodies)
+        yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
 
 
-def _extremes(system: System, law: Repulsion, contacts: Contacts) -> Iterator[dict[str, Any]]:
+def _extremes(system: System, law: Repulsion, loads: Loads, contacts: Contacts) -> Iterator[dict[str, Any]]:
     if len(contacts) == 0:
         return
     epsilon = law.epsilon(contacts)
-    speed, energy = closing_speed(contacts, system.loads), impact_energy(contacts, system.loads)
-    work = stacked_weight(contacts, system.loads) * (law.range - system.loads.smallest_gap)
+    speed, energy = closing_speed(contacts, loads), impact_energy(contacts, loads)
+    work = stacked_weight(contacts, loads) * (law.range - loads.smallest_gap)
     for i in sorted({int(np.argmax(epsilon)), int(np.argmin(epsilon))}):
         yield {
             "between": [system.surfaces[contacts.body_a[i]], _other(system, contacts, i)],
@@ -54,7 +62,7 @@ def _extremes(system: System, law: Repulsion, contacts: Contacts) -> Iterator[di
             "impact_speed": float(speed[i]),
             "impact_energy": float(energy[i]),
             "weight_work": float(work[i]),
-            "smallest_gap": system.loads.smallest_gap,
+            "smallest_gap": loads.smallest_gap,
         }
 
 

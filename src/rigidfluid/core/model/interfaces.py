@@ -146,7 +146,7 @@ class ForceLaw(Part):
     Parameters
     ----------
     options : PartOptions
-        The law's own keys of the ``[contact]`` table.
+        The law's own keys of the table that names it.
     range : float
         The gap above which the law is zero [length].
     loads : Loads, optional
@@ -154,11 +154,11 @@ class ForceLaw(Part):
     """
 
     balls_only: ClassVar[bool] = False
-    conservative: ClassVar[bool] = True
+    conservative: bool = True
     """Whether it has an energy; else force, energy and stiffness are zero."""
-    dissipative: ClassVar[bool] = False
+    dissipative: bool = False
     """Whether it has damping; else damping is zero."""
-    overlap: ClassVar[Literal["repels", "attracts", "unbounded"]] = "repels"
+    overlap: Literal["repels", "attracts", "unbounded"] = "repels"
     """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
     StepRejected."""
     loads: Loads | None = None
@@ -167,6 +167,11 @@ class ForceLaw(Part):
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         self.options = options
         self.range = range
+
+    @property
+    def ranges(self) -> tuple[float, ...]:
+        """The gaps where it begins, in order: its range, and those of its parts where it has several [length]."""
+        return (self.range,)
 
     @abstractmethod
     def force(self, contacts: Contacts) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Loads, Pose, Twist, Wall
 
@@ -19,8 +20,9 @@ class System:
     ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k), and the pose, by
     ``controlled_pose(time)``.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
-    ``lower``, ``upper`` (d,): corners of the box. ``law`` is None in a scene without contact forces.
-    ``loads``: what contacts must hold; its smallest gap is 0 without a law.
+    ``lower``, ``upper`` (d,): corners of the box. ``interactions``: the laws with the contacts that they act in;
+    ``law``: all of them together, None where there are none.
+    ``loads``: what contacts must hold; its smallest gap is the least of all laws', and 0 without any.
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
     ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
@@ -47,6 +49,7 @@ class System:
     detector_why: str
     reach: float
     leverage: FloatArray
+    interactions: tuple[Interaction, ...]
     law: ForceLaw | None
     loads: Loads
     substeps: int | None

@@ -132,12 +132,12 @@ class BodyTable(_OpenTable):
 
 
 class ContactTable(_OpenTable):
-    """How contacts are found, and what force they exert; without it there is no contact force."""
+    """How contacts are found and stepped through, and a force law for all of them; `[[interaction]]` has more laws."""
 
     detector: str = Field(
         default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
     )
-    law: str | None = Field(default=None, description="Name of a force law; no contact force if not given")
+    law: str | None = Field(default=None, description="Name of a force law for all contacts; none if not given")
     range: Positive | None = Field(default=None, description="Gap above which the law is zero [length]")
     smallest_gap: Positive | None = Field(
         default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
@@ -155,6 +155,22 @@ class ContactTable(_OpenTable):
         default=None,
         ge=1,
         description="Substeps of contacts in each step; as many as they need, and no more, if not given [1]",
+    )
+
+
+class InteractionTable(_OpenTable):
+    """A force law, and the contacts that it acts in; forces of several tables, and of `[contact]`, add up."""
+
+    law: str = Field(description="Name of a force law")
+    range: Positive = Field(description="Gap above which the law is zero [length]")
+    smallest_gap: Positive | None = Field(
+        default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
+    )
+    between: Literal["all", "walls", "pairs"] = Field(
+        default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
+    )
+    names: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] | None = Field(
+        default=None, description="Bodies or walls: all contacts of one, or that of two with each other"
     )
 
 
@@ -198,6 +214,7 @@ class Scene(_Table):
     boundary: tuple[BoundaryTable, ...] = ()
     body: tuple[BodyTable, ...] = Field(min_length=1)
     contact: ContactTable = ContactTable()
+    interaction: tuple[InteractionTable, ...] = ()
     mesh: MeshTable | None = Field(default=None, description="The mesh; needed by backends with a mesh")
     time: TimeTable
     output: OutputTable
@@ -220,7 +237,9 @@ class Scene(_Table):
     def to_dict(self) -> dict[str, Any]:
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
-        return self.model_dump(mode="json", exclude_none=True)
+        # Without its empty list a scene is the same as before there were lists, and its checkpoints go on.
+        left_out = set() if self.interaction else {"interaction"}
+        return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 
 
 def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
@@ -25,13 +26,12 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions, face_planes, faces
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
-from rigidfluid.core.setup.parts import Parts, select_plugins
+from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
+from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
 
 _MOST_PAIRS = 1000
-_SMALLEST_GAP = 0.25
-"""The smallest gap wanted over the range of the law, if the scene gives none."""
 
 
 def build_system(scene: Scene) -> System:
@@ -52,7 +52,7 @@ def build_system(scene: Scene) -> System:
     SceneError
         If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
     """
-    parts, boundary = select_plugins(scene), conditions(scene)
+    parts, boundary = known_parts(scene), conditions(scene)
     walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
     pose = _initial_pose(scene)
@@ -64,11 +64,13 @@ def build_system(scene: Scene) -> System:
     moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
     speed = impact_speeds(scene, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
     loads = _loads(scene, parts.bodies, controlled, moved, weight, speed)
-    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), _law(scene, parts, loads)
+    surfaces = (*(body.name for body in scene.body), *faces(scene.dimension))
+    interactions = build_interactions(scene, parts, surfaces, loads)
+    detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
         bodies=parts.bodies,
-        surfaces=(*(body.name for body in scene.body), *faces(scene.dimension)),
+        surfaces=surfaces,
         walls=walls,
         lower=np.array(scene.domain.lower),
         upper=np.array(scene.domain.upper),
@@ -87,6 +89,7 @@ def build_system(scene: Scene) -> System:
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
         leverage=np.array([most_leverage(body) for body in parts.bodies]),
+        interactions=interactions,
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,
@@ -135,7 +138,7 @@ def _loads(
     scene: Scene, bodies: Sequence[Body], controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
 ) -> Loads:
     """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
-    smallest = scene.contact.smallest_gap or _SMALLEST_GAP * (scene.contact.range or 0.0)
+    smallest = min((table.smallest_gap or SMALLEST_GAP * table.range for table in law_tables(scene)), default=0.0)
     pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
     own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
     position = np.array([table.position for table in scene.body])
@@ -178,9 +181,3 @@ def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float) -> fl
     if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS:
         return math.inf
     return law_range + 2.0 * max(body.bounding_radius for body in bodies)
-
-
-def _law(scene: Scene, parts: Parts, loads: Loads) -> ForceLaw | None:
-    if parts.law is None or scene.contact.range is None:
-        return None
-    return parts.law.part(parts.law.options, scene.contact.range, loads)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
     from rigidfluid.core.model.types import FluidProblem
 
@@ -69,12 +70,20 @@ def _contact(system: System) -> Iterator[Feature]:
     if system.law is None:
         yield Feature("contact forces", False, "the scene names no law")
     else:
-        yield Feature("contact forces", True, f"law {system.law.name!r} below a gap of {system.law.range}")
+        yield Feature("contact forces", True, "; ".join(_law(system, one) for one in system.interactions))
         yield Feature("repelling walls", bool(system.walls), names)
         parts = np.bincount(system.assembly, minlength=1)[system.assembly] > 1
         yield _count("components that do not repel each other", parts, "parts of an articulated body")
     yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
     yield _measured(system.reach)
+
+
+def _law(system: System, interaction: Interaction) -> str:
+    text = f"law {interaction.law.name!r} below a gap of {interaction.law.range}"
+    if interaction.between != "all":
+        text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
+    names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)
+    return f"{text} ({names})" if names else text
 
 
 def _measured(reach: float) -> Feature:

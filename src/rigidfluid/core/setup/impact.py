@@ -11,6 +11,7 @@ from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radi
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import face_table, faces
+from rigidfluid.core.setup.interactions import law_tables
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BodyTable, Scene
@@ -25,10 +26,10 @@ Vectors = Sequence[float] | None
 def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight: FloatArray, wet: bool) -> FloatArray:
     """The speed at which each body is expected to hit something.
 
-    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the face of the box, less the range of the law. In a
-    fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the surface of
-    a body that is no ball turns with it. A driven body has the greatest speed of its prescription. An ``impact_speed``
-    in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
+    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the face of the box, less the shortest range of a law.
+    In a fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the
+    surface of a body that is no ball turns with it. A driven body has the greatest speed of its prescription. An
+    ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
 
     Parameters
     ----------
@@ -128,7 +129,8 @@ def _free_heights(scene: Scene, bodies: Sequence[Body], weight: FloatArray) -> F
     room = ahead - _by_shape(inscribed_radius, bodies)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
     height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
-    return np.maximum(height - (scene.contact.range or 0.0), 0.0)
+    shortest = min((table.range for table in law_tables(scene)), default=0.0)
+    return np.maximum(height - shortest, 0.0)
 
 
 def _own_speed(table: BodyTable, lever: float) -> float:

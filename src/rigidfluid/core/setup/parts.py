@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
+from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
 
@@ -21,6 +24,10 @@ AUTO = "auto"
 """What a scene says that leaves the choice of its detector to `cheapest_detector`."""
 
 
+_KNOWN: dict[int, Parts] = {}
+"""Of the scenes that exist, by their id."""
+
+
 @dataclass(frozen=True)
 class Selected(Generic[P]):
     """A class that a scene names, and its validated options."""
@@ -31,7 +38,7 @@ class Selected(Generic[P]):
 
 @dataclass(frozen=True)
 class Parts:
-    """All that a scene names; ``law`` is None in a scene without contact forces.
+    """All that a scene names; ``laws`` are those of its `law_tables`, in their order.
 
     ``detector_why`` says who chose the detector, and for what reason; ``exact_detector`` is the cheapest that is exact
     without a mesh.
@@ -40,7 +47,7 @@ class Parts:
     backend: Selected[FluidBackend]
     bodies: tuple[Body, ...]
     detector: Selected[Detector]
-    law: Selected[ForceLaw] | None
+    laws: tuple[Selected[ForceLaw], ...]
     detector_why: str
     exact_detector: type[Detector]
 
@@ -69,12 +76,36 @@ def select_plugins(scene: Scene) -> Parts:
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
     mesh = backend.part.needs_mesh
-    law = _law(scene.contact, registry)
-    detector, why = _detector(scene.contact, registry, bodies, mesh, law is not None)
-    _refuse_contact(scene.contact, detector, law, bodies, mesh)
-    chosen = None if law is None else _choose(law, scene.contact)
+    tables = law_tables(scene)
+    laws = [registry.get(FORCE_LAW, table.law, f"{table.at}.law") for table in tables]
+    detector, why = _detector(scene.contact, registry, bodies, mesh, bool(laws))
+    _refuse_detector(detector, mesh)
+    _refuse_contact_keys(scene.contact, detector, laws)
+    chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
     exact = exact_detector(bodies, registry)
-    return Parts(backend, bodies, _choose(detector, scene.contact), chosen, why, exact)
+    found = Selected(detector, _options(detector, scene.contact.options, "contact"))
+    return Parts(backend, bodies, found, chosen, why, exact)
+
+
+def known_parts(scene: Scene) -> Parts:
+    """The parts of a scene, selected and built when they are first asked for, and known as long as the scene is.
+
+    They are known of this very object: an equal scene may have been read where other plug-ins were installed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables hold the options of the parts beside their own keys.
+
+    Returns
+    -------
+    Parts
+        As `select_plugins` gives them, which also raises.
+    """
+    if id(scene) not in _KNOWN:
+        _KNOWN[id(scene)] = select_plugins(scene)
+        weakref.finalize(scene, _KNOWN.pop, id(scene))
+    return _KNOWN[id(scene)]
 
 
 def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
@@ -127,10 +158,6 @@ def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     return Selected(part, read_table(part.Options, table.options, "fluid"))
 
 
-def _law(table: ContactTable, registry: Registry) -> type[ForceLaw] | None:
-    return registry.get(FORCE_LAW, table.law) if table.law else None
-
-
 def _detector(
     table: ContactTable, registry: Registry, bodies: Sequence[Body], mesh: bool, law: bool
 ) -> tuple[type[Detector], str]:
@@ -140,23 +167,34 @@ def _detector(
     return registry.get(DETECTOR, name), f"chosen as {why}"
 
 
-def _refuse_contact(
-    table: ContactTable, detector: type[Detector], law: type[ForceLaw] | None, bodies: Sequence[Body], mesh: bool
-) -> None:
-    readers: list[type[Part]] = [detector, law] if law else [detector]
-    hint = "" if law else "Name the law that reads it: `law = …`."
-    _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
-    if law and law.balls_only and any(body.radius is None for body in bodies):
-        remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
-        raise SceneError("contact.law", f"{law.name!r} with bodies that are no balls", "a law for any shape", remedy)
+def _refuse_detector(detector: type[Detector], mesh: bool) -> None:
     if detector.needs_mesh and not mesh:
         remedy = 'Use detector = "auto", or a backend with a mesh.'
         raise SceneError("contact.detector", f"{detector.name!r} without a mesh", "a detector that needs none", remedy)
 
 
-def _choose(part: type[P], table: ContactTable) -> Selected[P]:
-    mine = {key: value for key, value in table.options.items() if key in part.Options.model_fields}
-    return Selected(part, read_table(part.Options, mine, "contact"))
+def _refuse_contact_keys(table: ContactTable, detector: type[Detector], laws: Sequence[type[ForceLaw]]) -> None:
+    """`[contact]` holds the keys of its detector, and of its law if it names one, which is the first then."""
+    readers: list[type[Part]] = [detector, laws[0]] if table.law else [detector]
+    hint = "" if table.law else "Name the law that reads it: `law = …`."
+    _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
+
+
+def _law(table: LawTable, law: type[ForceLaw], scene: Scene, bodies: Sequence[Body]) -> Selected[ForceLaw]:
+    if table.at != "contact":
+        _refuse_unread(table.options, [law], InteractionTable.model_fields, table.at)
+    named = [body for body, given in zip(bodies, scene.body, strict=True) if given.name in table.names]
+    met = named if len(table.names) == 2 else bodies
+    if law.balls_only and any(body.radius is None for body in met):
+        remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
+        found = f"{law.name!r} with bodies that are no balls"
+        raise SceneError(f"{table.at}.law", found, "a law for any shape", remedy)
+    return Selected(law, _options(law, table.options, table.at))
+
+
+def _options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:
+    """The part's own of the keys given."""
+    return read_table(part.Options, {key: given[key] for key in given if key in part.Options.model_fields}, at)
 
 
 def _refuse_unread(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.setup.boundary import face_table, face_velocity, faces, inward_normal
+from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -47,6 +48,7 @@ def check_tables(scene: Scene) -> None:
     _check_names(scene)
     _check_assemblies(scene)
     _check_contact(scene)
+    check_interactions(scene)
     _check_sizes(scene)
 
 
@@ -172,22 +174,19 @@ def _check_assemblies(scene: Scene) -> None:
 
 
 def _check_contact(scene: Scene) -> None:
-    law, range_, smallest = scene.contact.law, scene.contact.range, scene.contact.smallest_gap
+    law, range_ = scene.contact.law, scene.contact.range
     if law is not None and range_ is None:
         raise SceneError("contact.range", "nothing", "a length above 0 beside `law`", "Add the law's reach.")
     if law is None and range_ is not None:
         raise SceneError("contact.range", f"{range_} without a law", "`range` beside `law`", "Name the law: `law = …`.")
-    for key in ("smallest_gap", "impact_speed"):
+    for key, read in (("smallest_gap", law), ("impact_speed", law or scene.interaction)):
         given = getattr(scene.contact, key)
-        if law is None and given is not None:
+        if not read and given is not None:
             remedy = "Name the law: `law = …`."
             raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
     if scene.contact.stepping == "implicit" and scene.contact.substeps is not None:
         allowed = 'none beside `stepping = "implicit"`'
         raise SceneError("contact.substeps", scene.contact.substeps, allowed, "Remove one of them.")
-    if smallest is not None and range_ is not None and smallest >= range_:
-        allowed = f"a length above 0 and below contact.range = {range_}"
-        raise SceneError("contact.smallest_gap", smallest, allowed, "Shorten it, or widen the range.")
 
 
 def _check_sizes(scene: Scene) -> None:

@@ -7,7 +7,12 @@ from typing import Any
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Entry, Registry
 
-_TABLES = {FLUID_BACKEND: "FluidTable", BODY: "BodyTable", DETECTOR: "ContactTable", FORCE_LAW: "ContactTable"}
+_TABLES = {
+    FLUID_BACKEND: ("FluidTable",),
+    BODY: ("BodyTable",),
+    DETECTOR: ("ContactTable",),
+    FORCE_LAW: ("ContactTable", "InteractionTable"),
+}
 # The parts that a table means where it names none.
 _UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "ellipsoid", "brute_force"), BODY: (), FORCE_LAW: ()}
 
@@ -32,13 +37,15 @@ def json_schema() -> dict[str, Any]:
 
 
 def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
-    table, key = definitions[_TABLES[entry.kind]], entry.kind.field.partition(".")[2]
-    table.pop("additionalProperties", None)
-    table["unevaluatedProperties"] = False
+    key = entry.kind.field.partition(".")[2]
     condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
     if entry.name not in _UNNAMED[entry.kind]:
         condition["required"] = [key]
-    table.setdefault("allOf", []).append({"if": condition, "then": _options(definitions, entry)})
+    for name in _TABLES[entry.kind]:
+        table = definitions[name]
+        table.pop("additionalProperties", None)
+        table["unevaluatedProperties"] = False
+        table.setdefault("allOf", []).append({"if": condition, "then": _options(definitions, entry)})
 
 
 def _options(definitions: dict[str, Any], entry: Entry) -> dict[str, Any]:

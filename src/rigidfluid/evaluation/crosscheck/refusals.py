@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rigidfluid.core.model.interactions import SumOfLaws
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import CrosscheckError
@@ -21,8 +22,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     Raises
     ------
     CrosscheckError
-        For a fluid, shapes other than balls, motions that are prescribed, articulated bodies, and laws that take
-        energy out, but for ``spring-dashpot``.
+        For a fluid, shapes other than balls, motions that are prescribed, articulated bodies, several laws or one for
+        some contacts alone, and laws that take energy out, but for ``spring-dashpot``.
     """
     if system.backend.needs_mesh:
         raise CrosscheckError(
@@ -47,6 +48,13 @@ def refuse_foreign(scene: Scene, system: System) -> None:
         if table.part_of is not None:
             raise CrosscheckError(f"{field}.part_of", repr(table.part_of), "bodies of one part", "Leave part_of out.")
     law = system.law
+    if isinstance(law, SumOfLaws):
+        raise CrosscheckError(
+            "interaction",
+            f"{len(law.interactions)} interactions that act side by side or in some contacts alone",
+            "one law for all contacts: pair styles of LAMMPS that add up are another sum",
+            "Leave one of them, for all contacts.",
+        )
     if law is not None and (law.dissipative or not law.conservative) and not isinstance(law, SpringDashpotLaw):
         raise CrosscheckError(
             "contact.law",

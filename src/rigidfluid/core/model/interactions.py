@@ -1,0 +1,133 @@
+"""What acts between surfaces: a list of interactions, each a law with the contacts that are its own; forces add up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.part_results import refuse_lost_forces, refuse_shape
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Motion
+
+Between = Literal["all", "walls", "pairs"]
+
+
+@dataclass(frozen=True)
+class Interaction:
+    """A law, and the contacts that it acts in.
+
+    ``field``: the scene's table that names it. ``between``: contacts at walls, of pairs of bodies, or both; of these it
+    acts in the ones that each of ``surfaces`` takes part in: in all if there is none, with two in that pair alone.
+    ``bodies``: how many there are; surfaces from that number on are walls. ``smallest_gap``: what the scene asks for,
+    None if nothing [length].
+    """
+
+    field: str
+    law: ForceLaw
+    between: Between
+    surfaces: tuple[int, ...]
+    bodies: int
+    smallest_gap: float | None = None
+
+    def acts_in(self, contacts: Contacts) -> BoolArray:
+        """Which contacts (m,) are its own, whatever their gaps."""
+        chosen = np.ones(len(contacts), dtype=bool)
+        if self.between != "all":
+            chosen &= (contacts.body_b >= self.bodies) == (self.between == "walls")
+        for surface in self.surfaces:
+            chosen &= (contacts.body_a == surface) | (contacts.body_b == surface)
+        return chosen
+
+
+def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
+    """Which contacts (m,) any of the interactions acts in."""
+    each = [interaction.acts_in(contacts) for interaction in interactions]
+    return np.asarray(np.any(each, axis=0), dtype=bool) if each else np.zeros(len(contacts), dtype=bool)
+
+
+def acting_together(interactions: Sequence[Interaction]) -> ForceLaw | None:
+    """What some interactions do together: one that acts everywhere is its own law, none is None."""
+    if not interactions:
+        return None
+    first = interactions[0]
+    if len(interactions) == 1 and first.between == "all" and not first.surfaces:
+        return first.law
+    return SumOfLaws(interactions)
+
+
+class SumOfLaws(ForceLaw):
+    """F = Σ F_l, U = Σ U_l, k = Σ k_l over the laws l of the interactions that act in a contact.
+
+    Its range is the longest. It is conservative and dissipative if any law is. In overlap it is unbounded if any law
+    is, and counted on to repel only if all laws with an energy do.
+
+    Parameters
+    ----------
+    interactions : sequence of Interaction
+        At least one.
+    """
+
+    name: ClassVar[str] = "sum"
+
+    def __init__(self, interactions: Sequence[Interaction]) -> None:
+        laws = [interaction.law for interaction in interactions]
+        super().__init__(PartOptions(), max(law.range for law in laws))
+        self.interactions = tuple(interactions)
+        self.conservative = any(law.conservative for law in laws)
+        self.dissipative = any(law.dissipative for law in laws)
+        self.overlap = _overlap_of([law for law in laws if law.conservative])
+
+    @property
+    def ranges(self) -> tuple[float, ...]:
+        """The ranges of all laws, in order [length]."""
+        return tuple(sorted({gap for interaction in self.interactions for gap in interaction.law.ranges}))
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Σ F_l on ``body_a``, (m, d) [force]."""
+        return self._sum(contacts, np.zeros_like(contacts.normal), lambda law, some, _: law.force(some))
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Σ U_l, (m,) [energy]."""
+        return self._sum(contacts, np.zeros_like(contacts.gap), lambda law, some, _: law.energy(some))
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """Σ k_l, (m,) [force/length]."""
+        return self._sum(contacts, np.zeros_like(contacts.gap), lambda law, some, _: law.stiffness(some))
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Σ of what the laws' dampers add on ``body_a``, (m, d) [force]."""
+
+        def damping(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
+            return law.damping(some, Motion(motion.velocity[chosen], motion.mass[chosen]))
+
+        return self._sum(contacts, np.zeros_like(contacts.normal), damping)
+
+    def _sum(
+        self, contacts: Contacts, total: FloatArray, asked: Callable[[ForceLaw, Contacts, BoolArray], FloatArray]
+    ) -> FloatArray:
+        for interaction, some, chosen in self._shares(contacts):
+            key, rows = f"{interaction.field}.law", asked(interaction.law, some, chosen)
+            if total.ndim == 2:
+                refuse_lost_forces(some, rows, key)
+            else:
+                refuse_shape(key, "energies or stiffnesses", rows, some.gap.shape, "contact")
+            total[chosen] += rows
+        return total
+
+    def _shares(self, contacts: Contacts) -> Iterator[tuple[Interaction, Contacts, BoolArray]]:
+        """Each interaction that acts here, its contacts, and which they are."""
+        for interaction in self.interactions:
+            chosen = interaction.acts_in(contacts)
+            if chosen.all():
+                yield interaction, contacts, chosen
+            elif chosen.any():
+                yield interaction, select(contacts, chosen), chosen
+
+
+def _overlap_of(laws: Sequence[ForceLaw]) -> Literal["repels", "attracts", "unbounded"]:
+    found = {law.overlap for law in laws}
+    return "unbounded" if "unbounded" in found else "attracts" if "attracts" in found else "repels"

@@ -1,0 +1,143 @@
+"""The list of interactions that a scene gives: a law in `[contact]`, and one in each `[[interaction]]`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rigidfluid.core.model.interactions import Between, Interaction
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Loads
+from rigidfluid.core.setup.boundary import face_table, faces
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.core.setup.parts import Parts, Selected
+
+SMALLEST_GAP = 0.25
+"""The smallest gap wanted over the range of the law, if the scene gives none."""
+
+
+class LawTable(NamedTuple):
+    """What a table says that names a ``law``; ``at`` is its place in the scene, ``options`` are keys of its part."""
+
+    at: str
+    law: str
+    range: float
+    smallest_gap: float | None
+    between: Between
+    names: tuple[str, ...]
+    options: Mapping[str, Any]
+
+
+def law_tables(scene: Scene) -> tuple[LawTable, ...]:
+    """All tables that name a law, `[contact]` first; its options are the detector's too."""
+    contact, found = scene.contact, []
+    if contact.law is not None and contact.range is not None:
+        found.append(LawTable("contact", contact.law, contact.range, contact.smallest_gap, "all", (), contact.options))
+    for number, table in enumerate(scene.interaction):
+        at, names = f"interaction.{number}", table.names or ()
+        found.append(LawTable(at, table.law, table.range, table.smallest_gap, table.between, names, table.options))
+    return tuple(found)
+
+
+def check_interactions(scene: Scene) -> None:
+    """Refuse tables of laws that act nowhere, or whose smallest gap is none.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its single keys are valid, and so are its bodies and faces.
+
+    Raises
+    ------
+    SceneError
+        At the first table.
+    """
+    for table in law_tables(scene):
+        if table.smallest_gap is not None and table.smallest_gap >= table.range:
+            allowed = f"a length above 0 and below {table.at}.range = {table.range}"
+            raise SceneError(f"{table.at}.smallest_gap", table.smallest_gap, allowed, "Shorten it, or widen the range.")
+        _check_names(scene, table)
+
+
+def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads) -> tuple[Interaction, ...]:
+    """The laws, each with the contacts that it acts in.
+
+    Parameters
+    ----------
+    scene : Scene
+        A validated scene.
+    parts : Parts
+        The classes of its laws.
+    surfaces : sequence of str
+        Names of the bodies, then of the faces.
+    loads : Loads
+        What contacts must hold; the smallest gap is each table's own.
+
+    Returns
+    -------
+    tuple of Interaction
+        In the order of the tables.
+
+    Raises
+    ------
+    SceneError
+        If a law refuses its options or loads.
+    """
+    return tuple(
+        Interaction(
+            field=table.at,
+            law=_law(table, selected, loads),
+            between=table.between,
+            surfaces=tuple(surfaces.index(name) for name in table.names),
+            bodies=len(scene.body),
+            smallest_gap=table.smallest_gap,
+        )
+        for table, selected in zip(law_tables(scene), parts.laws, strict=True)
+    )
+
+
+def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads) -> ForceLaw:
+    own = replace(loads, smallest_gap=table.smallest_gap or SMALLEST_GAP * table.range)
+    try:
+        return selected.part(selected.options, table.range, own)
+    except SceneError as error:  # a law does not know its table
+        subject = f"{table.at}.{error.subject.removeprefix('contact.')}"
+        allowed = error.allowed.replace("contact.range", f"{table.at}.range")
+        raise SceneError(subject, error.found, allowed, error.remedy) from None
+
+
+def _check_names(scene: Scene, table: LawTable) -> None:
+    bodies, walls = [body.name for body in scene.body], _walls(scene)
+    for number, name in enumerate(table.names):
+        if name not in (*bodies, *walls):
+            raise _unknown(scene, f"{table.at}.names.{number}", name, [*bodies, *walls])
+    at_walls = any(name in walls for name in table.names)
+    pair = len(table.names) == 2
+    if pair and (len(set(table.names)) == 1 or all(name in walls for name in table.names)):
+        raise _nowhere(table, "two different surfaces, one of them a body")
+    if (at_walls and table.between == "pairs") or (pair and not at_walls and table.between == "walls"):
+        raise _nowhere(table, f"surfaces that meet with between = {table.between!r}")
+    wholes = [scene.body[bodies.index(name)].part_of for name in table.names if name in bodies]
+    if pair and len(wholes) == 2 and wholes[0] is not None and wholes[0] == wholes[1]:
+        raise _nowhere(table, "bodies that are not parts of one articulated body, which do not touch")
+
+
+def _walls(scene: Scene) -> list[str]:
+    tables = ((name, face_table(scene, name)) for name in faces(scene.dimension))
+    return [name for name, table in tables if table is None or table.type == "wall"]
+
+
+def _unknown(scene: Scene, field: str, name: str, known: Sequence[str]) -> SceneError:
+    open_face = "a face that is no wall, and does not repel" if name in faces(scene.dimension) else "no surface"
+    shown = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
+    remedy = suggestion(name, known) or "Name a body or a wall."
+    return SceneError(field, f"{name!r}, {open_face}", f"one of {shown}", remedy)
+
+
+def _nowhere(table: LawTable, allowed: str) -> SceneError:
+    return SceneError(f"{table.at}.names", list(table.names), allowed, "Correct the names, or `between`.")
