@@ -90,8 +90,8 @@ def check(scene: Scene) -> Report:
     """
     with no_exit():
         system = build_system(scene)
-        detector = exact_detector(system.bodies, Registry.load())
-        start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
+        detector = exact_detector(system.bodies, system.domain, Registry.load())
+        start = initial_contacts(system.domain, detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
         return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
 

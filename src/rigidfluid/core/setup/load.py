@@ -9,6 +9,7 @@ from typing import Any
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.parts import select_plugins
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 
@@ -35,7 +36,9 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     """
     scene = read_table(Scene, data)
     check_tables(scene)
-    check_fluid(scene, select_plugins(scene).backend.part)
+    parts = select_plugins(scene)
+    check_boundary(scene, parts.domain)
+    check_fluid(scene, parts.backend.part, parts.domain)
     return scene
 
 

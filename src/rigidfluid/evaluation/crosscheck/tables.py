@@ -79,4 +79,5 @@ def _contacts(pair: Pair, gap: FloatArray) -> Contacts:
         gap=gap,
         radius_a=np.full(count, pair.radii[0]),
         radius_b=np.full(count, pair.radii[1]),
+        at_wall=np.full(count, np.isinf(pair.radii[1])),
     )

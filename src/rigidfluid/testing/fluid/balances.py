@@ -36,7 +36,7 @@ class BalancesContract(FluidContract):
 
         Midway from rest half the velocity dissipates a quarter.
         """
-        started = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None)
+        started = self.empty(_channel(dimension, inertia, wall="y1"), box(dimension, 3)).after(None)
         flow = started.after(0.1)
         points, advance = samples(dimension), flow.advance
         velocity, pressure = flow.probe(points)
@@ -54,7 +54,7 @@ class BalancesContract(FluidContract):
     def test_rest_stays_rest(self, dimension: int) -> None:
         """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
         bodies = Bodies(np.ones(2), Bodies.of(balls_pose(dimension)).inertia, np.array([True, False]))
-        faces = {"left": "pressure", "right": "pressure"}
+        faces = {"x0": "pressure", "x1": "pressure"}
         flow = self.with_balls(problem(dimension, faces, dict.fromkeys(faces, _constant(BACK)), bodies=2), bodies)
         sway = np.full(dimension, 0.02)
         for length in (0.1, 0.1, 0.05):
@@ -207,10 +207,10 @@ def _lid(_time: float, points: FloatArray) -> FloatArray:
 
 def _channel(dimension: int, inertia: bool, wall: str = "") -> FluidProblem:
     """From left to right by pressures; the other faces are planes of symmetry but for one."""
-    types = dict.fromkeys(("bottom", "top", "back", "front"), "slip") | {"left": "pressure", "right": "pressure"}
+    types = dict.fromkeys(("y0", "y1", "z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
     if wall:
         types[wall] = "wall"
-    values = {"left": _constant(DROP + BACK), "right": _constant(BACK)}
+    values = {"x0": _constant(DROP + BACK), "x1": _constant(BACK)}
     return problem(dimension, types, values, 0 if wall else 2, inertia)
 
 
