@@ -65,9 +65,10 @@ def test_links_lead_to_files(page: Path) -> None:
 
 def test_the_example_of_a_plug_in_runs(install: Install) -> None:
     page = text("docs/plugins.md")
-    project, scene_table = (tomllib.loads(block) for block in blocks(page, "toml"))
+    law = section(page, "A force law, from nothing")
+    project, scene_table = (tomllib.loads(block) for block in blocks(law, "toml"))
     (name, module), *_ = project["project"]["entry-points"][GROUP].items()
-    install(blocks(page, "python")[0], name=name, module=module)
+    install(blocks(law, "python")[0], name=name, module=module)
     assert Registry.load().get(FORCE_LAW, "linear").__doc__
     scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.01"]).to_dict()
     scene["contact"] = scene_table["contact"]
