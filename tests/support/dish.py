@@ -39,8 +39,8 @@ def in_a_dish(*bodies: dict[str, Any], dimension: int = 2, **tables: Any) -> dic
         "body": list(bodies),
         "contact": {"law": "contact", "range": 0.05, "epsilon": "auto"},
         "mesh": {"size": 0.2, "size_body": 0.06},
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 1.0},
+        "time": {"end": 2.5, "step": 0.01},
+        "output": {"every": 2.5},
     }
     return {**scene, **tables}
 

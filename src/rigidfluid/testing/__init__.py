@@ -24,4 +24,11 @@ from rigidfluid.testing.domain import DomainContract
 from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 
-__all__ = ["Arrangement", "BodyContract", "DetectorContract", "DomainContract", "FluidBackendContract", "ForceLawContract"]
+__all__ = [
+    "Arrangement",
+    "BodyContract",
+    "DetectorContract",
+    "DomainContract",
+    "FluidBackendContract",
+    "ForceLawContract",
+]

@@ -124,16 +124,19 @@ def netgen_mesh(
         raise MeshError("mesh", found, "bodies that neither overlap nor leave the domain", REMEDY) from error
     finally:
         meshing.SetMessageImportance(verbosity)
-    return put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain)
+    return put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain, curved=True)
 
 
-def put_back(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
-    """The mesh with all vertices on the domain's surfaces exactly there, those where two meet on the flat one."""
+def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on a flat one where it meets
+    others."""
     points = mesh.points.copy()
-    pieces = sorted(enumerate(domain.pieces), key=lambda numbered: numbered[1].shape.plane is not None)
-    for number, piece in pieces:
+    flat = [piece.shape.plane is not None for piece in domain.pieces]
+    for number in sorted(range(len(flat)), key=flat.__getitem__):
+        if not (flat[number] or curved):
+            continue
         vertices = np.unique(mesh.facets[mesh.markers == bodies + number])
-        points[vertices] = piece.shape.closest_point(points[vertices])
+        points[vertices] = domain.pieces[number].shape.closest_point(points[vertices])
     return replace(mesh, points=points)
 
 

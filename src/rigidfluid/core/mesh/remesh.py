@@ -153,9 +153,10 @@ def remeshed_once(
     """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
     given = replace(mesh, points=rounded_points(mesh))
     kept = on_kept_surfaces(mesh, bodies, domain)
-    made = put_back(run_mmg(given, kept, bodies, significant(size_at(given.points)), gradation), bodies, domain)
+    made = run_mmg(given, kept, bodies, significant(size_at(given.points)), gradation)
     outer = ~on_kept_surfaces(made, bodies, domain)
-    new = orient(with_kept_facets(made, outer, mesh, kept, given.points))
+    restored = with_kept_facets(made, outer, mesh, kept, given.points)
+    new = orient(put_back(restored, bodies, domain, curved=False))
     check_mesh(new, quality=WORST_QUALITY)
     before, after = (float(np.sum(cell_volumes(m.points, m.cells))) for m in (mesh, new))
     if abs(after - before) > 1e-12 * before:

@@ -24,7 +24,7 @@ from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Value
 from rigidfluid.testing.fluid.flow import Bodies, components
 
 DROP, BACK = 2.0, 0.4
-"""Of the pressure from the left to the right face, and at the right one."""
+"""Of the pressure from the first to the second face, and at that one."""
 
 
 class BalancesContract(FluidContract):
@@ -50,6 +50,20 @@ class BalancesContract(FluidContract):
         self.assert_close(midway, [0.25 * work, work], scale=10.0)
         kinetic = 0.5 * DENSITY * (DROP / (2 * VISCOSITY)) ** 2 * 8 / 15
         self.assert_close(advance.kinetic_energy, kinetic if inertia else 0.0)
+
+    @pytest.mark.parametrize("inertia", [False, True], ids=["stokes", "navier-stokes"])
+    def test_flow_along_a_wall_that_slides(self, dimension: int, inertia: bool) -> None:
+        """Couette's: u = U y between a wall at rest and one that slides at U, whose power μ U² is dissipated."""
+        types = dict.fromkeys(("z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
+        sliding = np.eye(dimension)[0] * DROP
+        values = {"x0": _constant(BACK), "x1": _constant(BACK), "y1": lambda _, x: np.tile(sliding, (len(x), 1))}
+        flow = self.empty(problem(dimension, types, values, inertia=inertia), box(dimension, 3)).after(None).after(0.1)
+        points = samples(dimension)
+        velocity, pressure = flow.probe(points)
+        self.assert_close(velocity, points[:, 1:2] * sliding)
+        self.assert_close(pressure, BACK, scale=10.0)
+        work = VISCOSITY * DROP**2
+        self.assert_close([flow.advance.dissipation, flow.advance.boundary_power], work, scale=10.0)
 
     def test_rest_stays_rest(self, dimension: int) -> None:
         """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
