@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import factorial
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from dish import CODE, dish, in_a_dish, inside, rim
@@ -18,16 +19,20 @@ from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.interfaces import Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, Mesh, Pose
+from rigidfluid.core.model.part_results import refuse_lost_contacts
+from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.registry import DOMAIN, Registry
 
 DISK = {"type": "sphere", "radius": 0.15, "density": 3.0, "position": [0.35, 0.3]}
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.2, 0.1], "angle": 0.4, "density": 3.0, "position": [0.35, 0.3]}
@@ -185,9 +190,14 @@ def test_a_disk_bounces_in_a_dry_dish_and_keeps_its_energy() -> None:
     assert residual.max() < 1e-3 * fallen  # within a contact
 
 
-@pytest.mark.parametrize("body", [DISK, ELLIPSE], ids=["disk", "ellipse"])
-def test_a_body_falls_in_a_dish_of_fluid_and_rolls_to_the_bottom(body: dict[str, Any]) -> None:
-    history = run(built(body))
+@pytest.mark.parametrize(
+    ("body", "detector"),
+    [(DISK, "auto"), (DISK, "narrow_band"), (ELLIPSE, "auto")],
+    ids=["disk", "disk by its facets", "ellipse"],
+)
+def test_a_body_falls_in_a_dish_of_fluid_and_rolls_to_the_bottom(body: dict[str, Any], detector: str) -> None:
+    contact = {"law": "contact", "range": 0.05, "epsilon": "auto", "detector": detector}
+    history = run(built(body, contact=contact))
     centres = np.column_stack([history.bodies["x"], history.bodies["y"]])
     assert inside(centres, 0.1)
     assert history.summary["remeshes"] > 2
@@ -197,6 +207,48 @@ def test_a_body_falls_in_a_dish_of_fluid_and_rolls_to_the_bottom(body: dict[str,
     energy = history.summary["energy"]
     assert energy["created"] < 0.005
     assert energy["lost"] < 0.005
+
+
+def test_epsilon_of_walls_holds_at_curved_ones() -> None:
+    keys = {"law": "contact", "range": 0.3, "epsilon": 1e-3, "epsilon_wall": 1e-5}
+    system = build_system(built(DISK | {"position": [0.7, 0.0]}, contact=keys, fluid=DRY))
+    found = system.detector.detect(system.pose, None, 0.3)
+    assert isinstance(system.law, ContactLaw)
+    np.testing.assert_array_equal(system.law.epsilon(found), [1e-5])
+
+
+def test_the_film_in_a_hollow_is_that_of_the_radii_difference() -> None:
+    """R = r_a r_b/(r_a + r_b) with r_b < 0: wider than at a flat wall."""
+    keys = {"law": "lubrication", "range": 0.3, "viscosity": 1.0, "cutoff": 0.01}
+    system = build_system(built(DISK | {"position": [0.7, 0.0]}, contact=keys, fluid=DRY))
+    found = system.detector.detect(system.pose, None, 0.3)
+    assert system.law is not None
+    push = system.law.damping(found, Motion(found.normal, np.ones(1)))
+    radius = 0.15 * 1.0 / (1.0 - 0.15)
+    strength = 3.0 * np.sqrt(2.0) * np.pi * ((radius / 0.15) ** 1.5 - (radius / 0.3) ** 1.5)
+    np.testing.assert_allclose(push, -strength * found.normal, rtol=1e-9)
+
+
+def test_a_side_of_the_cad_shape_without_a_name_is_refused() -> None:
+    nameless = dish()
+    nameless.cad_shape = lambda: ball(1.0).cad_shape()  # type: ignore[method-assign]
+    with pytest.raises(PluginError, match=r"domain.type: found a side of the CAD shape named .* allowed is one of rim"):
+        initial_mesh([ball(0.2)], upright([0.0, 0.0]), nameless, [rim(1)], Sizes(0.25, 0.05))
+
+
+def test_a_contact_that_takes_a_wall_for_a_body_is_refused() -> None:
+    system = build_system(built(DISK, fluid=DRY))
+    found = system.detector.detect(system.pose, None, np.inf)
+    lying = replace(found, at_wall=~found.at_wall)
+    with pytest.raises(PluginError, match="at_wall from 1 on"):
+        refuse_lost_contacts(lying, 1, 2, 2)
+
+
+def test_the_domain_is_listed_and_in_the_schema() -> None:
+    assert Registry.load().get(DOMAIN, "dish").__name__ == "Dish"
+    schema = jsonschema.Draft202012Validator(json_schema())
+    assert not list(schema.iter_errors(in_a_dish(DISK)))
+    assert list(schema.iter_errors(in_a_dish(DISK, domain={"type": "dish", "lower": [0.0, 0.0]})))
 
 
 def test_the_check_knows_the_wall_below() -> None:
