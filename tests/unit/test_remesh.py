@@ -231,7 +231,7 @@ def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
         return made
 
     monkeypatch.setattr(module, "run_mmg", without_corner)
-    monkeypatch.setattr(module, "put_back", lambda mesh, *_: mesh)
+    monkeypatch.setattr(module, "put_back", lambda mesh, *_, **__: mesh)
     with pytest.raises(MeshError, match="volume"):
         remesh(mesh, [DISK], pose, BOX, walls, COARSE)
 

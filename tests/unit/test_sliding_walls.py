@@ -10,6 +10,7 @@ import pytest
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.features import features
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
@@ -95,6 +96,8 @@ def test_the_system_knows_the_velocity_by_surface_number() -> None:
     system = build_system(scene([BELT]))
     np.testing.assert_array_equal(system.wall_velocity, [[0, 0], [0, 0], [0, 0], [0.5, 0], [0, 0]])
     assert build_system(scene([])).wall_velocity is None
+    told = {feature.name: (feature.on, feature.why) for feature in features(system)}
+    assert told["walls that slide"] == (True, "bottom")
 
 
 def test_a_velocity_across_a_wall_is_refused_by_name() -> None:

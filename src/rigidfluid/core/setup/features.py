@@ -65,6 +65,7 @@ def _mesh(system: System) -> Iterator[Feature]:
 
 
 def _contact(system: System) -> Iterator[Feature]:
+    yield _sliding(system)
     names = ", ".join(wall.name for wall in system.walls) or "none"
     if system.law is None:
         yield Feature("contact forces", False, "the scene names no law")
@@ -75,6 +76,11 @@ def _contact(system: System) -> Iterator[Feature]:
         yield _count("components that do not repel each other", parts, "parts of an articulated body")
     yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
     yield _measured(system.reach)
+
+
+def _sliding(system: System) -> Feature:
+    names = ", ".join(wall.name for wall in system.walls if wall.velocity is not None)
+    return Feature("walls that slide", bool(names), names or "no wall has a velocity")
 
 
 def _measured(reach: float) -> Feature:
