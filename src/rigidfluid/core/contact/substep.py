@@ -230,8 +230,10 @@ def _relative(quantity: FloatArray, contacts: Contacts) -> FloatArray:
 
 
 def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
-    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time]; walls count as at rest, since
-    no approach depends on how they slide in themselves."""
+    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time].
+
+    Walls count as at rest, since no approach depends on how they slide in themselves.
+    """
     point = 0.5 * (contacts.point_a + contacts.point_b)
     velocity = _point_velocity(pose, twist, contacts.body_a, point)
     on_body = contacts.body_b < len(pose.position)

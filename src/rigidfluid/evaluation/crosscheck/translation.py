@@ -158,7 +158,8 @@ def _tabulated(law: ForceLaw, system: System, kinds: Kinds, folder: Path) -> Ite
         yield f"group kind{kind} type {kind}"
         path = folder / f"wall{kind}"
         if system.walls:
-            cutoff = write_table(path, law, Pair((int(body), system.walls[0].surface), (radius[body], np.inf)))
+            meeting = Pair((int(body), system.walls[0].surface), (radius[body], np.inf), at_wall=True)
+            cutoff = write_table(path, law, meeting)
         for number, wall in enumerate(system.walls):
             axis, place, towards = _plane(wall)
             side = f"{'xyz'[axis]}{'lo' if towards > 0 else 'hi'} {place:.17g}"
