@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from dish import dish
+from wedge import wedge
 
 from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
@@ -21,6 +22,12 @@ class TestDish(DomainContract):
     @pytest.fixture(params=[2, 3])
     def domain(self, request):
         return dish(1.0, request.param)
+
+
+class TestWedge(DomainContract):
+    @pytest.fixture
+    def domain(self):
+        return wedge()
 
 
 class _Lying(Box):

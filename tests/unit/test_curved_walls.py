@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from dish import CODE, dish, in_a_dish, inside, rim
 from mesh_tools import ball, ellipsoid, upright
+from wedge import wedge
 
 from rigidfluid.checks.report import check
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
@@ -23,6 +24,7 @@ from rigidfluid.core.model.part_results import refuse_lost_contacts
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.schema import json_schema
@@ -171,6 +173,21 @@ def test_the_wall_stays_where_it_is_through_many_meshes(
     assert enclosed[-1] < around[0].volume
     if dimension == 2:
         assert enclosed[-1] > enclosed[0]
+
+
+def test_vertices_of_a_slope_rest_while_the_mesh_moves_and_stay_on_it_when_it_is_made_anew() -> None:
+    body, (floor, slope, _) = ball(0.1), wedge().pieces
+    around = wedge(), list(surfaces_of(wedge(), 1)), Sizes(0.2, 0.04)
+    start, end = upright([0.6, 0.3]), upright([0.5, 0.5])
+    mesh = initial_mesh([body], start, *around)
+    points = MeshMotion(mesh, [body], around[0], start).move(end)
+    on_slope, on_floor = (np.unique(mesh.facets[mesh.markers == number]) for number in (2, 1))
+    assert np.array_equal(points[on_slope], mesh.points[on_slope])
+    assert not np.array_equal(points[on_floor], mesh.points[on_floor])
+    new = remesh(replace(mesh, points=points), [body], end, *around)
+    for number, piece in ((1, floor), (2, slope)):
+        vertices = new.points[np.unique(new.facets[new.markers == number])]
+        assert np.abs(piece.shape.signed_distance(vertices)).max() < 1e-14
 
 
 def test_vertices_of_a_curved_wall_are_held() -> None:

@@ -19,7 +19,7 @@ CLOSEST = 0.01
 
 @dataclass(frozen=True)
 class Pair:
-    """Two surfaces: the numbers of ``bodies`` a and b, and their ``radii``; a flat wall's radius is infinite [length]."""
+    """Two surfaces: the numbers of ``bodies`` a and b, and their ``radii``, infinite of a flat wall [length]."""
 
     bodies: tuple[int, int]
     radii: tuple[float, float]
