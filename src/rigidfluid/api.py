@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
@@ -31,11 +33,12 @@ from rigidfluid.core.model.types import (
     Response,
     Step,
     Twist,
-    Wall,
     Wrench,
 )
+from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
+from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import (
     MeshError,
     OutputError,
@@ -46,7 +49,7 @@ from rigidfluid.errors import (
     StepRejected,
 )
 from rigidfluid.hookspecs import hookimpl
-from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry, missing_packages
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry, missing_packages
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
@@ -55,14 +58,18 @@ if TYPE_CHECKING:
 __all__ = [
     "BODY",
     "DETECTOR",
+    "DOMAIN",
     "FLUID_BACKEND",
     "FORCE_LAW",
     "Advance",
     "Body",
     "BoolArray",
     "BoundaryCondition",
+    "Box",
+    "BoxOptions",
     "Contacts",
     "Detector",
+    "Domain",
     "Ellipsoid",
     "EllipsoidOptions",
     "Fields",
@@ -79,6 +86,8 @@ __all__ = [
     "OutputError",
     "Part",
     "PartOptions",
+    "Piece",
+    "Plane",
     "PluginError",
     "Pose",
     "Registry",
@@ -92,12 +101,14 @@ __all__ = [
     "Step",
     "StepError",
     "StepRejected",
+    "Surface",
     "Twist",
     "Wall",
     "Wrench",
     "hookimpl",
     "load_scene",
     "missing_packages",
+    "require_plane",
     "rotation_matrices",
     "run",
     "scene_from_dict",

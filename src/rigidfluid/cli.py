@@ -273,7 +273,7 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
             "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
         ),
         TimeRemainingColumn(),
-        TextColumn("left"),
+        TextColumn("to go"),
     )
     console = _console(stderr=True)
     with Bar(*columns, console=console, disable=LAUNCH.rank > 0 or not console.is_terminal) as bar:
@@ -304,7 +304,7 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
         BarColumn(),
         TextColumn("{task.fields[now]}"),
         TimeRemainingColumn(),
-        TextColumn("left"),
+        TextColumn("to go"),
     )
     console = _console(stderr=True)
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:

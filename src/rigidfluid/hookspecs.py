@@ -1,4 +1,4 @@
-"""The four hooks by which a plug-in offers its classes, and the marker for its functions.
+"""The five hooks by which a plug-in offers its classes, and the marker for its functions.
 
 A plug-in is a module that the entry-point group ``rigidfluid`` names::
 
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
@@ -40,3 +41,8 @@ def rigidfluid_force_laws() -> list[type[ForceLaw]]:  # type: ignore[empty-body]
 @hookspec
 def rigidfluid_bodies() -> list[type[Body]]:  # type: ignore[empty-body]
     """Classes of rigid shapes."""
+
+
+@hookspec
+def rigidfluid_domains() -> list[type[Domain]]:  # type: ignore[empty-body]
+    """Classes of regions that fluid and bodies share."""

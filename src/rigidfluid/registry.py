@@ -16,6 +16,7 @@ from typing import Any, Generic, TypeVar, cast
 import pluggy
 
 from rigidfluid import hookspecs
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
 from rigidfluid.errors import PluginError
@@ -26,7 +27,7 @@ P = TypeVar("P", bound=Part)
 
 @dataclass(frozen=True)
 class Kind(Generic[P]):
-    """One of the four replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
+    """One of the five replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
     ``field`` that names it."""
 
     title: str
@@ -39,7 +40,8 @@ FLUID_BACKEND = Kind("fluid backend", "rigidfluid_fluid_backends", FluidBackend,
 DETECTOR = Kind("detector", "rigidfluid_detectors", Detector, "contact.detector")  # type: ignore[type-abstract]
 FORCE_LAW = Kind("force law", "rigidfluid_force_laws", ForceLaw, "contact.law")  # type: ignore[type-abstract]
 BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
-KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY)
+DOMAIN = Kind("domain", "rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN)
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,7 @@ class Registry:
         Parameters
         ----------
         kind : Kind
-            Which of the four kinds.
+            Which of the five kinds.
         name : str
             The name that the scene gives.
         subject : str, optional

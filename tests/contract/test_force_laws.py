@@ -54,7 +54,7 @@ class TestSum(ForceLawContract):
             film = LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), 0.63 * RANGE)
             spring = SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, restitution=0.6, friction=0.4), RANGE)
             laws = (normal, "all", ()), (film, "pairs", ()), (spring, "all", (0, 1))
-        return SumOfLaws([Interaction("interaction", *law, bodies=2) for law in laws])
+        return SumOfLaws([Interaction("interaction", *law) for law in laws])
 
 
 class TestLubrication(ForceLawContract):

@@ -10,7 +10,9 @@ from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.topology import check_mesh
-from rigidfluid.core.model.types import Pose, Wall
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.domains.box import Box
 
 
 def ball(radius, dimension=2):
@@ -32,13 +34,12 @@ def nobody(dimension):
     return Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4)))
 
 
+def box(lower, upper):
+    return Box(Box.Options(lower=tuple(map(float, lower)), upper=tuple(map(float, upper))), len(lower))
+
+
 def box_walls(lower, upper, bodies):
-    walls = []
-    for face in range(2 * len(lower)):
-        normal = np.zeros(len(lower))
-        normal[face // 2] = 1 - 2 * (face % 2)
-        walls.append(Wall(bodies + face, f"face {face}", np.array((lower, upper)[face % 2], dtype=float), normal))
-    return walls
+    return list(surfaces_of(box(lower, upper), bodies))
 
 
 def random_ellipsoids(dimension, seed):
@@ -51,7 +52,7 @@ def random_ellipsoids(dimension, seed):
     pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
     lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
     size = 0.04 if dimension == 2 else 0.2
-    mesh = generate_mesh(bodies, pose, lower, upper, 0.3, size, 0.5)
+    mesh = generate_mesh(bodies, pose, box(lower, upper), 0.3, size, 0.5)
     return bodies, box_walls(lower, upper, len(bodies)), pose, mesh
 
 

@@ -21,6 +21,7 @@ def contact(gap: float, radius_a: float = np.nan, radius_b: float = np.nan, dime
         gap=np.array([gap]),
         radius_a=np.array([radius_a]),
         radius_b=np.array([radius_b]),
+        at_wall=np.array([np.isinf(radius_b)]),
     )
 
 

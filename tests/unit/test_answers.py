@@ -63,7 +63,8 @@ def at_walls(gaps: FloatArray) -> Contacts:
     normal = np.tile([0.0, 1.0], (count, 1))
     none, flat = np.full(count, RADIUS), np.full(count, np.inf)
     point = gaps[:, None] * normal
-    return Contacts(np.arange(count), np.full(count, count), point, 0.0 * point, normal, gaps, none, flat)
+    a, at_wall = np.arange(count), np.ones(count, dtype=bool)
+    return Contacts(a, np.full(count, count), point, 0.0 * point, normal, gaps, none, flat, at_wall)
 
 
 def tightness(gaps: FloatArray) -> FloatArray:

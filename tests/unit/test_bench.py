@@ -40,7 +40,7 @@ def test_collisions_counts_the_contacts_of_the_paper(tmp_path):
 @pytest.mark.parametrize(("dimension", "table"), PAPER.items())
 def test_grids_have_the_contacts_of_the_paper(dimension, table):
     for count, (pairs, at_walls) in table.items():
-        balls, pose, walls = balls_in_a_box(dimension, count)
+        balls, pose, _, walls = balls_in_a_box(dimension, count)
         contacts = SphereDetector(PartOptions(), balls, walls).detect(pose, None, RANGE)
         at_wall = contacts.body_b >= count
         assert (np.count_nonzero(~at_wall), len(set(contacts.body_a[at_wall]))) == (pairs, at_walls)

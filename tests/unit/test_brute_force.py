@@ -5,7 +5,9 @@ from scipy.optimize import minimize_scalar
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 
 TILT = 0.4
@@ -28,13 +30,13 @@ def tilted(angle: float) -> FloatArray:
 @pytest.mark.parametrize("semi_axes", [(1.0, 0.5), (1.0, 0.05), (1.0, 0.5, 0.2), (0.2, 0.6, 1.0)])
 def test_tilted_ellipsoid_over_a_wall(semi_axes: tuple[float, ...], height: float) -> None:
     dimension = len(semi_axes)
-    wall = Wall(1, "bottom", np.zeros(dimension), np.eye(dimension)[1])
+    wall = Wall(1, "bottom", Plane(np.zeros(dimension), np.eye(dimension)[1]))
     orientation = np.array([[TILT]]) if dimension == 2 else tilted(TILT)[None]
     pose = Pose(height * np.eye(dimension)[1:2], orientation)
     contacts = detect([ellipsoid(*semi_axes)], pose, [wall])
     support = np.hypot(semi_axes[0] * np.sin(TILT), semi_axes[1] * np.cos(TILT))
     np.testing.assert_allclose(contacts.gap, [height - support], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(contacts.normal, wall.normal[None])
+    np.testing.assert_allclose(contacts.normal, np.eye(dimension)[1:2])
     assert np.isnan(contacts.radius_a[0])
     assert np.isinf(contacts.radius_b[0])
 

@@ -14,7 +14,9 @@ from rigidfluid.core.mechanics.rigid import lab_inertia, rotation_matrices
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Step, Twist, Wall, Wrench
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
@@ -178,7 +180,7 @@ def bounce(steps_in_contact: int) -> Bounce:
     # the shallow estimate of the stiffness for which the disk comes to rest at DEEPEST
     epsilon = DEEPEST**3 * 2 * (2 * RADIUS + RANGE) / (3 * MASS * SPEED**2)
     ball = Sphere(SphereOptions(radius=RADIUS), 2)
-    wall = Wall(1, "bottom", np.zeros(2), np.array([0.0, 1.0]))
+    wall = Wall(1, "bottom", Plane(np.zeros(2), np.array([0.0, 1.0])))
     detector = SphereDetector(PartOptions(), [ball], [wall])
     law = CentreLaw(CentreOptions(epsilon=1.0, epsilon_wall=epsilon), RANGE)
 

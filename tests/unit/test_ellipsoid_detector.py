@@ -13,7 +13,9 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.rigid import moment, rotate, rotation_matrices
 from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Contacts, FloatArray, Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.ellipsoid_separation import touching_normal
@@ -240,7 +242,7 @@ def test_a_ball_is_as_far_as_the_closest_point_of_its_centre(dimension: int, axe
 @pytest.mark.parametrize("gap", [0.3, 1e-3, -0.002])
 def test_agrees_with_the_naive_detector(dimension: int, gap: float) -> None:
     random = np.random.default_rng(11)
-    wall = Wall(2, "bottom", np.full(dimension, -0.4), np.eye(dimension)[1])
+    wall = Wall(2, "bottom", Plane(np.full(dimension, -0.4), np.eye(dimension)[1]))
     bodies: list[Body] = [ellipsoid(*SHAPES[dimension][0]), ellipsoid(*SHAPES[dimension][1])]
     pose = placed_at(gap, bodies, turned(random, dimension), np.array([0.6, 0.8, 0.0])[:dimension])
     naive = BruteForceDetector(BruteForceOptions(), bodies, [wall]).detect(pose, None, np.inf)
@@ -291,7 +293,7 @@ def test_what_is_beyond_reach_is_left_out_and_nothing_else(dimension: int) -> No
     random, count = np.random.default_rng(0), 60
     bodies = [ellipsoid(*SHAPES[dimension][k % len(SHAPES[dimension])]) for k in range(count)]
     pose = Pose(random.uniform(0, 6, (count, dimension)), turned(random, dimension, count))
-    walls = tuple(Wall(count + k, "", np.zeros(dimension), np.eye(dimension)[k]) for k in range(dimension))
+    walls = tuple(Wall(count + k, "", Plane(np.zeros(dimension), np.eye(dimension)[k])) for k in range(dimension))
     everything = detect(bodies, pose, walls)
     assert len(everything) == count * (count - 1) // 2 + dimension * count
     for reach in (0.3, 0.0, -0.1):
@@ -304,7 +306,7 @@ def test_what_is_beyond_reach_is_left_out_and_nothing_else(dimension: int) -> No
 @DIMENSIONS
 def test_without_bodies_there_is_no_contact(dimension: int) -> None:
     nobody = Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4)))
-    contacts = detect([], nobody, (Wall(0, "", np.zeros(dimension), np.eye(dimension)[0]),))
+    contacts = detect([], nobody, (Wall(0, "", Plane(np.zeros(dimension), np.eye(dimension)[0])),))
     assert len(contacts) == 0
     assert contacts.normal.shape == (0, dimension)
 
@@ -321,10 +323,13 @@ def test_one_body_and_its_walls_need_no_compiler() -> None:
 import sys
 import numpy as np
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.registry import BODY, DETECTOR, Registry
 shape, detector = Registry.load().get(BODY, "ellipsoid"), Registry.load().get(DETECTOR, "ellipsoid")
-bodies, walls = [shape(shape.Options(semi_axes=[1.0, 0.5]), 2)], [Wall(1, "bottom", np.zeros(2), np.array([0.0, 1.0]))]
+bodies = [shape(shape.Options(semi_axes=[1.0, 0.5]), 2)]
+walls = [Wall(1, "bottom", Plane(np.zeros(2), np.array([0.0, 1.0])))]
 found = detector(PartOptions(), bodies, walls).detect(Pose(np.array([[0.0, 0.8]]), np.zeros((1, 1))), None, np.inf)
 print(len(found), "numba" in sys.modules)
 """

@@ -7,11 +7,13 @@ from mesh_tools import ball, ellipsoid
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.sphere import SphereDetector
 
-FLOOR = Wall(2, "bottom", np.array([0.0, 0.0]), np.array([0.0, 1.0]))
+FLOOR = Wall(2, "bottom", Plane(np.array([0.0, 0.0]), np.array([0.0, 1.0])))
 START = Pose(np.array([[0.3, 0.2], [0.55, 0.25]]), np.array([[0.3], [-0.8]]))
 
 

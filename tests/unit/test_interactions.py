@@ -162,7 +162,7 @@ def test_auto_is_computed_for_each_law() -> None:
 
 def touching(gap: float) -> Contacts:
     one, normal = np.ones(1), np.array([[1.0, 0.0]])
-    return Contacts(np.zeros(1, int), np.ones(1, int), gap * normal, 0 * normal, normal, gap * one, one, one)
+    return Contacts(np.zeros(1, int), np.ones(1, int), gap * normal, 0 * normal, normal, gap * one, one, one, np.zeros(1, bool))
 
 
 def test_the_stiffness_on_the_way_sees_each_range() -> None:
@@ -251,7 +251,7 @@ def test_an_unknown_law_is_refused_by_its_table() -> None:
 
 def test_a_face_that_is_no_wall_is_refused() -> None:
     outlet = [{"on": "top", "type": "pressure", "pressure": 0.0}]
-    with pytest.raises(SceneError, match=r"interaction.0.names.0: found 'top', a face that is no wall"):
+    with pytest.raises(SceneError, match=r"interaction.0.names.0: found 'top', a surface that is no wall"):
         scene_from_dict(tables(NORMAL | {"names": ["top"]}, boundary=outlet))
 
 

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from marching_meshes import stars
-from mesh_tools import ball, box_walls, random_ellipsoids, upright
+from mesh_tools import ball, box, box_walls, random_ellipsoids, upright
 from threaded_ranks import ThreadedRanks, on_ranks
 
 from rigidfluid.core.mesh.distribution import distributed
@@ -153,7 +153,7 @@ def test_ranks_exchange_what_is_new(monkeypatch):
 
 def test_where_nothing_is_near_nobody_is_asked(monkeypatch):
     bodies, pose = [ball(0.2), ball(0.2)], upright([0.5, 0.5], [1.5, 0.5])
-    mesh = generate_mesh(bodies, pose, np.zeros(2), np.array([2.0, 1.0]), 0.2, 0.1, 0.5)
+    mesh = generate_mesh(bodies, pose, box(np.zeros(2), np.array([2.0, 1.0])), 0.2, 0.1, 0.5)
 
     def work(ranks):
         part, detector = part_of(mesh, ranks), made(NarrowBandDetector, bodies, [])

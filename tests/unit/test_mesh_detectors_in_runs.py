@@ -1,7 +1,7 @@
 """Scenes whose detector reads the mesh, from start to end."""
 
 import pytest
-from mesh_tools import ball, ellipsoid
+from mesh_tools import ball, box, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.run.run import run
@@ -12,6 +12,7 @@ from rigidfluid.errors import SceneError
 
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}
 DISK = {"type": "sphere", "radius": 0.08, "density": 1.25, "position": [0.3, 0.105]}
+BOX = box([0.0, 0.0], [0.6, 0.8])
 LAW = {"law": "centre", "range": 0.03, "epsilon": 5e-6}
 
 
@@ -55,14 +56,14 @@ def test_auto_takes_the_cheapest_detector_that_is_exact():
     chosen = build_system(scene(ELLIPSE, {}))
     assert (chosen.detector.name, chosen.detector_why) == ("ellipsoid", "chosen as all bodies are balls or ellipsoids")
     bodies = [ellipsoid(0.1, 0.05), ball(0.1)]
-    assert [cheapest_detector(bodies, mesh)[0] for mesh in (True, False)] == ["ellipsoid"] * 2
+    assert [cheapest_detector(bodies, BOX, mesh)[0] for mesh in (True, False)] == ["ellipsoid"] * 2
 
     class Cross(Sphere):
         name = "cross"
         radius = None
 
     bodies.append(Cross(Cross.Options(radius=0.1), 2))
-    assert [cheapest_detector(bodies, mesh)[0] for mesh in (True, False)] == ["narrow_band", "brute_force"]
+    assert [cheapest_detector(bodies, BOX, mesh)[0] for mesh in (True, False)] == ["narrow_band", "brute_force"]
 
 
 def test_a_detector_that_needs_a_mesh_is_refused_without_one():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mesh_tools import assert_valid, ball, body_facets, edge_lengths, edges_of, ellipsoid, nobody, upright
+from mesh_tools import assert_valid, ball, body_facets, box, edge_lengths, edges_of, ellipsoid, nobody, upright
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
@@ -14,6 +14,7 @@ from rigidfluid.errors import MeshError
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
 LOW, HIGH = np.full(3, -1.0), np.array([1.0, 2.0, 1.0])
+BOX, CUBE = box(LOWER, UPPER), box(LOW, HIGH)
 DISK = ball(0.125)
 TILTED = Pose(np.array([[0.9, 1.2]]), np.array([[0.7]]))
 HALF_TURN = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
@@ -35,7 +36,7 @@ CASES_3D = [
 
 @pytest.mark.parametrize(("bodies", "pose"), CASES_2D)
 def test_a_plane_mesh_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
-    mesh = generate_mesh(bodies, pose, LOWER, UPPER, 0.2, 0.02, 0.2)
+    mesh = generate_mesh(bodies, pose, BOX, 0.2, 0.02, 0.2)
     assert capfd.readouterr() == ("", "")
     assert_valid(mesh, bodies, pose, LOWER, UPPER)
     edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
@@ -46,7 +47,7 @@ def test_a_plane_mesh_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd
 
 @pytest.mark.parametrize(("bodies", "pose"), CASES_3D)
 def test_a_mesh_in_space_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
-    mesh = generate_mesh(bodies, pose, LOW, HIGH, 0.6, 0.15, 0.4)
+    mesh = generate_mesh(bodies, pose, CUBE, 0.6, 0.15, 0.4)
     assert capfd.readouterr() == ("", "")
     assert_valid(mesh, bodies, pose, LOW, HIGH)
     edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
@@ -56,12 +57,12 @@ def test_a_mesh_in_space_is_valid_silent_and_fine_on_the_bodies(bodies, pose, ca
 
 
 def test_a_mesh_away_from_everything_has_good_cells():
-    mesh = generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.02, 0.2)
+    mesh = generate_mesh([DISK], upright([1, 2]), BOX, 0.2, 0.02, 0.2)
     assert cell_quality(mesh.points, mesh.cells).min() > 0.5
 
 
 def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
-    first, second = (generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.02, 0.2) for _ in range(2))
+    first, second = (generate_mesh([DISK], upright([1, 2]), BOX, 0.2, 0.02, 0.2) for _ in range(2))
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.cells, second.cells)
     assert body_facets(first, 1) == body_facets(second, 1)
@@ -78,11 +79,11 @@ def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
 )
 def test_an_impossible_geometry_is_refused_by_the_body_s_name(positions, body):
     with pytest.raises(MeshError, match=f"^body.{body}.position"):
-        generate_mesh([DISK, DISK], upright(*positions), LOWER, UPPER, 0.2, 0.02, 0.2)
+        generate_mesh([DISK, DISK], upright(*positions), BOX, 0.2, 0.02, 0.2)
 
 
 def test_a_mesh_with_an_unlisted_facet_is_refused():
-    mesh = generate_mesh([DISK], upright([1, 2]), LOWER, UPPER, 0.2, 0.05, 0.2)
+    mesh = generate_mesh([DISK], upright([1, 2]), BOX, 0.2, 0.05, 0.2)
     with pytest.raises(MeshError, match="marked facets"):
         check_mesh(replace(mesh, facets=mesh.facets[1:], markers=mesh.markers[1:]), quality=0.0)
     inside = mesh.cells[np.isin(mesh.cells, mesh.facets).sum(axis=1) < 2][:1, :2]

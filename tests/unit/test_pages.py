@@ -7,16 +7,18 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from falling import SCENES
 
 import rigidfluid
 from rigidfluid.core.output.records import columns
-from rigidfluid.registry import FORCE_LAW, GROUP, KINDS, Registry
+from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
 ROOT = SCENES.parent
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 Install = Callable[..., Path]
+COARSE = ["time.end=0.2", "time.step=0.004", "mesh.size_body=0.05", "output.every=0.2"]
 
 
 def text(name: str) -> str:
@@ -65,14 +67,31 @@ def test_links_lead_to_files(page: Path) -> None:
 
 def test_the_example_of_a_plug_in_runs(install: Install) -> None:
     page = text("docs/plugins.md")
-    project, scene_table = (tomllib.loads(block) for block in blocks(page, "toml"))
+    law = section(page, "A force law, from nothing")
+    project, scene_table = (tomllib.loads(block) for block in blocks(law, "toml"))
     (name, module), *_ = project["project"]["entry-points"][GROUP].items()
-    install(blocks(page, "python")[0], name=name, module=module)
+    install(blocks(law, "python")[0], name=name, module=module)
     assert Registry.load().get(FORCE_LAW, "linear").__doc__
     scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.01"]).to_dict()
     scene["contact"] = scene_table["contact"]
     history = rigidfluid.run(rigidfluid.scene_from_dict(scene))
     assert history.bodies["cfx"].any()
+
+
+def test_the_example_of_a_domain_runs(install: Install) -> None:
+    """A disk falls in the round container, stays inside, and all energy is accounted for."""
+    example = section(text("docs/plugins.md"), "A domain, from nothing")
+    code, _ = blocks(example, "python")
+    (domain,) = (tomllib.loads(block) for block in blocks(example, "toml"))
+    install(code, name="dish", module="rigidfluid_dish")
+    assert Registry.load().get(DOMAIN, "dish").__doc__
+    scene = rigidfluid.load_scene(SCENES / "falling_disk.toml", COARSE).to_dict()
+    scene |= domain | {"body": [{"type": "sphere", "radius": 0.125, "density": 1.25, "position": [0.3, -0.6]}]}
+    history = rigidfluid.run(rigidfluid.scene_from_dict(scene))
+    assert np.all(np.hypot(history.bodies["x"], history.bodies["y"]) + 0.125 < 1.0)
+    assert history.bodies["y"][-1] < -0.7
+    energy = history.summary["energy"]
+    assert max(energy["created"], energy["lost"]) < 0.01
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -53,7 +53,7 @@ def test_the_papers_tables_have_the_same_arrangements():
 @pytest.mark.parametrize(("dimension", "bodies"), [(2, 49), (3, 125)])
 def test_a_scene_has_the_balls_of_its_arrangement(dimension, bodies):
     made = scene(dimension, bodies, 1.0, backend="scikit-fem")
-    balls, pose, _ = balls_in_a_box(dimension, bodies)
+    balls, pose, *_ = balls_in_a_box(dimension, bodies)
     assert [body.position for body in made.body] == [tuple(centre) for centre in pose.position]
     assert {body.options["radius"] for body in made.body} == {balls[0].radius}
 

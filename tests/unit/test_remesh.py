@@ -8,6 +8,7 @@ from mesh_tools import (
     assert_valid,
     ball,
     body_facets,
+    box,
     box_walls,
     edge_lengths,
     edges_of,
@@ -28,6 +29,7 @@ from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 6.0])
+BOX = box(LOWER, UPPER)
 RADIUS, DISK = 0.125, ball(0.125)
 FINE, COARSE = Sizes(size=0.15, size_body=0.01), Sizes(size=0.15, size_body=0.025)
 APPROACH = np.geomspace(0.2, 5e-4, 60)
@@ -44,20 +46,20 @@ def bridges(mesh, bodies, first, others):
 
 def drive(bodies, poses, gap, sizes, upper=UPPER):
     """Move along poses, re-mesh when a cell gets bad or the gap has halved; meshes made, with their pose and gap."""
-    walls = box_walls(LOWER, upper, len(bodies))
-    mesh, start = initial_mesh(bodies, poses[0], LOWER, upper, walls, sizes), poses[0]
-    motion, made = MeshMotion(mesh, bodies, start), [(mesh, start, gap(start))]
+    walls, domain = box_walls(LOWER, upper, len(bodies)), box(LOWER, upper)
+    mesh, start = initial_mesh(bodies, poses[0], domain, walls, sizes), poses[0]
+    motion, made = MeshMotion(mesh, bodies, domain, start), [(mesh, start, gap(start))]
     for pose in poses[1:]:
         points = motion.move(pose)
         quality = cell_quality(points, mesh.cells).min()
         assert quality > 0.05
         if quality < 0.3 or (gap(pose) < 0.5 * made[-1][2] and gap(pose) < sizes.cells_per_gap * sizes.size_body):
             moved = Mesh(points, mesh.cells, mesh.facets, mesh.markers)
-            mesh = remesh(moved, bodies, pose, walls, sizes)
+            mesh = remesh(moved, bodies, pose, domain, walls, sizes)
             assert_valid(mesh, bodies, pose, LOWER, upper)
-            unsplit = refine_surface(moved, bodies, pose, walls, sizes)
+            unsplit = refine_surface(moved, bodies, pose, domain, walls, sizes)
             assert body_facets(mesh, len(bodies)) == body_facets(unsplit, len(bodies))
-            motion = MeshMotion(mesh, bodies, pose)
+            motion = MeshMotion(mesh, bodies, domain, pose)
             made.append((mesh, pose, gap(pose)))
     return made
 
@@ -109,17 +111,17 @@ def test_the_cells_grow_again_after_the_wall_is_left_but_the_kept_facets_stay():
 
 def test_a_sphere_moves_towards_a_wall_in_space():
     lower, upper, body, sizes = np.full(3, -1.0), np.ones(3), ball(0.4, 3), Sizes(0.6, 0.2, growth=0.4)
-    walls = box_walls(lower, upper, 1)
-    mesh = initial_mesh([body], upright([0, 0, 0]), lower, upper, walls, sizes)
+    walls, cube = box_walls(lower, upper, 1), box(lower, upper)
+    mesh = initial_mesh([body], upright([0, 0, 0]), cube, walls, sizes)
     assert_valid(mesh, [body], upright([0, 0, 0]), lower, upper)
     pose = upright([0, 0, -0.3])
-    moved = replace(mesh, points=MeshMotion(mesh, [body], upright([0, 0, 0])).move(pose))
-    halfway = remesh(moved, [body], pose, walls, sizes)
+    moved = replace(mesh, points=MeshMotion(mesh, [body], cube, upright([0, 0, 0])).move(pose))
+    halfway = remesh(moved, [body], pose, cube, walls, sizes)
     assert_valid(halfway, [body], pose, lower, upper)
     assert body_facets(halfway, 1) == body_facets(moved, 1)
     near = upright([0, 0, -0.45])
-    moved = replace(halfway, points=MeshMotion(halfway, [body], pose).move(near))
-    split = remesh(moved, [body], near, walls, sizes)
+    moved = replace(halfway, points=MeshMotion(halfway, [body], cube, pose).move(near))
+    split = remesh(moved, [body], near, cube, walls, sizes)
     assert_valid(split, [body], near, lower, upper)
     assert np.sum(split.markers == 0) > np.sum(moved.markers == 0)
     assert cell_quality(split.points, split.cells).min() > 0.15
@@ -129,7 +131,7 @@ def test_a_sphere_moves_towards_a_wall_in_space():
 def test_a_box_without_bodies_is_meshed(dimension):
     lower, upper = np.zeros(dimension), np.ones(dimension)
     walls = box_walls(lower, upper, 0)
-    mesh = initial_mesh([], nobody(dimension), lower, upper, walls, Sizes(0.3, 0.1))
+    mesh = initial_mesh([], nobody(dimension), box(lower, upper), walls, Sizes(0.3, 0.1))
     assert_valid(mesh, [], nobody(dimension), lower, upper)
 
 
@@ -139,7 +141,7 @@ def test_a_box_without_bodies_is_meshed(dimension):
 def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
     alone, pair = upright([1 + shift, RADIUS + gap]), upright([1 + shift, 3], [1 + shift + 2 * RADIUS + gap, 3])
     bodies, pose = [DISK] * count, alone if count == 1 else pair
-    mesh = initial_mesh(bodies, pose, LOWER, UPPER, box_walls(LOWER, UPPER, count), COARSE)
+    mesh = initial_mesh(bodies, pose, BOX, box_walls(LOWER, UPPER, count), COARSE)
     assert_valid(mesh, bodies, pose, LOWER, UPPER)
     assert bridges(mesh, count, 0, [3 if count == 1 else 1]) == 0 or gap < 2 * COARSE.smallest
     assert cell_quality(mesh.points, mesh.cells).min() > (0.3 if gap > 2 * COARSE.smallest else 0.1)
@@ -147,8 +149,8 @@ def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
 
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.01, 0.2)
-    split = refine_surface(mesh, [DISK], pose, walls, FINE)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.01, 0.2)
+    split = refine_surface(mesh, [DISK], pose, BOX, walls, FINE)
     assert np.array_equal(split.points[: len(mesh.points)], mesh.points)
     edges = np.sort(split.facets[split.markers == 0], axis=1)
     wanted = wanted_size(split.points[edges].mean(axis=1), [DISK], pose, walls, FINE)
@@ -177,7 +179,7 @@ def test_two_bodies_make_a_gap_and_walls_that_do_not_repel_make_none():
 
 def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
     pose, walls = upright([1, RADIUS + 0.01]), box_walls(LOWER, UPPER, 1)
-    first, second = (initial_mesh([DISK], pose, LOWER, UPPER, walls, FINE) for _ in range(2))
+    first, second = (initial_mesh([DISK], pose, BOX, walls, FINE) for _ in range(2))
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.cells, second.cells)
 
@@ -211,16 +213,16 @@ SPOILERS = [spoil_lose_a_facet, spoil_move_a_body_vertex, spoil_invert_a_cell, s
 @pytest.mark.parametrize("spoil", SPOILERS)
 def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
     good = module.run_mmg
     monkeypatch.setattr(module, "run_mmg", lambda *arguments: spoil(good(*arguments)))
     with pytest.raises(MeshError):
-        remesh(mesh, [DISK], pose, walls, COARSE)
+        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
 
 
 def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
     good = module.run_mmg
 
     def without_corner(*arguments):
@@ -229,24 +231,24 @@ def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
         return made
 
     monkeypatch.setattr(module, "run_mmg", without_corner)
-    monkeypatch.setattr(module, "on_box_faces", lambda new, *_: new.points.copy())
+    monkeypatch.setattr(module, "put_back", lambda mesh, *_, **__: mesh)
     with pytest.raises(MeshError, match="volume"):
-        remesh(mesh, [DISK], pose, walls, COARSE)
+        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
 
 
 def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
     monkeypatch.setattr(module, "run_mmg", lambda mesh, *_: mesh)
     with pytest.raises(MeshError):
-        remesh(mesh, [DISK], pose, walls, COARSE)
+        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
 
 
 def with_a_vertex_below_the_surface():
     """A disk near the floor, with a vertex added between a facet and the disk's arc above it; and that facet."""
     pose, walls = upright([1, RADIUS + 0.02]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
-    edges, middles, _ = long_edges(mesh, [DISK], pose, walls, COARSE, 1.5)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
+    edges, middles, _ = long_edges(mesh, [DISK], pose, BOX, walls, COARSE, 1.5)
     added = 0.5 * (middles[0] + mesh.points[edges[0]].mean(axis=0))
     split = np.flatnonzero(np.isin(mesh.cells, edges[0]).sum(axis=1) == 2)
     assert len(split) == 1
@@ -260,35 +262,35 @@ def with_a_vertex_below_the_surface():
 def test_a_bisection_that_would_invert_a_cell_waits_for_better_cells():
     mesh, pose, walls, edge = with_a_vertex_below_the_surface()
     assert cell_volumes(mesh.points, mesh.cells).min() > 0
-    refined = refine_surface(mesh, [DISK], pose, walls, COARSE)
+    refined = refine_surface(mesh, [DISK], pose, BOX, walls, COARSE)
     assert cell_volumes(refined.points, refined.cells).min() > 0
     assert len(refined.points) > len(mesh.points)
-    left, _, _ = long_edges(refined, [DISK], pose, walls, COARSE, 1.5)
+    left, _, _ = long_edges(refined, [DISK], pose, BOX, walls, COARSE, 1.5)
     assert left.tolist() == [edge.tolist()]
-    new = remesh(mesh, [DISK], pose, walls, COARSE)
+    new = remesh(mesh, [DISK], pose, BOX, walls, COARSE)
     assert_valid(new, [DISK], pose, LOWER, UPPER)
-    assert not len(long_edges(new, [DISK], pose, walls, COARSE, 1.5)[0])
+    assert not len(long_edges(new, [DISK], pose, BOX, walls, COARSE, 1.5)[0])
 
 
 def test_edges_that_never_fit_stay(monkeypatch):
     mesh, pose, walls, _ = with_a_vertex_below_the_surface()
     tried = []
     monkeypatch.setattr(surface, "spares_cells", lambda _, edges, __: tried.append(1) or np.zeros(len(edges), bool))
-    new = remesh(mesh, [DISK], pose, walls, COARSE)
+    new = remesh(mesh, [DISK], pose, BOX, walls, COARSE)
     assert len(tried) >= module.ROUNDS
     assert body_facets(new, 1) == body_facets(mesh, 1)
 
 
 def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, LOWER, UPPER, 0.15, 0.025, 0.2)
+    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
     good, gradations = module.run_mmg, []
 
-    def fails_once(mesh, bodies, metric, gradation):
-        gradations.append(gradation)
-        made = good(mesh, bodies, metric, gradation)
+    def fails_once(*arguments):
+        gradations.append(arguments[-1])
+        made = good(*arguments)
         return spoil_lose_a_facet(made) if len(gradations) == 1 else made
 
     monkeypatch.setattr(module, "run_mmg", fails_once)
-    assert_valid(remesh(mesh, [DISK], pose, walls, COARSE), [DISK], pose, LOWER, UPPER)
+    assert_valid(remesh(mesh, [DISK], pose, BOX, walls, COARSE), [DISK], pose, LOWER, UPPER)
     assert len(set(gradations)) == 2

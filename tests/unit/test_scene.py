@@ -122,7 +122,12 @@ BAD = {
     "no body": ({"body": []}, "body: found []", "at least 1", "Correct"),
     "empty box": ({"domain.upper": [2.0, 0.0]}, "domain.upper: found [2.0, 0.0]", "above domain.lower", "Swap"),
     "probe outside": ({"output.probes": [[3.0, 0.0]]}, "output.probes.0: found [3.0, 0.0]", "domain", "Move"),
-    "3D face": ({"boundary": [{"on": "front", "type": "wall"}]}, "boundary.0.on: found 'front'", "left", "Name a face"),
+    "3D face": (
+        {"boundary": [{"on": "front", "type": "wall"}]},
+        "boundary.0.on: found 'front'",
+        "left",
+        "Name a surface",
+    ),
     "velocity missing": ({"boundary": [{"on": "left", "type": "velocity"}]}, "boundary.0.velocity", "value", "Add"),
     "pressure of a wall": (
         {"boundary": [{"on": "left", "type": "wall", "pressure": 0.0}]},
@@ -175,7 +180,7 @@ BAD = {
         "no other body",
         "Rename",
     ),
-    "name of a face": ({"body.0.name": "top"}, "body.0.name: found 'top'", "face", "Rename"),
+    "name of a face": ({"body.0.name": "top"}, "body.0.name: found 'top'", "surface", "Rename"),
     "law without range": ({"contact.range": DELETE}, "contact.range: found nothing", "above 0", "Add"),
     "range without law": (
         {"contact": {"range": 1.0}},
@@ -214,11 +219,11 @@ BAD_GEOMETRY = {
         "body.0",
         "at least 1e-08",
     ),
-    "outside": ({"body.0.position": [1.0, 7.0]}, "body.0.position", "overlaps face 'top' of the domain by 1.125"),
+    "outside": ({"body.0.position": [1.0, 7.0]}, "body.0.position", "overlaps surface 'top' of the domain by 1.125"),
     "through a wall": (
         {"body.0.position": [0.1, 3.0]},
         "body.0.position",
-        "overlaps face 'left' of the domain by 0.025",
+        "overlaps surface 'left' of the domain by 0.025",
     ),
     "in another": (
         {"body.1": {**SECOND, "position": [1.0, 3.8]}},
@@ -228,7 +233,7 @@ BAD_GEOMETRY = {
     "through an outlet": (
         {"boundary": [{"on": "right", "type": "pressure", "pressure": 0.0}], "body.0.position": [2.0, 3.0]},
         "body.0.position",
-        "overlaps face 'right'",
+        "overlaps surface 'right'",
     ),
     "mesh too coarse": (
         {"body.0.position": [1.0, 0.1251], "mesh.size_body": 0.1, "mesh.refinements": 1},
@@ -415,8 +420,9 @@ def test_system_in_3d() -> None:
     np.testing.assert_array_equal(system.twist.velocity, [[1, 2, 3]])
     assert system.inertia.shape == (1, 3, 3)
     assert system.surfaces == ("body0", "left", "right", "bottom", "top", "back", "front")
-    np.testing.assert_array_equal(system.walls[5].normal, [0, 0, -1])
-    np.testing.assert_array_equal(system.walls[5].point[2], 2.0)
+    front = system.walls[5].shape.plane
+    np.testing.assert_array_equal(front.unit_normal, [0, 0, -1])
+    np.testing.assert_array_equal(front.point[2], 2.0)
 
 
 def test_angle_in_3d_is_refused() -> None:
@@ -443,7 +449,7 @@ def test_later_boundaries_override_earlier_ones() -> None:
         {"on": "top", "type": "wall"},
     ]
     scene = scene_from_dict(changed({"boundary": boundary}))
-    left, right, bottom, top = conditions(scene)
+    left, right, bottom, top = conditions(scene, build_system(scene).domain)
     assert [c.type for c in (left, right, bottom, top)] == ["velocity", "pressure", "slip", "wall"]
     assert [c.surface for c in (left, right, bottom, top)] == [1, 2, 3, 4]
     points = np.array([[0.0, 0.0], [0.0, 1.5], [0.0, 3.0]])

@@ -4,7 +4,9 @@ import pytest
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import FloatArray, Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError
 
@@ -33,7 +35,7 @@ def test_search_tree_finds_what_all_pairs_find(dimension: int) -> None:
 
 def test_ten_thousand_balls_in_a_lattice() -> None:
     grid = np.stack(np.meshgrid(*[np.arange(100.0)] * 2), axis=-1).reshape(-1, 2)
-    wall = Wall(10_000, "left", np.array([-0.6, 0.0]), np.array([1.0, 0.0]))
+    wall = Wall(10_000, "left", Plane(np.array([-0.6, 0.0]), np.array([1.0, 0.0])))
     contacts = detector_of(np.full(10_000, 0.45), 2, (wall,)).detect(pose_of(grid), None, 0.2)
     assert len(contacts) == 2 * 99 * 100 + 100
     np.testing.assert_allclose(contacts.gap[contacts.body_b < 10_000], 0.1, rtol=1e-12)
@@ -49,7 +51,7 @@ def test_no_pair_no_contact(count: int, reach: float) -> None:
 
 
 def test_imaginary_ball_touches_the_wall_from_outside() -> None:
-    wall = Wall(1, "bottom", np.array([5.0, -1.0]), np.array([0.0, 1.0]))
+    wall = Wall(1, "bottom", Plane(np.array([5.0, -1.0]), np.array([0.0, 1.0])))
     contacts = detector_of(np.array([0.3]), 2, (wall,)).detect(pose_of(np.array([[2.0, -0.6]])), None, np.inf)
     centre, imaginary = contacts.point_a + 0.3 * contacts.normal, contacts.point_b - 0.3 * contacts.normal
     np.testing.assert_allclose(imaginary, [[2.0, -1.3]], rtol=0, atol=1e-15)
@@ -57,7 +59,7 @@ def test_imaginary_ball_touches_the_wall_from_outside() -> None:
 
 
 def test_a_ball_behind_the_wall_overlaps_it() -> None:
-    wall = Wall(1, "bottom", np.zeros(2), np.array([0.0, 1.0]))
+    wall = Wall(1, "bottom", Plane(np.zeros(2), np.array([0.0, 1.0])))
     contacts = detector_of(np.array([0.3]), 2, (wall,)).detect(pose_of(np.array([[0.0, -2.0]])), None, 0.0)
     np.testing.assert_allclose(contacts.gap, [-2.3])
 
@@ -79,7 +81,7 @@ def test_kept_neighbours_find_what_a_new_search_finds(dimension: int) -> None:
     random = np.random.default_rng(1)
     radii, position = random.uniform(0.1, 0.3, 200), random.uniform(0, 5, (200, dimension))
     walls = tuple(
-        Wall(200 + 2 * axis, "left", np.zeros(dimension), np.eye(dimension)[axis]) for axis in range(dimension)
+        Wall(200 + 2 * axis, "left", Plane(np.zeros(dimension), np.eye(dimension)[axis])) for axis in range(dimension)
     )
     kept = detector_of(radii, dimension, walls)
     velocity, searched = random.normal(size=(200, dimension)), 0

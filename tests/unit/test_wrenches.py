@@ -25,6 +25,7 @@ def contacts_of(body_a: list[int], body_b: list[int], dimension: int) -> Contact
         gap,
         unknown,
         unknown,
+        np.array(body_b) >= 3,
     )
 
 
@@ -47,7 +48,7 @@ def test_both_sides_take_force_and_moment_half_way_between_their_points() -> Non
     here = np.array([[1.0, 0.0]])
     there = np.array([[2.0, 0.0]])
     one = np.array([1.0])
-    contacts = Contacts(np.array([0]), np.array([1]), here, there, here, -one, one, one)
+    contacts = Contacts(np.array([0]), np.array([1]), here, there, here, -one, one, one, np.array([False]))
     pose = Pose(np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 1)))
     wrench = contact_wrench(contacts, np.array([[0.0, 10.0]]), pose)
     np.testing.assert_allclose(wrench.force, [[0.0, 10.0], [0.0, -10.0]])

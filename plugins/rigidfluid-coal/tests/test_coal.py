@@ -16,6 +16,7 @@ from rigidfluid.api import (
     EllipsoidOptions,
     FloatArray,
     PartOptions,
+    Plane,
     Pose,
     Registry,
     SceneError,
@@ -86,9 +87,10 @@ def test_gaps_and_deep_overlaps_of_ellipses_are_the_shortest_way_apart() -> None
 
 def test_walls_agree_with_coal_on_a_half_space() -> None:
     bodies, pose = scattered(3, 6, seed=5)
-    wall = Wall(len(bodies), "slope", np.array([0.2, 0.0, -0.1]), np.array([2.0, 1.0, 2.0]) / 3)
+    plane = Plane(np.array([0.2, 0.0, -0.1]), np.array([2.0, 1.0, 2.0]) / 3)
+    wall = Wall(len(bodies), "slope", plane)
     found = CoalDetector(PartOptions(), bodies, [wall]).detect(pose, None, np.inf)
-    ground = coal.Halfspace(wall.normal, float(wall.normal @ wall.point))
+    ground = coal.Halfspace(plane.unit_normal, float(plane.unit_normal @ plane.point))
     here = coal.Transform3s.Identity()
     for number, rotation in enumerate(rotation_matrices(pose.orientation)[:-1]):
         shape = coal.Ellipsoid(*bodies[number].options.model_dump()["semi_axes"])

@@ -17,13 +17,14 @@ from rigidfluid.core.contact.loads import (
     pair_energy,
     stacked_weight,
 )
-from rigidfluid.core.contact.meetings import body_meetings, free, kinds, representatives, wall_meetings
+from rigidfluid.core.contact.meetings import body_meetings, facing_normal, free, kinds, representatives, wall_meetings
 from rigidfluid.core.contact.stiffness import greatest_stiffness
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, Wall
+from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.wall import Wall
 
 MOST_SHOWN = 8
 """Of the kinds of pairs, for one question."""
@@ -141,7 +142,7 @@ def _by_interactions(system: System, at_walls: bool, contacts: Contacts, pressin
 
 
 def _pressing(system: System, body: int) -> Wall:
-    return max(system.walls, key=lambda wall: -float(wall.normal @ system.weight[body]))
+    return max(system.walls, key=lambda wall: -float(facing_normal(system, body, wall.shape) @ system.weight[body]))
 
 
 def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> FloatArray:

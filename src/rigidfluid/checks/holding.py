@@ -8,11 +8,10 @@ import numpy as np
 
 from rigidfluid.checks.encounters import meetings
 from rigidfluid.checks.finding import Finding, Grade, figure
-from rigidfluid.core.contact.meetings import free, kinds
+from rigidfluid.core.contact.meetings import facing_normal, free, kinds
 from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary import faces, inward_normal
 
 
 def by_a_law(system: System) -> Iterator[Finding]:
@@ -55,7 +54,7 @@ def _lawless(system: System) -> Iterator[Finding]:
 
 
 def by_walls(system: System) -> Iterator[Finding]:
-    """Whether the face that a weight drives bodies to repels.
+    """Whether the surface that a weight drives bodies to repels.
 
     Parameters
     ----------
@@ -65,15 +64,15 @@ def by_walls(system: System) -> Iterator[Finding]:
     Yields
     ------
     Finding
-        A warning for each such face that is no wall.
+        A warning for each such surface that is no wall.
     """
     solid = {wall.name for wall in system.walls}
-    for face, name in enumerate(faces(system.dimension)):
-        normal = inward_normal(face, system.dimension)
-        driven = [kind[0] for kind in kinds(system) if free(system, kind) and _drives(system, kind[0], normal)]
+    for piece in system.domain.pieces:
+        name, moving = piece.name, (kind[0] for kind in kinds(system) if free(system, kind))
+        driven = [body for body in moving if _drives(system, body, piece.shape)]
         if driven and name not in solid:
             text = f"{system.surfaces[driven[0]]} is driven to {name}, which is no wall and does not repel"
-            remedy = "End before it gets there, or make that face a wall."
+            remedy = "End before it gets there, or make that surface a wall."
             yield Finding("warning", "open-face", (system.surfaces[driven[0]], name), text, remedy)
 
 
@@ -101,7 +100,7 @@ def _moves(system: System, body: int) -> bool:
     return bool(system.loads.weight[body] > 0.0 or system.loads.speed[body] > 0.0)
 
 
-def _drives(system: System, body: int, normal: FloatArray) -> bool:
-    """Whether the weight is within 60° of pointing at a face of this inward ``normal`` (d,)."""
+def _drives(system: System, body: int, shape: Surface) -> bool:
+    """Whether the weight is within 60° of pointing at a surface."""
     weight = system.weight[body]
-    return bool(weight @ normal < -0.5 * np.linalg.norm(weight))
+    return bool(weight @ facing_normal(system, body, shape) < -0.5 * np.linalg.norm(weight))

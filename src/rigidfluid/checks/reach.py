@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def at_the_start(system: System, interaction: Interaction, start: Contacts) -> I
     interaction : Interaction
         One of its laws.
     start : Contacts
-        Of the bodies and all faces at the start.
+        Of the bodies and all surfaces of the domain at the start.
 
     Yields
     ------
@@ -59,7 +60,7 @@ def at_the_start(system: System, interaction: Interaction, start: Contacts) -> I
 
 
 def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]:
-    """Whether a body midway between opposite walls is free of both.
+    """Whether a body midway between parallel flat walls is free of both.
 
     Parameters
     ----------
@@ -73,14 +74,13 @@ def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]
     Finding
         One for each shape and pair of walls that is never free: a warning; or only at some angles: a note.
     """
-    walls = {wall.name: wall for wall in system.walls}
-    for axis in range(system.dimension):
-        pair = [system.surfaces[len(system.bodies) + 2 * axis + side] for side in (0, 1)]
-        if not all(name in walls for name in pair):
+    flat = [(wall, plane) for wall in system.walls if (plane := wall.shape.plane)]
+    for (wall, plane), (opposite, other) in combinations(flat, 2):
+        if not np.array_equal(plane.unit_normal, -other.unit_normal):
             continue
-        width = float(system.upper[axis] - system.lower[axis])
+        pair, width = [wall.name, opposite.name], float(plane.signed_distance(other.point[None])[0])
         for kind in kinds(system):
-            both = wall_meetings(system, kind[:1] * 2, [walls[name] for name in pair])
+            both = wall_meetings(system, kind[:1] * 2, [wall, opposite])
             if free(system, kind) and interaction.acts_in(both).all():
                 yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, interaction)
 
@@ -95,7 +95,7 @@ def _between(name: str, body: Body, pair: list[str], width: float, interaction: 
     text = f"midway between {pair[0]} and {pair[1]} {name} has gaps of {figure(least)} to {figure(most)}"
     text += ", so that both act in every place" if always else ", so that at some angles both act in every place"
     key = f"{interaction.field}.range"
-    remedy = f"Set {key} to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the box."
+    remedy = f"Set {key} to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the domain."
     yield Finding("warning" if always else "note", "free-gap", (name, *pair), text, remedy, found, {"range": least})
 
 

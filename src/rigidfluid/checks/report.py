@@ -89,7 +89,7 @@ def check(scene: Scene) -> Report:
     """
     with no_exit():
         system, detector = build_system(scene), known_parts(scene).exact_detector
-        start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
+        start = initial_contacts(system.domain, detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
         return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
 

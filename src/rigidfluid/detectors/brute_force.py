@@ -10,7 +10,8 @@ from pydantic import Field
 
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, radius_of
 
 Distance = Callable[[FloatArray], FloatArray]
 
@@ -52,6 +53,7 @@ class _Touch(NamedTuple):
     gap: float
     radius_a: float
     radius_b: float
+    at_wall: bool
 
 
 class BruteForceDetector(Detector):
@@ -91,20 +93,22 @@ class BruteForceDetector(Detector):
         point_a, gap = _nearest(placed[a], placed[b].signed_distance, self.options.samples)
         point_b = placed[b].closest_point(point_a[None])[0]
         normal = _normal(placed[b], point_a, point_b, gap)
-        return _Touch(a, b, point_a, point_b, normal, gap, _radius(placed[a].shape), _radius(placed[b].shape))
+        radii = radius_of(placed[a].shape), radius_of(placed[b].shape)
+        return _Touch(a, b, point_a, point_b, normal, gap, *radii, False)
 
     def _wall_touches(self, placed: Sequence[_Placed], reach: float) -> list[_Touch]:
         return [
             self._wall_touch(body, index, wall)
             for index, body in enumerate(placed)
             for wall in self.walls
-            if _height(body.position, wall) - body.shape.bounding_radius <= reach
+            if wall.shape.signed_distance(body.position[None])[0] - body.shape.bounding_radius <= reach
         ]
 
     def _wall_touch(self, body: _Placed, index: int, wall: Wall) -> _Touch:
-        point_a, gap = _nearest(body, lambda points: _height(points, wall), self.options.samples)
-        point_b = point_a - gap * wall.normal
-        return _Touch(index, wall.surface, point_a, point_b, wall.normal, gap, _radius(body.shape), np.inf)
+        point_a, gap = _nearest(body, wall.shape.signed_distance, self.options.samples)
+        normal = wall.shape.normal(point_a[None])[0]
+        radii = radius_of(body.shape), radius_of(wall.shape)
+        return _Touch(index, wall.surface, point_a, point_a - gap * normal, normal, gap, *radii, True)
 
 
 def _nearest(body: _Placed, distance: Distance, samples: int) -> tuple[FloatArray, float]:
@@ -160,17 +164,9 @@ def _bounding_gap(a: _Placed, b: _Placed) -> float:
     return float(np.linalg.norm(a.position - b.position) - a.shape.bounding_radius - b.shape.bounding_radius)
 
 
-def _height(points: FloatArray, wall: Wall) -> FloatArray:
-    return np.asarray((points - wall.point) @ wall.normal)
-
-
-def _radius(body: Body) -> float:
-    return np.nan if body.radius is None else body.radius
-
-
 def _contacts(touches: Sequence[_Touch], dimension: int) -> Contacts:
     columns = list(zip(*touches, strict=True)) or [()] * len(_Touch._fields)
-    body_a, body_b, point_a, point_b, normal, gap, radius_a, radius_b = columns
+    body_a, body_b, point_a, point_b, normal, gap, radius_a, radius_b, at_wall = columns
     shape = (len(touches), dimension)
     return Contacts(
         body_a=np.array(body_a, dtype=np.int64),
@@ -181,4 +177,5 @@ def _contacts(touches: Sequence[_Touch], dimension: int) -> Contacts:
         gap=np.array(gap, dtype=float),
         radius_a=np.array(radius_a, dtype=float),
         radius_b=np.array(radius_b, dtype=float),
+        at_wall=np.array(at_wall, dtype=bool),
     )

@@ -12,7 +12,9 @@ from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.errors import SceneError, StepError
 
 _STARTS = 16
@@ -36,7 +38,7 @@ class EllipsoidDetector(Detector):
     Raises
     ------
     SceneError
-        If a body has no semi-axes.
+        If a body has no semi-axes, or a wall is not flat.
     """
 
     name: ClassVar[str] = "ellipsoid"
@@ -44,6 +46,7 @@ class EllipsoidDetector(Detector):
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
         self._axes = [_semi_axes(index, body) for index, body in enumerate(bodies)]
+        self._flat = [(wall.surface, require_plane(wall, self.name)) for wall in walls]
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies], dtype=float)
 
@@ -58,7 +61,7 @@ class EllipsoidDetector(Detector):
         axes = np.reshape(self._axes, pose.position.shape)
         half = rotation_matrices(pose.orientation) * axes[:, None, :]
         found = [self._body_contacts(pose.position, half, reach)]
-        found += [self._wall_contacts(pose.position, half, wall) for wall in self.walls]
+        found += [self._wall_contacts(pose.position, half, *wall) for wall in self._flat]
         contacts = in_order(found)
         return select(contacts, contacts.gap <= reach)
 
@@ -77,21 +80,23 @@ class EllipsoidDetector(Detector):
             gap=np.sum((point_a - point_b) * normal, axis=1),
             radius_a=self._radii[body_a],
             radius_b=self._radii[body_b],
+            at_wall=np.zeros(len(body_a), dtype=bool),
         )
 
-    def _wall_contacts(self, position: FloatArray, half: FloatArray, wall: Wall) -> Contacts:
-        normal = np.broadcast_to(wall.normal, position.shape)
+    def _wall_contacts(self, position: FloatArray, half: FloatArray, surface: int, plane: Plane) -> Contacts:
+        normal = np.broadcast_to(plane.unit_normal, position.shape)
         point_a = position - _farthest(half, normal)
-        gap = (point_a - wall.point) @ wall.normal
+        gap = plane.signed_distance(point_a)
         return Contacts(
             body_a=np.arange(len(position)),
-            body_b=np.full(len(position), wall.surface),
+            body_b=np.full(len(position), surface),
             point_a=point_a,
             point_b=point_a - gap[:, None] * normal,
             normal=normal,
             gap=gap,
             radius_a=self._radii,
             radius_b=np.full(len(position), np.inf),
+            at_wall=np.ones(len(position), dtype=bool),
         )
 
 

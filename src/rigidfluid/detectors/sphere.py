@@ -1,4 +1,4 @@
-"""Closed-form contacts of balls with each other and, through imaginary balls, with flat walls."""
+"""Closed-form contacts of balls with each other and, through imaginary balls, with walls of any shape."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.model.contacts import in_order
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, radius_of
 from rigidfluid.errors import SceneError
 
 
 class SphereDetector(Detector):
     """Balls at x_i: gap = |x_i - x_j| - r_i - r_j, normal = (x_i - x_j)/|x_i - x_j|.
 
-    A flat wall acts as an imaginary ball of the same radius that touches the wall from outside: x_i' = x_i - (h + r) n
-    with h the height of x_i above the wall and n the wall's normal, so that the gap is |x_i' - x_i| - 2r = h - r.
+    A wall acts as an imaginary ball of the same radius that touches it from outside: x_i' = x_i - (h + r) n with h the
+    signed distance of x_i to the wall and n the wall's normal there, so that the gap is |x_i' - x_i| - 2r = h - r.
 
     Parameters
     ----------
@@ -45,19 +47,28 @@ class SphereDetector(Detector):
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
         self._pairs = NearPairs(self._radii)
-        self._surfaces = np.array([wall.surface for wall in walls], dtype=np.int64)
-        self._planes = np.array([[wall.point, wall.normal] for wall in walls], dtype=float)
+        flat = [(wall.surface, plane) for wall in walls if (plane := wall.shape.plane)]
+        self._surfaces = np.array([surface for surface, _ in flat], dtype=np.int64)
+        self._planes = np.array([[plane.point, plane.unit_normal] for _, plane in flat], dtype=float)
+        self._curved = [wall for wall in walls if not wall.shape.plane]
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the positions alone."""
+        near = self._flat_contacts(pose.position, reach)
+        if not self._curved:
+            return near
+        return in_order([near, *(self._curved_contacts(pose.position, wall, reach) for wall in self._curved)])
+
+    def _flat_contacts(self, position: FloatArray, reach: float) -> Contacts:
+        """Of balls with balls and flat walls."""
         from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
 
-        position, radii = pose.position, self._radii
+        radii = self._radii
         pairs = self._pairs.within(position, reach)
         planes = self._planes.reshape(-1, 2, position.shape[1])
         a, b, gap = near_surfaces(position, radii, pairs.start, pairs.second, planes, self._surfaces, reach)
         point_a, point_b, normal = points_and_normals(position, radii, planes, self._surfaces, a, b)
-        # behind the bodies' radii that of any wall
+        # behind the bodies' radii that of any flat wall
         all_radii = np.append(radii, np.inf)
         return Contacts(
             body_a=a,
@@ -68,6 +79,25 @@ class SphereDetector(Detector):
             gap=gap,
             radius_a=radii[a],
             radius_b=all_radii[np.minimum(b, len(radii))],
+            at_wall=b >= len(radii),
+        )
+
+    def _curved_contacts(self, position: FloatArray, wall: Wall, reach: float) -> Contacts:
+        """Of balls with one wall, h by its signed distance."""
+        gap = wall.shape.signed_distance(position) - self._radii
+        near = np.flatnonzero(gap <= reach)
+        gap, centre, radius = gap[near], position[near], self._radii[near]
+        normal = wall.shape.normal(centre)
+        return Contacts(
+            body_a=near,
+            body_b=np.full(len(near), wall.surface),
+            point_a=centre - radius[:, None] * normal,
+            point_b=centre - (gap + radius)[:, None] * normal,
+            normal=normal,
+            gap=gap,
+            radius_a=radius,
+            radius_b=np.full(len(near), radius_of(wall.shape)),
+            at_wall=np.ones(len(near), dtype=bool),
         )
 
 

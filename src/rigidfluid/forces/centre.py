@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.balls import on_wall, require_balls
+from rigidfluid.core.contact.balls import require_balls
 from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray
@@ -35,7 +35,7 @@ class CentreLaw(Repulsion):
     Raises
     ------
     SceneError
-        If a surface is neither a ball nor a flat wall, or ``auto`` cannot be computed.
+        If a surface is neither round nor flat, or ``auto`` cannot be computed.
 
     Notes
     -----
@@ -64,4 +64,4 @@ class CentreLaw(Repulsion):
 def _reach(contacts: Contacts) -> FloatArray:
     """R, the distance of the centres where the surfaces touch (m,) [length]."""
     require_balls(contacts, CentreLaw.name)
-    return contacts.radius_a + np.where(on_wall(contacts), contacts.radius_a, contacts.radius_b)
+    return contacts.radius_a + np.where(contacts.at_wall, contacts.radius_a, contacts.radius_b)

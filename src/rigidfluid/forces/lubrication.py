@@ -27,10 +27,10 @@ class LubricationOptions(PartOptions):
 class LubricationLaw(ForceLaw):
     """F = -6πμ R² v_n (1/h - 1/range) n in 3D, -3√2 πμ v_n [(R/h)^(3/2) - (R/range)^(3/2)] n in 2D, for gap < range.
 
-    h = max(gap, cutoff), R = r_a r_b/(r_a + r_b), the ball's radius at a flat wall, and v_n the relative velocity along
-    the normal. The terms are the leading ones of a squeezed film; what they give at range is taken off, as the mesh
-    resolves a film as thick as that: range is to be the gap where the mesh begins to fail. The force takes energy out
-    and holds nothing at rest, so its own force, energy and stiffness are zero.
+    h = max(gap, cutoff), R = r_a r_b/(r_a + r_b), the ball's radius at a flat wall, with r_b < 0 in a round hollow, and
+    v_n the relative velocity along the normal. The terms are the leading ones of a squeezed film; what they give at
+    range is taken off, as the mesh resolves a film as thick as that: range is to be the gap where the mesh begins to
+    fail. The force takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class LubricationLaw(ForceLaw):
     Raises
     ------
     SceneError
-        If the cutoff is not below the range, or a surface is neither a ball nor a flat wall.
+        If the cutoff is not below the range, or a surface is neither round nor flat.
 
     Notes
     -----

@@ -12,7 +12,8 @@ import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose, Wall
+from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, radius_of, wall_radii
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, reset
 from rigidfluid.marching.field import Accuracy, Wave, march_from
@@ -94,8 +95,7 @@ class ContactFinder:
     ) -> None:
         self._walls = tuple(walls)
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
-        radii = [np.nan if body.radius is None else body.radius for body in bodies]
-        self._radii = np.array(radii, dtype=float)
+        self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
         self._accuracy: Accuracy = accuracy
         self._several = several
         self._whole_domain = whole_domain
@@ -205,7 +205,8 @@ class ContactFinder:
         a, b = (np.array(column, dtype=np.int64) for column in columns[:2])
         gap = np.array(columns[2], dtype=float)
         point_a, point_b = (np.array(column, dtype=float).reshape(shape) for column in columns[3:])
-        curvature = np.append(self._radii, np.inf)  # the last one is for walls
+        at_wall, radius_b = b >= len(self._radii), np.empty(len(b))
+        radius_b[~at_wall], radius_b[at_wall] = self._radii[b[~at_wall]], wall_radii(self._walls, b[at_wall])
         return Contacts(
             body_a=a,
             body_b=b,
@@ -213,6 +214,7 @@ class ContactFinder:
             point_b=point_b,
             normal=(point_a - point_b) / gap[:, None],
             gap=gap,
-            radius_a=curvature[a],
-            radius_b=curvature[np.minimum(b, len(self._radii))],
+            radius_a=self._radii[a],
+            radius_b=radius_b,
+            at_wall=at_wall,
         )

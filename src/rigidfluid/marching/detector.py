@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import ClassVar, final
 
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, Mesh, Pose, Wall
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.marching.options import MarchingOptions
 
 

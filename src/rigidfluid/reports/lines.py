@@ -24,7 +24,7 @@ def position_plot(results: Results) -> Figure:
     for k, axes in enumerate(panels):
         draw_bodies(axes, results.time, position[..., k], results.names)
         axes.set_ylabel(f"{axes_names[k]} [length]")
-        widen(axes, 0.1 * float(results.system.upper[k] - results.system.lower[k]))
+        widen(axes, 0.1 * float(results.system.domain.size[k]))
     add_legend(right)
     panels[-1].set_xlabel("time [time]")
     return figure
@@ -117,8 +117,8 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
 
 
 def _draw_paths(axes: Axes, results: Results, position: FloatArray) -> None:
-    """The paths seen along the last axis: in 3D their x and y."""
-    lower, upper = results.system.lower[:2], results.system.upper[:2]
+    """The paths in the box around the domain, seen along the last axis: in 3D their x and y."""
+    lower, upper = (corner[:2] for corner in results.system.domain.extent)
     axes.add_patch(Rectangle((lower[0], lower[1]), *(upper - lower), fill=False, color=BLACK, linewidth=0.8))
     many = len(results.names) > MOST_LINES
     for i in range(len(results.names)):

@@ -1,4 +1,4 @@
-"""What crosses the faces of the domain: pressure loads and mechanical power."""
+"""What crosses the boundary of the domain: pressure loads and mechanical power."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> F
             nodes = face.facet_nodes
             pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
             weight = facet_weights(node_points, face.facets)
-            np.add.at(load, nodes, (weight * pressure)[..., None] * face.condition.normal)
+            np.add.at(load, nodes, (weight * pressure)[..., None] * face.normal)
     return load
 
 
@@ -29,7 +29,7 @@ def face_power(
     pressure_load: FloatArray,
     reaction: FloatArray,
 ) -> float:
-    """Mechanical power into the fluid through the faces: tractions times velocity, and kinetic energy carried in.
+    """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
     ``normal`` points into the fluid, so u·n > 0 is inflow; the mesh does not move across a face. With several processes
     the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
@@ -40,5 +40,5 @@ def face_power(
     for face in surfaces.faces:
         if inert_density > 0.0 and face.condition.type in ("pressure", "velocity"):
             weight, nodes = facet_weights(node_points, face.facets), face.facet_nodes
-            power += float(np.sum(weight * energy[nodes] * (velocity[nodes] @ face.condition.normal)))
+            power += float(np.sum(weight * energy[nodes] * (velocity[nodes] @ face.normal)))
     return float(surfaces.ranks.sum(power))

@@ -1,4 +1,4 @@
-"""The nodes on bodies and faces, and the velocities that are prescribed there."""
+"""The nodes on bodies and on the domain's boundary, and the velocities that are prescribed there."""
 
 from __future__ import annotations
 
@@ -16,13 +16,19 @@ from rigidfluid.taylor_hood.numbering import Numbering
 
 @dataclass(frozen=True)
 class Face:
-    """A face of the domain on one topology: its ``condition``, ``facets`` (F, d) with their ``facet_nodes``
+    """A piece of the domain's boundary on one topology: its ``condition``, ``facets`` (F, d) with their ``facet_nodes``
     (F, 3 | 6), and all ``nodes`` on it, also those of facets that other processes hold."""
 
     condition: BoundaryCondition
     facets: IntArray
     facet_nodes: IntArray
     nodes: IntArray
+
+    @property
+    def normal(self) -> FloatArray:
+        """Of a flat piece, into the fluid (d,)."""
+        assert self.condition.normal is not None
+        return self.condition.normal
 
 
 class Surfaces:
@@ -35,7 +41,7 @@ class Surfaces:
     mesh : Mesh
         Its facets say which nodes lie on which surface.
     conditions : sequence of BoundaryCondition
-        One per face of the domain.
+        One per piece of the domain's boundary.
     bodies : int
         How many.
     """
@@ -71,9 +77,11 @@ class Surfaces:
         for face in self.faces:
             if face.condition.type == "velocity" and face.condition.value is not None:
                 velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
-        for face in self.faces:
-            if face.condition.type == "wall":
-                velocity[face.nodes] = 0.0
+        walls = [face for face in self.faces if face.condition.type == "wall"]
+        # where two meet, the one at rest holds the fluid
+        for face in sorted(walls, key=lambda wall: wall.condition.value is None):
+            value = face.condition.value
+            velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(velocity, node_points)
         for body in np.flatnonzero(controlled):
@@ -92,9 +100,7 @@ class Surfaces:
         flow = self.ranks.sum(
             np.array(
                 [
-                    np.sum(
-                        facet_weights(node_points, face.facets) * (velocity[face.facet_nodes] @ face.condition.normal)
-                    )
+                    np.sum(facet_weights(node_points, face.facets) * (velocity[face.facet_nodes] @ face.normal))
                     for face in held
                 ]
             )
@@ -139,7 +145,7 @@ def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
 
 
 def _free_components(condition: BoundaryCondition, dimension: int) -> BoolArray:
-    across = np.abs(condition.normal) > 0.5
-    if condition.type == "slip":
-        return ~across
-    return across if condition.type == "pressure" else np.zeros(dimension, dtype=bool)
+    if condition.normal is None or condition.type not in ("slip", "pressure"):
+        return np.zeros(dimension, dtype=bool)
+    across: BoolArray = np.abs(condition.normal) > 0.5
+    return ~across if condition.type == "slip" else across

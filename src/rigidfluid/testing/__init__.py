@@ -14,13 +14,21 @@
 
 import pytest
 
-_MODULES = ("arrangement", "body", "detector", "fluid", "fluid_backend", "force_law")
+_MODULES = ("arrangement", "body", "detector", "domain", "fluid", "fluid_backend", "force_law")
 pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
 
 from rigidfluid.testing.arrangement import Arrangement
 from rigidfluid.testing.body import BodyContract
 from rigidfluid.testing.detector import DetectorContract
+from rigidfluid.testing.domain import DomainContract
 from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 
-__all__ = ["Arrangement", "BodyContract", "DetectorContract", "FluidBackendContract", "ForceLawContract"]
+__all__ = [
+    "Arrangement",
+    "BodyContract",
+    "DetectorContract",
+    "DomainContract",
+    "FluidBackendContract",
+    "ForceLawContract",
+]

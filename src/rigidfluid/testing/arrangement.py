@@ -14,7 +14,11 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.domains.box import Box, BoxOptions
 
 ASPECT = 5.0
 """Longest over shortest semi-axis of the slenderest ellipsoids."""
@@ -62,9 +66,15 @@ class Arrangement:
 
         count = len(self.semi_axes)
         pose = Pose(place(self.pose.position), rotate(self.pose.orientation, np.tile(turn, (count, 1))))
-        walls = (replace(wall, point=place(wall.point), normal=rotation @ wall.normal) for wall in self.walls)
+
+        def moved(wall: Wall) -> Wall:
+            plane = wall.shape.plane
+            assert plane is not None
+            return replace(wall, shape=Plane(place(plane.point), rotation @ plane.unit_normal))
+
+        walls = tuple(map(moved, self.walls))
         return Arrangement(
-            scale * self.semi_axes, pose, tuple(walls), lambda: replace(self.mesh, points=place(self.mesh.points))
+            scale * self.semi_axes, pose, walls, lambda: replace(self.mesh, points=place(self.mesh.points))
         )
 
     def reversed(self) -> Arrangement:
@@ -106,7 +116,7 @@ class Arrangement:
         if surface < count:
             return distance_to_body(self.pose, surface, self.bodies[surface], points)
         (wall,) = [wall for wall in self.walls if wall.surface == surface]
-        return np.asarray((points - wall.point) @ wall.normal)
+        return wall.shape.signed_distance(points)
 
 
 def in_a_box(
@@ -127,7 +137,7 @@ def in_a_box(
     corners : (d,) array, (d,) array
         Lower and upper corner of the box [length].
     faces : sequence of int
-        Which faces are walls: 0 left, 1 right, 2 bottom, 3 top[, 4 back, 5 front].
+        Which faces are walls: the lower one of axis k is 2k, the upper one 2k + 1.
     sizes : float, float
         Longest edge of the mesh away from the bodies and on them [length].
 
@@ -136,14 +146,16 @@ def in_a_box(
     Arrangement
         With a mesh of the fluid in the box.
     """
-    bodies = tuple(map(_body, semi_axes.tolist()))
+    bodies, (lower, upper) = tuple(map(_body, semi_axes.tolist())), corners
+    box = Box(BoxOptions(lower=tuple(lower.tolist()), upper=tuple(upper.tolist())), len(lower))
+    walls = surfaces_of(box, len(bodies))
 
     def make_mesh() -> Mesh:
         from rigidfluid.core.mesh.meshing import generate_mesh
 
-        return generate_mesh(bodies, pose, *corners, *sizes, 0.5)
+        return generate_mesh(bodies, pose, box, *sizes, 0.5)
 
-    return Arrangement(semi_axes, pose, _walls(len(semi_axes), corners, faces), make_mesh)
+    return Arrangement(semi_axes, pose, tuple(walls[face] for face in faces), make_mesh)
 
 
 @cache
@@ -222,13 +234,6 @@ def _least_gap(bodies: Sequence[Body], pose: Pose, corner: FloatArray) -> float:
         away += [distance_to_body(pose, other, bodies[other], surface) for other in range(body)]
         least = min(least, *(float(distance.min()) for distance in away))
     return least
-
-
-def _walls(count: int, corners: tuple[FloatArray, FloatArray], faces: Sequence[int]) -> tuple[Wall, ...]:
-    axes = np.eye(len(corners[0]))
-    return tuple(
-        Wall(count + face, f"face {face}", corners[face % 2], (1 - 2 * (face % 2)) * axes[face // 2]) for face in faces
-    )
 
 
 def _body(semi_axes: list[float]) -> Body:

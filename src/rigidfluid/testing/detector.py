@@ -137,6 +137,7 @@ class DetectorContract:
         contacts = self.detect(arrangement, self.reach)
         count = len(arrangement.bodies)
         is_wall = contacts.body_b >= count
+        np.testing.assert_array_equal(contacts.at_wall, is_wall)
         assert np.all(np.isinf(contacts.radius_b[is_wall]))
         expected = np.append(arrangement.semi_axes[:, 0], np.inf)
         for surface, radius in ((contacts.body_a, contacts.radius_a), (contacts.body_b, contacts.radius_b)):
@@ -216,7 +217,7 @@ def _ball_gaps(arrangement: Arrangement) -> dict[tuple[int, int], float]:
         for b in range(a + 1, len(radii)):
             gaps[a, b] = float(np.linalg.norm(centres[a] - centres[b]) - radii[a] - radii[b])
         for wall in arrangement.walls:
-            gaps[a, wall.surface] = float((centres[a] - wall.point) @ wall.normal - radii[a])
+            gaps[a, wall.surface] = float(wall.shape.signed_distance(centres[a : a + 1])[0] - radii[a])
     return gaps
 
 
@@ -248,6 +249,7 @@ def _swapped(contacts: Contacts, arrangement: Arrangement) -> Contacts:
         gap=contacts.gap,
         radius_a=np.where(turned[:, 0], contacts.radius_b, contacts.radius_a),
         radius_b=np.where(turned[:, 0], contacts.radius_a, contacts.radius_b),
+        at_wall=contacts.at_wall,
     )
     order = np.lexsort((swapped.body_b, swapped.body_a))
     return Contacts(*(getattr(swapped, name)[order] for name in Contacts.__slots__))

@@ -151,6 +151,7 @@ class ForceLawContract:
             gap=contacts.gap,
             radius_a=contacts.radius_b,
             radius_b=contacts.radius_a,
+            at_wall=contacts.at_wall,
         )
         _assert_close(law.force(swapped), -law.force(contacts))
         _assert_close(law.damping(swapped, replace(motion, velocity=-motion.velocity)), -law.damping(contacts, motion))
@@ -190,7 +191,7 @@ class ForceLawContract:
 
     def _pairs_of(self, law: ForceLaw, dimension: int) -> Contacts:
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
-        return _taken(contacts, np.flatnonzero(~np.isinf(contacts.radius_b)))
+        return _taken(contacts, np.flatnonzero(~contacts.at_wall))
 
 
 def _needs_energy(law: ForceLaw) -> None:
@@ -212,6 +213,7 @@ def _ball_contacts(gap: FloatArray, radius_b: FloatArray, dimension: int) -> Con
         gap=gap,
         radius_a=np.full(count, 0.7),
         radius_b=radius_b,
+        at_wall=np.isinf(radius_b),
     )
 
 

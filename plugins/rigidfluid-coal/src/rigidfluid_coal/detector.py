@@ -16,8 +16,10 @@ from rigidfluid.api import (
     IntArray,
     Mesh,
     PartOptions,
+    Plane,
     Pose,
     Wall,
+    require_plane,
     rotation_matrices,
 )
 from rigidfluid_coal.broad_phase import near_pairs
@@ -45,7 +47,7 @@ class CoalDetector(Detector):
     Raises
     ------
     SceneError
-        If a body is neither a ball nor an ellipsoid.
+        If a body is neither a ball nor an ellipsoid, or a wall is not flat.
     """
 
     name: ClassVar[str] = "coal"
@@ -53,6 +55,7 @@ class CoalDetector(Detector):
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
+        self._flat = [(wall.surface, require_plane(wall, self.name)) for wall in walls]
         self._axes = np.array([semi_axes(index, body) for index, body in enumerate(bodies)])
         self._bounding = self._axes.max(axis=1)
         self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies])
@@ -63,7 +66,7 @@ class CoalDetector(Detector):
         rotation = rotation_matrices(pose.orientation)
         shapes = shape_matrices(rotation, self._axes)
         found = [self._body_contacts(pose.position, rotation, shapes, reach)]
-        found += [self._wall_contacts(pose.position, shapes, wall, reach) for wall in self.walls]
+        found += [self._wall_contacts(pose.position, shapes, *wall, reach) for wall in self._flat]
         return _sorted(found)
 
     def _body_contacts(self, position: FloatArray, rotation: FloatArray, shapes: FloatArray, reach: float) -> Contacts:
@@ -81,22 +84,26 @@ class CoalDetector(Detector):
             gap=gap,
             radius_a=self._radii[body_a],
             radius_b=self._radii[body_b],
+            at_wall=np.zeros(len(body_a), dtype=bool),
         )
         return _take(contacts, gap <= reach)
 
-    def _wall_contacts(self, position: FloatArray, shapes: FloatArray, wall: Wall, reach: float) -> Contacts:
-        normal = np.tile(wall.normal, (len(position), 1))
-        gap = (position - wall.point) @ wall.normal - extent(shapes, normal)
+    def _wall_contacts(
+        self, position: FloatArray, shapes: FloatArray, surface: int, plane: Plane, reach: float
+    ) -> Contacts:
+        normal = plane.normal(position)
+        gap = plane.signed_distance(position) - extent(shapes, normal)
         point = position - farthest(shapes, normal)
         contacts = Contacts(
             body_a=np.arange(len(position)),
-            body_b=np.full(len(position), wall.surface),
+            body_b=np.full(len(position), surface),
             point_a=point,
             point_b=point - gap[:, None] * normal,
             normal=normal,
             gap=gap,
             radius_a=self._radii,
             radius_b=np.full(len(position), np.inf),
+            at_wall=np.ones(len(position), dtype=bool),
         )
         return _take(contacts, gap <= reach)
 

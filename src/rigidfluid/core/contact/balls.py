@@ -1,16 +1,11 @@
-"""What laws of curved surfaces ask of contacts: which are at a wall, and that the radii are known."""
+"""What laws of curved surfaces ask of contacts: that the radii are known."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, Contacts
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import SceneError
-
-
-def on_wall(contacts: Contacts) -> BoolArray:
-    """Whether b is a flat wall, (m,)."""
-    return np.isinf(contacts.radius_b)
 
 
 def require_balls(contacts: Contacts, law: str) -> None:
@@ -26,7 +21,7 @@ def require_balls(contacts: Contacts, law: str) -> None:
     Raises
     ------
     SceneError
-        At the first contact of a surface that is neither a ball nor a flat wall.
+        At the first contact of a surface that is neither round nor flat.
     """
     unknown = np.isnan(contacts.radius_a) | np.isnan(contacts.radius_b)
     if not np.any(unknown):
@@ -35,6 +30,6 @@ def require_balls(contacts: Contacts, law: str) -> None:
     raise SceneError(
         "contact.law",
         f'"{law}" with surfaces {contacts.body_a[first]} and {contacts.body_b[first]}, not both round',
-        f"balls and flat walls, because the {law} law needs balls",
+        f"balls, and flat or round walls, because the {law} law needs balls",
         "Use a law of the gap alone for these shapes.",
     )

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray, Wall
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.model.wall import Wall
 
 
 def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
@@ -33,7 +34,7 @@ def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[I
 
 
 def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], reach: float) -> list[tuple[int, Wall]]:
-    """Bodies and walls with (x - x_w)·n - r ≤ ``reach``.
+    """Bodies and walls with d(x) - r ≤ ``reach``, d the distance to the wall.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], r
     radii : (n,) array
         Radii [length].
     walls : sequence of Wall
-        Flat walls.
+        Of any shape.
     reach : float
         Largest gap, may be infinite [length].
 
@@ -52,12 +53,14 @@ def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], r
         Sorted by body; pairs that rounding puts just beyond are among them.
     """
     slack = reach + _rounding(radii, reach)
-    near = [(position - wall.point) @ wall.normal - radii <= slack for wall in walls]
+    near = [wall.shape.signed_distance(position) - radii <= slack for wall in walls]
     return [(body, wall) for body in range(len(radii)) for wall, close in zip(walls, near, strict=True) if close[body]]
 
 
 def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -> FloatArray:
-    """Lower bound of each ball's nearest gap, min(|x - x'| - r - max r, (x - x_w)·n - r) with x' its nearest neighbour.
+    """Lower bound of each ball's nearest gap, min(|x - x'| - r - max r, d(x) - r), d to walls.
+
+    x' is the nearest neighbour.
 
     Parameters
     ----------
@@ -66,7 +69,7 @@ def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -
     radii : (n,) array
         Radii [length].
     walls : sequence of Wall
-        Flat walls.
+        Of any shape.
 
     Returns
     -------
@@ -80,7 +83,7 @@ def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -
         nearest = np.asarray(cKDTree(position).query(position, k=2)[0])
         least = nearest[:, 1] - radii - radii.max()
     for wall in walls:
-        least = np.minimum(least, (position - wall.point) @ wall.normal - radii)
+        least = np.minimum(least, wall.shape.signed_distance(position) - radii)
     return least
 
 

@@ -54,8 +54,9 @@ class BodyStep:
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies
-    [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without contacts.
+    them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies and
+    walls [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without
+    contacts.
     """
 
     pose: Pose
@@ -201,13 +202,13 @@ def _crossed(
     size: float,
 ) -> tuple[BodyStep, M]:
     """One implicit step, and the movement at its end."""
-    end, wrench, lost = implicit_contact_step(law, movement, start, contacts_at, size)
+    end, wrench, lost, driven = implicit_contact_step(law, movement, start, contacts_at, size, system.wall_velocity)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     mean = Twist(
         0.5 * (movement.twist.velocity + end.twist.velocity),
         0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
     )
-    held = -float(power(impulse, mean)[system.controlled].sum())
+    held = driven - float(power(impulse, mean)[system.controlled].sum())
     return BodyStep(end.pose, end.twist, impulse, lost, held, 1), end
 
 
@@ -322,7 +323,8 @@ def _surfaces(system: System) -> Reach:
 
 
 class _Push(NamedTuple):
-    """What the contacts do at one moment: their ``wrench``, the power that their dampers take and that drives give."""
+    """What the contacts do at one moment: their ``wrench``, the power ``loss`` that their dampers take, and the power
+    ``held`` that drives of bodies and walls give."""
 
     wrench: Wrench
     loss: float
@@ -334,12 +336,14 @@ def _push(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynam
         return _Push(nothing(movement.pose), 0.0, 0.0)
     force, loss = law.force(contacts), 0.0
     if law.dissipative:
-        motion = relative_motion(contacts, movement)
+        motion = relative_motion(contacts, movement, system.wall_velocity)
         damping = law.damping(contacts, motion)
         force, loss = force + damping, -float(np.sum(damping * motion.velocity))
     wrench, held = contact_wrench(contacts, force, movement.pose), 0.0
     if system.controlled.any():
         held = -float(power(wrench, movement.twist)[system.controlled].sum())
+    if system.wall_velocity is not None:
+        held += float(np.sum(force * system.wall_velocity[contacts.body_b]))
     return _Push(wrench, loss, held)
 
 

@@ -27,7 +27,7 @@ class ExtrapolatedContacts:
     def __init__(self, contacts: Contacts, pose: Pose) -> None:
         self._contacts = contacts
         self._pose = pose
-        self._round = np.isfinite(contacts.radius_a) & np.isfinite(contacts.radius_b)
+        self._round = np.isfinite(contacts.radius_a) & np.isfinite(contacts.radius_b) & ~contacts.at_wall
         turned_back = np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
         self._arm_a = _arms(contacts.body_a, contacts.point_a, pose, turned_back)
         self._arm_b = _arms(contacts.body_b, contacts.point_b, pose, turned_back)
@@ -40,8 +40,7 @@ class ExtrapolatedContacts:
         point_a = _moved(old.body_a, self._arm_a, old.point_a, self._pose, pose, rotation, ball_a)
         point_b = _moved(old.body_b, self._arm_b, old.point_b, self._pose, pose, rotation, np.isfinite(old.radius_b))
         gap = np.sum((point_a - point_b) * normal, axis=1)
-        on_wall = old.body_b >= len(pose.position)
-        point_b[on_wall] = point_a[on_wall] - gap[on_wall, None] * normal[on_wall]
+        point_b[old.at_wall] = point_a[old.at_wall] - gap[old.at_wall, None] * normal[old.at_wall]
         if self._round.any():
             self._measure_balls(pose, point_a, point_b, normal, gap)
         return replace(old, point_a=point_a, point_b=point_b, normal=normal, gap=gap)

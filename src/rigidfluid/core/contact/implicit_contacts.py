@@ -36,15 +36,22 @@ M = TypeVar("M", bound=BodyDynamics)
 
 
 class Crossing(NamedTuple, Generic[M]):
-    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``."""
+    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, and what
+    sliding walls have ``driven`` into the bodies [energy]."""
 
     movement: M
     wrench: Wrench
     lost: float
+    driven: float
 
 
 def implicit_contact_step(
-    law: ForceLaw, movement: M, start: Contacts, contacts_at: Callable[[Pose], Contacts], size: float
+    law: ForceLaw,
+    movement: M,
+    start: Contacts,
+    contacts_at: Callable[[Pose], Contacts],
+    size: float,
+    wall_velocity: FloatArray | None = None,
 ) -> Crossing[M]:
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
 
@@ -66,6 +73,8 @@ def implicit_contact_step(
         The same contacts, in the same order, at another pose.
     size : float
         Δt [time].
+    wall_velocity : (s, d) array, optional
+        At which walls slide, by surface number; they rest if not given [length/time].
 
     Returns
     -------
@@ -82,7 +91,7 @@ def implicit_contact_step(
     Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162; Simo, Tarnow & Wong, Comput. Methods Appl. Mech.
     Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z.
     """
-    look = _straight_on(movement, start, size)
+    look = _straight_on(movement, start, size, wall_velocity)
     force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, look, size)
     for update in range(MOST_UPDATES):
         offset, free = look.way - look.gap, look.gap - look.compliance @ force
@@ -91,7 +100,8 @@ def implicit_contact_step(
         spring = (force + dampers.across * (gap + offset)) / look.scale
         push = force[:, None] * look.middle.normal + dampers.along
         before = look
-        look = _evaluate(law, movement, start, contacts_at, contact_wrench(look.middle, push, look.pose), size)
+        wrench = contact_wrench(look.middle, push, look.pose)
+        look = _evaluate(law, movement, start, contacts_at, wrench, size, wall_velocity)
         used = dampers
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, look, size)
@@ -99,7 +109,8 @@ def implicit_contact_step(
             look = look._replace(scale=before.scale)
         wanted = (look.scale * spring - dampers.across * look.way)[:, None] * look.middle.normal + dampers.along
         if _converged(law, look, gap, wanted - push):
-            return _crossing(look, used, size)
+            driven = 0.0 if wall_velocity is None else size * float(np.sum(push * wall_velocity[start.body_b]))
+            return _crossing(look, used, size, driven)
         gap = look.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
@@ -129,11 +140,11 @@ class _Dampers(NamedTuple):
     along: FloatArray
 
 
-def _straight_on(movement: M, start: Contacts, size: float) -> _Iterate[M]:
+def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: FloatArray | None) -> _Iterate[M]:
     """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
-    motion = relative_motion(start, trial)
+    motion = relative_motion(start, trial, wall_velocity)
     way = size * _normal_part(motion.velocity, start)
     scale, compliance = np.ones(len(start)), _compliance(start, movement, size)
     return _Iterate(trial, movement.pose, start, motion, way, start.gap + way, scale, compliance, none)
@@ -146,12 +157,13 @@ def _evaluate(
     contacts_at: Callable[[Pose], Contacts],
     wrench: Wrench,
     size: float,
+    wall_velocity: FloatArray | None,
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size)
     trial.drift(0.5 * size)
     pose, middle = trial.pose, contacts_at(trial.pose)
-    motion, compliance = relative_motion(middle, trial), _compliance(middle, trial, size)
+    motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
     trial.kick(wrench, 0.5 * size)
     gap = contacts_at(trial.pose).gap
@@ -186,12 +198,12 @@ def _converged(law: ForceLaw, look: _Iterate[M], gap: FloatArray, missing: Float
     return bool(np.all(np.abs(look.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _crossing(look: _Iterate[M], dampers: _Dampers, size: float) -> Crossing[M]:
+def _crossing(look: _Iterate[M], dampers: _Dampers, size: float, driven: float) -> Crossing[M]:
     """The step is done, unless dampers that were not renewed to the end would give energy."""
     lost = float(np.sum(dampers.across * look.way**2) - size * np.sum(dampers.along * look.motion.velocity))
     if lost < 0.0:
         raise _rejected("dampers that would give energy")
-    return Crossing(look.movement, look.wrench, lost)
+    return Crossing(look.movement, look.wrench, lost, driven)
 
 
 def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:

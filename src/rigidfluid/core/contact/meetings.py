@@ -12,8 +12,13 @@ import numpy as np
 from rigidfluid.core.contact.proximity import of_different_bodies
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, Wall
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray
+from rigidfluid.core.model.wall import Wall, radius_of
+
+FAR_AHEAD = 1e6
+"""In sizes of the domain."""
 
 MOST = 40
 """More bodies than that do not stand for all: then those with the extremes of all that counts do."""
@@ -51,8 +56,18 @@ def _extremes(bodies: Sequence[int], columns: Sequence[FloatArray]) -> set[int]:
 
 def wall_meetings(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:
     """A contact of each of ``bodies`` with its wall, one of ``walls`` for each, gap zero."""
-    normals = np.array([wall.normal for wall in walls]).reshape(-1, system.dimension)
-    return _touching(system, bodies, [wall.surface for wall in walls], normals)
+    normals = [facing_normal(system, body, wall.shape) for body, wall in zip(bodies, walls, strict=True)]
+    radius = np.array([radius_of(wall.shape) for wall in walls])
+    at_wall, normal = np.ones(len(walls), dtype=bool), np.array(normals).reshape(-1, system.dimension)
+    return _touching(system, bodies, [wall.surface for wall in walls], normal, radius, at_wall)
+
+
+def facing_normal(system: System, body: int, shape: Surface) -> FloatArray:
+    """The normal (d,) of a surface where the weight drives a body to in the end: nearest to a point far ahead."""
+    weight = system.weight[body]
+    ahead = weight / max(float(np.linalg.norm(weight)), np.finfo(float).tiny)
+    far = system.pose.position[body] + FAR_AHEAD * float(system.domain.size.max()) * ahead
+    return np.asarray(shape.normal(far[None])[0])
 
 
 def free(system: System, bodies: Sequence[int]) -> list[int]:
@@ -64,7 +79,8 @@ def body_meetings(system: System, bodies: Sequence[int]) -> Contacts:
     """A contact of each pair of ``bodies`` that are not parts of one, and of which one is free, gap zero."""
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
-    met = _touching(system, first, second, np.eye(system.dimension)[0])
+    radius, at_wall = np.array([radius_of(system.bodies[b]) for b in second]), np.zeros(len(pairs), dtype=bool)
+    met = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
     return select(met, of_different_bodies(system, met))
 
 
@@ -75,9 +91,10 @@ def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:
     return replace(many, gap=gap, point_a=many.point_b + gap[:, None] * many.normal)
 
 
-def _touching(system: System, a: Sequence[int], b: Sequence[int], normal: FloatArray) -> Contacts:
-    count, points = len(system.bodies), np.zeros((len(a), system.dimension))
-    radius = [np.nan if body.radius is None else body.radius for body in system.bodies]
+def _touching(
+    system: System, a: Sequence[int], b: Sequence[int], normal: FloatArray, radius_b: FloatArray, at_wall: BoolArray
+) -> Contacts:
+    points = np.zeros((len(a), system.dimension))
     return Contacts(
         body_a=np.array(a, dtype=np.int64),
         body_b=np.array(b, dtype=np.int64),
@@ -85,6 +102,7 @@ def _touching(system: System, a: Sequence[int], b: Sequence[int], normal: FloatA
         point_b=points,
         normal=points + normal,
         gap=np.zeros(len(a)),
-        radius_a=np.array([radius[i] for i in a]),
-        radius_b=np.array([np.inf if i >= count else radius[i] for i in b]),
+        radius_a=np.array([radius_of(system.bodies[i]) for i in a]),
+        radius_b=radius_b,
+        at_wall=at_wall,
     )

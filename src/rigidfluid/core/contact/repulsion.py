@@ -9,7 +9,6 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 
-from rigidfluid.core.contact.balls import on_wall
 from rigidfluid.core.contact.loads import require_loads, work_to_stop
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads
@@ -101,7 +100,7 @@ class Repulsion(ForceLaw):
         between, at_walls = self.options.epsilon, self.options.epsilon_wall
         if at_walls is None:
             return self._epsilon(between, contacts)
-        return np.where(on_wall(contacts), self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
+        return np.where(contacts.at_wall, self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
 
     def closeness(self, contacts: Contacts) -> FloatArray:
         """w = max(range - gap, 0), (m,) [length]."""

@@ -191,7 +191,7 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     return greatest_stiffness(law, contacts, deepest), damping
 
 
-def relative_motion(contacts: Contacts, movement: BodyDynamics) -> Motion:
+def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: FloatArray | None = None) -> Motion:
     """Velocity of a relative to b half-way between the contact points, and the effective mass of the pair,
     zero where both are driven.
 
@@ -200,7 +200,9 @@ def relative_motion(contacts: Contacts, movement: BodyDynamics) -> Motion:
     contacts : Contacts
         m contacts.
     movement : BodyDynamics
-        The n bodies as they move now; walls rest, and are heavy beyond measure.
+        The n bodies as they move now; walls are heavy beyond measure.
+    wall_velocity : (s, d) array, optional
+        At which walls slide, by surface number; they rest if not given [length/time].
 
     Returns
     -------
@@ -208,6 +210,8 @@ def relative_motion(contacts: Contacts, movement: BodyDynamics) -> Motion:
         Of the m contacts.
     """
     velocity = relative_velocity(contacts, movement.pose, movement.twist)
+    if wall_velocity is not None:
+        velocity -= wall_velocity[contacts.body_b]
     on_body = contacts.body_b < len(movement.pose.position)
     inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
     inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
@@ -226,7 +230,10 @@ def _relative(quantity: FloatArray, contacts: Contacts) -> FloatArray:
 
 
 def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
-    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time]."""
+    """Velocity of a relative to b half-way between the contact points, (m, d) [length/time].
+
+    Walls count as at rest, since no approach depends on how they slide in themselves.
+    """
     point = 0.5 * (contacts.point_a + contacts.point_b)
     velocity = _point_velocity(pose, twist, contacts.body_a, point)
     on_body = contacts.body_b < len(pose.position)

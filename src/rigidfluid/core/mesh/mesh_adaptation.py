@@ -59,7 +59,7 @@ class MeshUpdater:
             return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
-            args = s.bodies, s.pose, s.lower, s.upper, s.walls, self._sizes
+            args = s.bodies, s.pose, s.domain, s.walls, self._sizes
             mesh = initial_mesh(*args) if ranks.is_root else None
         return distributed(mesh, ranks)
 
@@ -102,7 +102,7 @@ class MeshUpdater:
         assert self._sizes is not None
         s, ranks, present = self._system, mesh.ranks, whole(mesh)
         with ranks.raise_on_all():
-            made = None if present is None else remesh(present, s.bodies, pose, s.walls, self._sizes)
+            made = None if present is None else remesh(present, s.bodies, pose, s.domain, s.walls, self._sizes)
         return distributed(made, ranks)
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
@@ -131,7 +131,7 @@ class MeshUpdater:
     def _map(self, reference: Reference) -> MeshMotion:
         if self._motion is None or self._reference is not reference:
             s = self._system
-            self._motion = MeshMotion(reference.mesh, s.bodies, reference.pose, s.backend.extension)
+            self._motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
             self._reference = reference
         return self._motion
 

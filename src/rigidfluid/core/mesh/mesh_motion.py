@@ -10,6 +10,7 @@ from scipy.sparse import csc_array
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
@@ -26,8 +27,8 @@ class MeshMotion:
     """Harmonic map of a reference mesh, ∇·((1 + τ)∇x) = 0 with τ_e = (1 - V_min/V_max) / (V_e/V_max), P1.
 
     Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
-    (of a ball only its translation); vertices on a face of the box slide along it, so their normal coordinate is fixed
-    and the natural condition holds along the face.
+    (of a ball only its translation); vertices on a flat surface across an axis slide along it, so their normal
+    coordinate is fixed and the natural condition holds along the surface; on other surfaces of the domain x = X.
 
     Parameters
     ----------
@@ -35,6 +36,8 @@ class MeshMotion:
         The reference: the mesh that the last re-meshing made.
     bodies : sequence of Body
         The shapes.
+    domain : Domain
+        What they are in.
     reference_pose : Pose
         Where they are on the reference mesh.
     extension : callable
@@ -46,13 +49,18 @@ class MeshMotion:
     """
 
     def __init__(
-        self, mesh: Mesh, bodies: Sequence[Body], reference_pose: Pose, extension: MakeExtension = factorised
+        self,
+        mesh: Mesh,
+        bodies: Sequence[Body],
+        domain: Domain,
+        reference_pose: Pose,
+        extension: MakeExtension = factorised,
     ) -> None:
         self._points = mesh.points
         self._bodies = tuple(bodies)
         self._pose = reference_pose
         self._surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
-        self._held = held_components(mesh, len(bodies))
+        self._held = held_components(mesh, len(bodies), domain)
         matrix = stiffness(mesh)
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
 
@@ -86,11 +94,13 @@ class MeshMotion:
         return turned
 
 
-def held_components(mesh: Mesh, bodies: int) -> BoolArray:
-    """Which components of the displacement are given, (N, d): all on a body, the normal one on a face of the box."""
+def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
+    """Which components of the displacement are given, (N, d): the normal one on a flat surface of the domain that lies
+    across an axis, all on other surfaces and on bodies."""
+    planes = [None] * bodies + [piece.shape.plane for piece in domain.pieces]
     held = np.zeros(mesh.points.shape, dtype=bool)
-    for surface in range(bodies + 2 * mesh.points.shape[1]):
-        components = slice(None) if surface < bodies else (surface - bodies) // 2
+    for surface, plane in enumerate(planes):
+        components = slice(None) if plane is None or plane.axis is None else plane.axis
         held[surface_vertices(mesh, surface), components] = True
     return held
 

@@ -1,17 +1,19 @@
-"""The first mesh: Netgen fills the box around the bodies with simplices whose facets know their surface."""
+"""The first mesh: Netgen fills the domain around the bodies with simplices whose facets know their surface."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.errors import MeshError
+from rigidfluid.errors import MeshError, PluginError
 
 ATTEMPTS = 8
 
@@ -19,14 +21,13 @@ ATTEMPTS = 8
 def generate_mesh(
     bodies: Sequence[Body],
     pose: Pose,
-    lower: FloatArray,
-    upper: FloatArray,
+    domain: Domain,
     size: float,
     size_body: float,
     growth: float,
     finer: Sequence[tuple[FloatArray, float]] = (),
 ) -> Mesh:
-    """Mesh of the box minus the bodies, {x : lower < x < upper} \\ ∪ B_i, vertices of a body's facets on its surface.
+    """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, the vertices of each surface's facets on that surface.
 
     Parameters
     ----------
@@ -34,8 +35,8 @@ def generate_mesh(
         The shapes, in the scene's order.
     pose : Pose
         Where they are.
-    lower, upper : (d,) array
-        Corners of the box [length].
+    domain : Domain
+        Ω.
     size : float
         Longest edge wanted far from the bodies [length].
     size_body : float
@@ -48,17 +49,17 @@ def generate_mesh(
     Returns
     -------
     Mesh
-        Markers are surface numbers: bodies 0 … n-1, then left, right, bottom, top[, back, front].
+        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
 
     Raises
     ------
     MeshError
-        When a body leaves the box, or Netgen makes no valid mesh.
+        When a body leaves the domain, or Netgen makes no valid mesh.
     """
-    refuse_bodies_outside(bodies, pose, lower, upper)
+    refuse_bodies_outside(pose, domain)
     asked = np.full(len(bodies), size_body)
     for _ in range(ATTEMPTS):
-        mesh = netgen_mesh(bodies, pose, lower, upper, size, asked, growth, finer)
+        mesh = netgen_mesh(bodies, pose, domain, size, asked, growth, finer)
         refuse_touching_bodies(mesh, len(bodies))
         check_mesh(mesh, quality=0.0)
         excess = longest_edges(mesh, len(bodies)) / size_body
@@ -80,12 +81,13 @@ def longest_edges(mesh: Mesh, count: int) -> FloatArray:
     return longest
 
 
-def refuse_bodies_outside(bodies: Sequence[Body], pose: Pose, lower: FloatArray, upper: FloatArray) -> None:
-    """Raise MeshError for the first body whose centre is not inside the box."""
-    for i in range(len(bodies)):
-        if not np.all((lower < pose.position[i]) & (pose.position[i] < upper)):
-            box = f"inside the box from {lower.tolist()} to {upper.tolist()}"
-            raise MeshError(f"body.{i}.position", pose.position[i].tolist(), box, "Move the body or enlarge the box.")
+def refuse_bodies_outside(pose: Pose, domain: Domain) -> None:
+    """Raise MeshError for the first body whose centre is not inside the domain."""
+    for i in np.flatnonzero(~domain.contains(pose.position)):
+        lower, upper = (corner.tolist() for corner in domain.extent)
+        allowed = f"inside the {domain.name} that reaches from {lower} to {upper}"
+        remedy = "Move the body or enlarge the domain."
+        raise MeshError(f"body.{i}.position", pose.position[i].tolist(), allowed, remedy)
 
 
 def refuse_touching_bodies(mesh: Mesh, count: int) -> None:
@@ -101,8 +103,7 @@ def refuse_touching_bodies(mesh: Mesh, count: int) -> None:
 def netgen_mesh(
     bodies: Sequence[Body],
     pose: Pose,
-    lower: FloatArray,
-    upper: FloatArray,
+    domain: Domain,
     size: float,
     size_body: FloatArray,
     growth: float,
@@ -113,49 +114,54 @@ def netgen_mesh(
 
     verbosity = meshing.SetMessageImportance(0)
     try:
-        geometry = occ.OCCGeometry(fluid_shape(bodies, pose, lower, upper, size_body), dim=len(lower))
+        geometry = occ.OCCGeometry(fluid_shape(bodies, pose, domain, size_body), dim=domain.dimension)
         parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False)
         for point, length in finer:
             parameters.RestrictH(*in_space(point), h=float(length))
         netgen = geometry.GenerateMesh(parameters)
     except (occ.OCCException, meshing.NgException, RuntimeError) as error:
         found = f"Netgen failed ({str(error).strip()})"
-        raise MeshError("mesh", found, "bodies that neither overlap nor leave the box", REMEDY) from error
+        raise MeshError("mesh", found, "bodies that neither overlap nor leave the domain", REMEDY) from error
     finally:
         meshing.SetMessageImportance(verbosity)
-    mesh = orient(from_netgen(netgen, len(lower)))
-    for face in range(2 * len(lower)):
-        on_face = mesh.facets[mesh.markers == len(bodies) + face]
-        mesh.points[on_face, face // 2] = (lower, upper)[face % 2][face // 2]
-    return mesh
+    return put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain, curved=True)
 
 
-def fluid_shape(bodies: Sequence[Body], pose: Pose, lower: FloatArray, upper: FloatArray, size_body: FloatArray) -> Any:
-    """The box minus the bodies as a ``netgen.occ`` shape whose faces (edges in 2D) are named by surface number."""
+def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on a flat one where it meets
+    others."""
+    points = mesh.points.copy()
+    flat = [piece.shape.plane is not None for piece in domain.pieces]
+    for number in sorted(range(len(flat)), key=flat.__getitem__):
+        if not (flat[number] or curved):
+            continue
+        vertices = np.unique(mesh.facets[mesh.markers == bodies + number])
+        points[vertices] = domain.pieces[number].shape.closest_point(points[vertices])
+    return replace(mesh, points=points)
+
+
+def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray) -> Any:
+    """The domain minus the bodies as a ``netgen.occ`` shape whose faces (edges in 2D) are named by surface number."""
     from netgen import occ
 
-    shape = box_shape(lower, upper, len(bodies))
+    shape = numbered_shape(domain, len(bodies))
     for i, body in enumerate(bodies):
         placed = turned(body.cad_shape(), pose.orientation[i]).Move(occ.Vec(*in_space(pose.position[i])))
-        for side in sides(placed, len(lower)):
+        for side in sides(placed, domain.dimension):
             side.name, side.maxh = str(i), float(size_body[i])
         shape = shape - placed
     return shape
 
 
-def box_shape(lower: FloatArray, upper: FloatArray, first: int) -> Any:
-    """The box, its faces named ``first``, ``first`` + 1, … in the order left, right, bottom, top[, back, front]."""
-    from netgen import occ
-
-    if len(lower) == 2:
-        box = occ.WorkPlane().Rectangle(*(upper - lower)).Face().Move(occ.Vec(*in_space(lower)))
-    else:
-        box = occ.Box(occ.Pnt(*lower), occ.Pnt(*upper))
-    for side in sides(box, len(lower)):
-        centre = np.array([side.center.x, side.center.y, side.center.z])[: len(lower)]
-        distance = np.abs(np.column_stack([centre - lower, upper - centre]) / (upper - lower)[:, None])
-        side.name = str(first + int(np.argmin(distance)))
-    return box
+def numbered_shape(domain: Domain, first: int) -> Any:
+    """The domain's CAD shape, its sides named ``first``, ``first`` + 1, … in the order of the pieces."""
+    shape = domain.cad_shape()
+    for side in sides(shape, domain.dimension):
+        if side.name not in domain.names:
+            found, key = f"a side of the CAD shape named {side.name!r}, by the type {domain.name!r}", "domain.type"
+            raise PluginError(key, found, f"one of {', '.join(domain.names)}", "Name all sides in `cad_shape`.")
+        side.name = str(first + domain.names.index(side.name))
+    return shape
 
 
 def sides(shape: Any, dimension: int) -> Any:

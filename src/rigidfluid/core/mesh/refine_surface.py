@@ -1,4 +1,5 @@
-"""Bisects edges on the bodies that are too long for the gap they face; new vertices lie on the exact surface."""
+"""Bisects edges on bodies and curved walls that are too long for the gap they face; new vertices lie on the exact
+surface."""
 
 from __future__ import annotations
 
@@ -10,18 +11,22 @@ import numpy as np
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose, Wall
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
 
 LONGEST = 1.5
-"""An edge on a body is bisected when it is longer than this many times the wanted size."""
+"""An edge on a body or a curved wall is bisected when it is longer than this many times the wanted size."""
 
 FLAT = 1e-3
 """Quality that a bisected cell must exceed."""
 
 
-def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
-    """Bisect body edges, longest first, until none is longer than LONGEST times the wanted size at its middle.
+def refine_surface(
+    mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes
+) -> Mesh:
+    """Bisect edges of bodies and curved walls, longest first, until none is longer than LONGEST times the wanted size.
 
     Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay, and so do
     those whose bisection would flatten or invert a cell: in a gap a vertex may be nearer to a facet than the surface
@@ -31,11 +36,13 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
     Parameters
     ----------
     mesh : Mesh
-        Mesh whose body vertices lie on the bodies at ``pose``.
+        Mesh whose vertices lie on their surfaces, the bodies at ``pose``.
     bodies : sequence of Body
         The shapes.
     pose : Pose
         Where they are.
+    domain : Domain
+        What they are in.
     walls : sequence of Wall
         The walls whose gaps are resolved.
     sizes : Sizes
@@ -48,7 +55,7 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
     """
     refused: set[tuple[int, int]] = set()
     while True:
-        edges, middles, _ = long_edges(mesh, bodies, pose, walls, sizes, LONGEST)
+        edges, middles, _ = long_edges(mesh, bodies, pose, domain, walls, sizes, LONGEST)
         left = np.array([(a, b) not in refused for a, b in edges.tolist()], dtype=bool)
         if not left.any():
             return mesh
@@ -63,28 +70,47 @@ def refine_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequen
 
 
 def long_edges(
-    mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes, longest: float
+    mesh: Mesh,
+    bodies: Sequence[Body],
+    pose: Pose,
+    domain: Domain,
+    walls: Sequence[Wall],
+    sizes: Sizes,
+    longest: float,
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Body edges (E, 2) longer than ``longest`` times the wanted size; on the surface above their middles (E, d), the
-    points and the size wanted there (E,)."""
-    edges, owner = body_edges(mesh, len(bodies))
+    """Edges (E, 2) of bodies and curved walls longer than ``longest`` times the size wanted at their middles; on the
+    surface above those, points (E, d) and the size wanted there (E,)."""
+    edges, owner = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
     middles = mesh.points[edges].mean(axis=1)
     wanted = wanted_size(middles, bodies, pose, walls, sizes)
     long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
     edges, owner, middles = edges[long], owner[long], middles[long]
     for i in np.unique(owner):
-        local = to_body_frame(pose, i, middles[owner == i])
-        middles[owner == i] = to_world(pose, i, bodies[i].closest_point(local))
+        middles[owner == i] = _on_surface(i, middles[owner == i], bodies, pose, domain)
     return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
 
 
-def body_edges(mesh: Mesh, count: int) -> tuple[IntArray, IntArray]:
-    """Edges (E, 2) of the bodies' facets, each once with ascending vertex numbers, and their body's number (E,)."""
-    facets, markers = mesh.facets[mesh.markers < count], mesh.markers[mesh.markers < count]
+def on_kept_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
+    """Which facets (F,) lie on bodies or on surfaces of the domain that are not flat: MMG must not move those."""
+    kept = [True] * bodies + [piece.shape.plane is None for piece in domain.pieces]
+    return np.array(kept)[mesh.markers]
+
+
+def edges_of_facets(mesh: Mesh, chosen: BoolArray) -> tuple[IntArray, IntArray]:
+    """Edges (E, 2) of the ``chosen`` facets (F,), each once with ascending vertex numbers, and their surface's number
+    (E,)."""
+    facets, markers = mesh.facets[chosen], mesh.markers[chosen]
     pairs = [list(pair) for pair in combinations(range(mesh.facets.shape[1]), 2)]
     edges = np.sort(np.concatenate([facets[:, pair] for pair in pairs]), axis=1)
     edges, index = np.unique(edges, axis=0, return_index=True)
     return edges, np.tile(markers, len(pairs))[index]
+
+
+def _on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
+    """The closest points (N, d) of a surface, by its number."""
+    if surface < len(bodies):
+        return to_world(pose, surface, bodies[surface].closest_point(to_body_frame(pose, surface, points)))
+    return domain.pieces[surface - len(bodies)].shape.closest_point(points)
 
 
 def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:

@@ -9,7 +9,8 @@ import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, Pose, Wall
+from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.wall import Wall
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,5 +92,5 @@ def nearest_wall(points: FloatArray, walls: Sequence[Wall]) -> FloatArray:
     """Distance to the nearest wall, (N,), infinite without walls [length]."""
     distance = np.full(len(points), np.inf)
     for wall in walls:
-        np.minimum(distance, np.maximum((points - wall.point) @ wall.normal, 0.0), out=distance)
+        np.minimum(distance, np.maximum(wall.shape.signed_distance(points), 0.0), out=distance)
     return distance

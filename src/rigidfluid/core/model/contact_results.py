@@ -18,11 +18,11 @@ def refuse_lost_contacts(contacts: Contacts, bodies: int, surfaces: int, dimensi
     key, count, vectors = "contact.detector", len(contacts), ("point_a", "point_b", "normal")
     for name in vectors:
         refuse_shape(key, name, getattr(contacts, name), (count, dimension), "contact")
-    for name in ("body_a", "body_b", "gap"):
+    for name in ("body_a", "body_b", "gap", "at_wall"):
         refuse_shape(key, name, getattr(contacts, name), (count,), "contact")
-    if not _exist(contacts.body_a, contacts.body_b, bodies, surfaces):
+    if not _exist(contacts.body_a, contacts.body_b, contacts.at_wall, bodies, surfaces):
         found = "a contact of surfaces that there are not"
-        allowed = f"body_a from 0 to {bodies - 1}, body_b from 0 to {surfaces - 1}"
+        allowed = f"body_a from 0 to {bodies - 1}, body_b from 0 to {surfaces - 1}, at_wall from {bodies} on"
         raise PluginError(key, found, allowed, remedy(key))
     if not _finite(contacts.gap, contacts.point_a, contacts.point_b, contacts.normal):
         for name in ("gap", *vectors):
@@ -30,10 +30,11 @@ def refuse_lost_contacts(contacts: Contacts, bodies: int, surfaces: int, dimensi
 
 
 @njit(cache=True)
-def _exist(body_a, body_b, bodies, surfaces):
+def _exist(body_a, body_b, at_wall, bodies, surfaces):
     missing = 0
     for i in range(len(body_a)):
-        missing += not (0 <= body_a[i] < bodies and 0 <= body_b[i] < surfaces)
+        there_are = 0 <= body_a[i] < bodies and 0 <= body_b[i] < surfaces
+        missing += not (there_are and at_wall[i] == (body_b[i] >= bodies))
     return missing == 0
 
 

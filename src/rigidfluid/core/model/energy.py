@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True, slots=True)
 class Power:
-    """Rates at one time [energy/time]: of what enters by the faces, of what drives bodies through the fluid, and of
+    """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, and of
     viscous dissipation, also ``dissipation_midway`` through the step that led there."""
 
     boundary: float = 0.0
@@ -18,8 +18,8 @@ class Power:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """Done in one step [energy]: by gravity, by what drives bodies against contacts, what the dampers of contacts
-    took, and what friction took between the fluid's solutions."""
+    """Done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
+    contacts took, and what friction took between the fluid's solutions."""
 
     gravity: float = 0.0
     control: float = 0.0

@@ -22,22 +22,20 @@ class Interaction:
 
     ``field``: the scene's table that names it. ``between``: contacts at walls, of pairs of bodies, or both; of these it
     acts in the ones that each of ``surfaces`` takes part in: in all if there is none, with two in that pair alone.
-    ``bodies``: how many there are; surfaces from that number on are walls. ``smallest_gap``: what the scene asks for,
-    None if nothing [length].
+    ``smallest_gap``: what the scene asks for, None if nothing [length].
     """
 
     field: str
     law: ForceLaw
     between: Between
     surfaces: tuple[int, ...]
-    bodies: int
     smallest_gap: float | None = None
 
     def acts_in(self, contacts: Contacts) -> BoolArray:
         """Which contacts (m,) are its own, whatever their gaps."""
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
-            chosen &= (contacts.body_b >= self.bodies) == (self.between == "walls")
+            chosen &= contacts.at_wall == (self.between == "walls")
         for surface in self.surfaces:
             chosen &= (contacts.body_a == surface) | (contacts.body_b == surface)
         return chosen

@@ -1,4 +1,4 @@
-"""The four replaceable parts: what a fluid backend, a detector, a force law and a body type must do.
+"""What a fluid backend, a detector, a force law and a body type must do; the fifth replaceable part is in `domain`.
 
 Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
 keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
@@ -17,6 +17,7 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
@@ -32,8 +33,8 @@ from rigidfluid.core.model.types import (
     Response,
     Step,
     Twist,
-    Wall,
 )
+from rigidfluid.core.model.wall import Wall
 
 
 class PartOptions(BaseModel):
@@ -43,14 +44,14 @@ class PartOptions(BaseModel):
 
 
 class Part(ABC):
-    """What the four kinds have in common."""
+    """What the five kinds have in common."""
 
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
     Options: ClassVar[type[PartOptions]] = PartOptions
 
 
-class Body(Part):
+class Body(Surface, Part):
     """A rigid shape in its own frame, its centre of mass at the origin.
 
     Parameters
@@ -81,6 +82,12 @@ class Body(Part):
         """Radius of the smallest ball about the origin that holds the shape [length]."""
 
     @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Corners of the cube around the ball of the bounding radius, (d,) each [length]."""
+        corner = np.full(self.dimension, self.bounding_radius)
+        return -corner, corner
+
+    @property
     def radius(self) -> float | None:
         """The radius if the shape is a ball, else None [length]."""
         return None
@@ -89,14 +96,6 @@ class Body(Part):
     def semi_axes(self) -> FloatArray | None:
         """Semi-axes (d,) along the axes of its frame if the shape is an ellipsoid or a ball, else None [length]."""
         return None if self.radius is None else np.full(self.dimension, self.radius)
-
-    @abstractmethod
-    def closest_point(self, points: FloatArray) -> FloatArray:
-        """Nearest points of the surface, (N, d) for ``points`` (N, d) [length]."""
-
-    @abstractmethod
-    def signed_distance(self, points: FloatArray) -> FloatArray:
-        """Distance to the surface, (N,), > 0 outside the shape, for ``points`` (N, d) [length]."""
 
     @abstractmethod
     def sample_surface(self, count: int) -> FloatArray:
@@ -119,7 +118,7 @@ class Detector(Part):
     bodies : sequence of Body
         The shapes, in the scene's order.
     walls : sequence of Wall
-        The walls that repel.
+        The walls that repel; a detector that cannot take a wall of their shape raises SceneError.
     """
 
     needs_mesh: ClassVar[bool] = False

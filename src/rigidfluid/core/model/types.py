@@ -2,7 +2,7 @@
 
 Shapes: ``n`` bodies, ``d`` space dimensions, ``k`` rotational degrees of freedom (1 in 2D, 3 in 3D),
 ``m`` contacts, ``q`` components of an orientation (1, an angle, in 2D; 4, a scalar-first unit quaternion, in 3D).
-Surfaces are numbered through: bodies 0 … n-1, then the faces of the domain n, n+1, …
+Surfaces are numbered through: bodies 0 … n-1, then the pieces of the domain's boundary n, n+1, …
 """
 
 from __future__ import annotations
@@ -54,7 +54,8 @@ class Contacts:
 
     ``body_a`` (m,) is always a body, ``body_b`` (m,) a body or a wall (its surface number);
     ``point_a``, ``point_b``, ``normal`` (m, d); ``gap`` (m,) [length], negative where they overlap;
-    ``radius_a``, ``radius_b`` (m,) radii of curvature [length], infinite on a flat wall, NaN where not known.
+    ``radius_a``, ``radius_b`` (m,) radii of curvature [length], infinite on a flat wall, negative on a hollow one, NaN
+    where not known; ``at_wall`` (m,): whether b is a wall.
     """
 
     body_a: IntArray
@@ -65,6 +66,7 @@ class Contacts:
     gap: FloatArray
     radius_a: FloatArray
     radius_b: FloatArray
+    at_wall: BoolArray
 
     def __len__(self) -> int:
         return len(self.gap)
@@ -98,16 +100,6 @@ class Loads:
     stacked_weight: FloatArray
     stacked_energy: FloatArray
     smallest_gap: float
-
-
-@dataclass(frozen=True, slots=True)
-class Wall:
-    """A flat wall that repels: ``surface`` number, a ``point`` (d,) on it, unit ``normal`` (d,) into the fluid."""
-
-    surface: int
-    name: str
-    point: FloatArray
-    normal: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,17 +138,18 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCondition:
-    """What holds on one face of the domain.
+    """What holds on one piece of the domain's boundary.
 
-    ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity; ``slip``: no flow through, no
-    traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress is -p, no flow along the face.
-    ``normal`` (d,) points into the fluid.
+    ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
+    along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
+    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat, which holds
+    for walls alone.
     """
 
     surface: int
     name: str
     type: Literal["wall", "velocity", "slip", "pressure"]
-    normal: FloatArray
+    normal: FloatArray | None
     value: Callable[[float, FloatArray], FloatArray] | None = None
 
 
@@ -164,8 +157,8 @@ class BoundaryCondition:
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
-    With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` face the pressure has zero mean.
-    ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions.
+    With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
+    mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions.
     """
 
     dimension: int
@@ -229,7 +222,7 @@ class Advance:
 
     ``hydrodynamic_wrench`` is the fluid's force and torque alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
-    [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's faces [energy/time].
+    [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
     """
 
     fluid: FluidState

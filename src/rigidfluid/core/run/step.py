@@ -99,12 +99,12 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 
 
 def _power(system: System, advance: Advance) -> Power:
-    """What enters by the faces, what drives bodies through the fluid, and what the fluid dissipates."""
+    """What enters by the boundary, what drives bodies through the fluid, and what the fluid dissipates."""
     driven = power(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
     return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 
 
 def _work(system: System, state: State, path: BodyStep) -> Work:
-    """Of the free bodies' submerged weight, of what drives bodies against the contacts, and of dampers in contacts."""
+    """Of the free bodies' submerged weight, of what drives bodies and walls against contacts, and of their dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)

@@ -24,7 +24,6 @@ Angular = Annotated[
         json_schema_input_type=float | tuple[float, ...],
     ),
 ]
-Face = Literal["all", "left", "right", "bottom", "top", "back", "front"]
 Condition = Annotated[
     Literal["wall", "velocity", "pressure", "slip", "symmetry"],
     AfterValidator(lambda value: "slip" if value == "symmetry" else value),
@@ -72,26 +71,27 @@ class FluidTable(_OpenTable):
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
 
 
-class DomainTable(_Table):
+class DomainTable(_OpenTable):
     """The region that fluid and bodies share."""
 
-    type: Literal["box"] = Field(default="box", description="Shape of the domain")
-    lower: Vector = Field(description="Corner of the box with the smallest coordinates [length]")
-    upper: Vector = Field(description="Corner of the box with the largest coordinates [length]")
+    type: str = Field(default="box", description="Name of a domain")
 
 
 class BoundaryTable(_Table):
-    """What holds on the faces of the domain; a later entry overrides an earlier one, unnamed faces are walls."""
+    """What holds on the domain's surfaces; a later entry overrides an earlier one, unnamed surfaces are walls."""
 
-    on: Face = Field(description="Face of the box: left/right along x, bottom/top along y, back/front along z")
+    on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
-        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`"
+        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
+        "a surface that is not flat is a wall"
     )
-    velocity: Vector | None = Field(default=None, description="Velocity on a `velocity` face, its peak [length/time]")
+    velocity: Vector | None = Field(
+        default=None, description="Velocity on a `velocity` surface, its peak; of a `wall` along itself [length/time]"
+    )
     profile: Literal["uniform", "parabolic"] = Field(
-        default="uniform", description="How the velocity is spread over the face; `parabolic` is zero on its edges"
+        default="uniform", description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges"
     )
-    pressure: float | None = Field(default=None, description="Pressure on a `pressure` face [force/length^(d-1)]")
+    pressure: float | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
 
 
 class PrescribedTable(_Table):

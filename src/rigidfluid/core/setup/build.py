@@ -22,8 +22,9 @@ from rigidfluid.core.model.types import (
     Pose,
     Twist,
 )
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.boundary import conditions, face_planes, faces
+from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
@@ -50,10 +51,10 @@ def build_system(scene: Scene) -> System:
     Raises
     ------
     SceneError
-        If a body overlaps another body or a face of the domain, or the mesh is too coarse for the gap between them.
+        If a body overlaps another body or a surface of the domain, or the mesh is too coarse for the gap between them.
     """
-    parts, boundary = known_parts(scene), conditions(scene)
-    walls = tuple(plane for plane, held in zip(face_planes(scene), boundary, strict=True) if held.type == "wall")
+    parts = known_parts(scene)
+    domain, walls = parts.domain, repelling_walls(scene, parts.domain)
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
     pose = _initial_pose(scene)
     motion = prescribed_motion(scene, pose)
@@ -62,18 +63,18 @@ def build_system(scene: Scene) -> System:
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
-    speed = impact_speeds(scene, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
-    loads = _loads(scene, parts.bodies, controlled, moved, weight, speed)
-    surfaces = (*(body.name for body in scene.body), *faces(scene.dimension))
+    speed = impact_speeds(scene, domain, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
+    loads = _loads(scene, parts, controlled, moved, weight, speed)
+    surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
         bodies=parts.bodies,
         surfaces=surfaces,
+        domain=domain,
         walls=walls,
-        lower=np.array(scene.domain.lower),
-        upper=np.array(scene.domain.upper),
+        wall_velocity=_wall_velocity(walls, len(parts.bodies) + len(domain.pieces)),
         mass=mass,
         added_mass=added,
         inertia=mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies]),
@@ -84,7 +85,7 @@ def build_system(scene: Scene) -> System:
         controlled=controlled,
         controlled_twist=motion,
         controlled_pose=motion.pose_at,
-        backend=parts.backend.part(parts.backend.options, _problem(scene, boundary)),
+        backend=parts.backend.part(parts.backend.options, _problem(scene, conditions(scene, domain))),
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
@@ -95,6 +96,17 @@ def build_system(scene: Scene) -> System:
         substeps=scene.contact.substeps,
         implicit=scene.contact.stepping == "implicit",
     )
+
+
+def _wall_velocity(walls: Sequence[Wall], surfaces: int) -> FloatArray | None:
+    """By surface number (surfaces, d), zero where nothing slides; None if nothing does at all [length/time]."""
+    sliding = [(wall.surface, wall.velocity) for wall in walls if wall.velocity is not None]
+    if not sliding:
+        return None
+    velocity = np.zeros((surfaces, len(sliding[0][1])))
+    for surface, given in sliding:
+        velocity[surface] = given
+    return velocity
 
 
 def _assemblies(scene: Scene) -> IntArray:
@@ -135,15 +147,15 @@ def _inert_density(scene: Scene, parts: Parts) -> float:
 
 
 def _loads(
-    scene: Scene, bodies: Sequence[Body], controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
+    scene: Scene, parts: Parts, controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
 ) -> Loads:
     """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
     smallest = min((table.smallest_gap or SMALLEST_GAP * table.range for table in law_tables(scene)), default=0.0)
     pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
     own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
     position = np.array([table.position for table in scene.body])
-    radius = np.array([body.bounding_radius for body in bodies])
-    together = stacked(own, weight, position, radius, np.subtract(scene.domain.upper, scene.domain.lower))
+    radius = np.array([body.bounding_radius for body in parts.bodies])
+    together = stacked(own, weight, position, radius, parts.domain.size)
     stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
     return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
 

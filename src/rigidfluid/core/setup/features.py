@@ -66,6 +66,7 @@ def _mesh(system: System) -> Iterator[Feature]:
 
 
 def _contact(system: System) -> Iterator[Feature]:
+    yield _sliding(system)
     names = ", ".join(wall.name for wall in system.walls) or "none"
     if system.law is None:
         yield Feature("contact forces", False, "the scene names no law")
@@ -84,6 +85,11 @@ def _law(system: System, interaction: Interaction) -> str:
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)
     return f"{text} ({names})" if names else text
+
+
+def _sliding(system: System) -> Feature:
+    names = ", ".join(wall.name for wall in system.walls if wall.velocity is not None)
+    return Feature("walls that slide", bool(names), names or "no wall has a velocity")
 
 
 def _measured(reach: float) -> Feature:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.model.types import Contacts, Pose
-from rigidfluid.core.setup.boundary import face_planes, faces
+from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector
     from rigidfluid.core.scene.scene import MeshTable, Scene
     from rigidfluid.core.setup.parts import Parts
@@ -23,7 +24,7 @@ MOST_FACETS_PER_RADIUS = 10**4
 
 
 SMALLEST_BODY = 1e-8
-"""Of the largest coordinate of the box: smaller bodies are lost in rounding, and Netgen may end the whole process."""
+"""Of the domain's largest coordinate: smaller bodies are lost in rounding, and Netgen may end the whole process."""
 
 
 def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
@@ -41,27 +42,27 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     Raises
     ------
     SceneError
-        If bodies overlap each other or a face of the domain or are lost in it, or the mesh is too coarse for a gap.
+        If bodies overlap each other or a surface of the domain or are lost in it, or the mesh is too coarse for a gap.
     """
-    _check_extent(scene, parts)
+    _check_extent(parts)
     mesh = scene.mesh if parts.backend.part.needs_mesh else None
     reach = _coarsest_gap(mesh, parts) if mesh else 0.0
-    contacts = initial_contacts(scene, parts.exact_detector, parts.bodies, pose, reach)
-    _check_overlap(scene, contacts)
+    contacts = initial_contacts(parts.domain, parts.exact_detector, parts.bodies, pose, reach)
+    _check_overlap(scene, parts.domain, contacts)
     if mesh is not None:
         _check_facets(mesh, parts)
         _check_resolution(scene, mesh, parts, contacts)
 
 
 def initial_contacts(
-    scene: Scene, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
+    domain: Domain, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
 ) -> Contacts:
-    """Every pair of surfaces at the start, with faces that do not repel among them.
+    """Every pair of surfaces at the start, with those that do not repel among them.
 
     Parameters
     ----------
-    scene : Scene
-        The scene, for its box.
+    domain : Domain
+        Its surfaces.
     detector : type
         What finds them without a mesh, see `exact_detector`.
     bodies : sequence of Body
@@ -76,31 +77,33 @@ def initial_contacts(
     Contacts
         Up to that gap.
     """
-    return detector(detector.Options(), bodies, face_planes(scene)).detect(pose, None, reach)
+    return detector(detector.Options(), bodies, surfaces_of(domain, len(bodies))).detect(pose, None, reach)
 
 
-def _check_extent(scene: Scene, parts: Parts) -> None:
-    farthest = max(abs(coordinate) for coordinate in (*scene.domain.lower, *scene.domain.upper))
+def _check_extent(parts: Parts) -> None:
+    farthest = float(np.max(np.abs(parts.domain.extent)))
     radii = [body.bounding_radius for body in parts.bodies]
     smallest = min(range(len(radii)), key=radii.__getitem__)
     if radii[smallest] < SMALLEST_BODY * farthest:
         raise SceneError(
             f"body.{smallest}",
-            f"a bounding radius of {radii[smallest]:.3g} in a box with a corner at {farthest:.3g}",
-            f"at least {SMALLEST_BODY:g} of the box's largest coordinate",
-            "Make the box smaller, or bring it nearer to the origin.",
+            f"a bounding radius of {radii[smallest]:.3g} in a domain that reaches {farthest:.3g}",
+            f"at least {SMALLEST_BODY:g} of the domain's largest coordinate",
+            "Make the domain smaller, or bring it nearer to the origin.",
         )
 
 
-def _check_overlap(scene: Scene, contacts: Contacts) -> None:
+def _check_overlap(scene: Scene, domain: Domain, contacts: Contacts) -> None:
     if len(contacts) == 0 or np.min(contacts.gap) > 0:
         return
     worst = int(np.argmin(contacts.gap))
     a, b, gap = int(contacts.body_a[worst]), int(contacts.body_b[worst]), float(contacts.gap[worst])
-    other = f"face {_name(scene, b)!r} of the domain" if b >= len(scene.body) else f"body {_name(scene, b)!r}"
+    other = f"surface {_name(scene, domain, b)!r} of the domain"
+    if b < len(scene.body):
+        other = f"body {_name(scene, domain, b)!r}"
     raise SceneError(
         f"body.{a}.position",
-        f"{list(scene.body[a].position)}, where body {_name(scene, a)!r} overlaps {other} by {-gap:.6g}",
+        f"{list(scene.body[a].position)}, where body {scene.body[a].name!r} overlaps {other} by {-gap:.6g}",
         "a place inside the domain and clear of all other surfaces",
         f"Move it by more than {-gap:.6g}, or make it smaller.",
     )
@@ -128,7 +131,7 @@ def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Con
                 continue
             fine = halvings * sqrt(4 * parts.bodies[surface].bounding_radius * float(gap))
             if mesh.size_body >= fine:
-                a, b = _name(scene, int(contacts.body_a[k])), _name(scene, int(contacts.body_b[k]))
+                a, b = (_name(scene, parts.domain, int(s[k])) for s in (contacts.body_a, contacts.body_b))
                 raise SceneError(
                     "mesh.size_body",
                     f"{mesh.size_body}, too coarse for the gap of {gap:.3g} between {a!r} and {b!r}",
@@ -137,5 +140,5 @@ def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Con
                 )
 
 
-def _name(scene: Scene, surface: int) -> str:
-    return (*(body.name for body in scene.body), *faces(scene.dimension))[surface]
+def _name(scene: Scene, domain: Domain, surface: int) -> str:
+    return (*(body.name for body in scene.body), *domain.names)[surface]

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary import face_table, faces
+from rigidfluid.core.setup.boundary import boundary_table
 from rigidfluid.core.setup.interactions import law_tables
 
 if TYPE_CHECKING:
@@ -23,18 +24,23 @@ _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 Vectors = Sequence[float] | None
 
 
-def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight: FloatArray, wet: bool) -> FloatArray:
+def impact_speeds(
+    scene: Scene, domain: Domain, bodies: Sequence[Body], mass: FloatArray, weight: FloatArray, wet: bool
+) -> FloatArray:
     """The speed at which each body is expected to hit something.
 
-    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the face of the box, less the shortest range of a law.
-    In a fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the
-    surface of a body that is no ball turns with it. A driven body has the greatest speed of its prescription. An
-    ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
+    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the end of the box around the domain, less the
+    shortest range of a law. In a fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest
+    inflow. For v₀ the surface of a body that is no ball turns with it. A driven body has the greatest speed of its
+    prescription. An ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it
+    cannot lower.
 
     Parameters
     ----------
     scene : Scene
-        Its box, its velocities, its fluid.
+        Its velocities, its fluid.
+    domain : Domain
+        The room to fall in.
     bodies : sequence of Body
         The n shapes.
     mass : (n,) array
@@ -52,26 +58,29 @@ def impact_speeds(scene: Scene, bodies: Sequence[Body], mass: FloatArray, weight
     lever = _by_shape(_lever, bodies)
     start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
     pull = np.linalg.norm(weight, axis=1)
-    falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, bodies, weight))
+    falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
     if wet:
-        falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, bodies, pull))) + _fastest_inflow(scene)
+        falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, domain, bodies, pull)))
+        falling = falling + _fastest_inflow(scene, domain)
     if scene.contact.impact_speed is not None:
         falling = np.maximum(start, scene.contact.impact_speed)
     return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
 
 
-def terminal_speeds(scene: Scene, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
+def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
     """The speed at which drag holds a submerged weight, far from walls, from correlations for a ball of equal volume.
 
     3D: C = (24/Re)(1 + 0.15 Re^0.687) up to Re = 1000, then 0.44; 2D: C = 1 + 10 Re^(-2/3), with Re = 2 r ρ v/μ.
     Without inertia F = 6πμ r v in 3D and, since no such law exists in 2D for an unbounded fluid, 4πμ v/ln(L/r) with
-    the longest side L of the box, less than the drag between its walls. The ball has nearly the least drag of all
-    shapes of a volume, so that the speed errs to the fast side.
+    the longest side L of the box around the domain, less than the drag between its walls. The ball has nearly the least
+    drag of all shapes of a volume, so that the speed errs to the fast side.
 
     Parameters
     ----------
     scene : Scene
         Its fluid, with density and viscosity.
+    domain : Domain
+        For its size.
     bodies : sequence of Body
         The n shapes.
     pull : (n,) array
@@ -92,7 +101,7 @@ def terminal_speeds(scene: Scene, bodies: Sequence[Body], pull: FloatArray) -> F
     assert viscosity is not None
     radius = _by_shape(equal_volume_radius, bodies)
     if scene.fluid.model == "stokes":
-        longest = float(np.max(np.subtract(scene.domain.upper, scene.domain.lower)))
+        longest = float(np.max(domain.size))
         resistance = 6.0 * np.pi * radius if scene.dimension == 3 else 4.0 * np.pi / np.log(longest / radius)
         return np.asarray(pull / (viscosity * resistance))
     per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
@@ -120,12 +129,14 @@ def _cylinder_drag(reynolds: FloatArray) -> FloatArray:
     return np.asarray(1.0 + 10.0 * reynolds ** (-2.0 / 3.0))
 
 
-def _free_heights(scene: Scene, bodies: Sequence[Body], weight: FloatArray) -> FloatArray:
-    """Way along the weight from each body to the first face, at most, less the range; zero without weight (n,)."""
+def _free_heights(scene: Scene, domain: Domain, bodies: Sequence[Body], weight: FloatArray) -> FloatArray:
+    """Way along the weight from each body to the end of the box around the domain, less the range; zero without weight
+    (n,)."""
+    lower, upper = domain.extent
     length = np.linalg.norm(weight, axis=1, keepdims=True)
     down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
     position = np.array([table.position for table in scene.body])
-    ahead = np.where(down > 0.0, np.subtract(scene.domain.upper, position), position - np.array(scene.domain.lower))
+    ahead = np.where(down > 0.0, upper - position, position - lower)
     room = ahead - _by_shape(inscribed_radius, bodies)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
     height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
@@ -142,8 +153,8 @@ def _own_speed(table: BodyTable, lever: float) -> float:
     return speed + 2.0 * np.pi * (table.prescribed.frequency or 0.0) * _length(table.prescribed.amplitude)
 
 
-def _fastest_inflow(scene: Scene) -> float:
-    tables = (face_table(scene, name) for name in faces(scene.dimension))
+def _fastest_inflow(scene: Scene, domain: Domain) -> float:
+    tables = (boundary_table(scene, name) for name in domain.names)
     return max(_length(table.velocity) if table else 0.0 for table in tables)
 
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Loads
-from rigidfluid.core.setup.boundary import face_table, faces
+from rigidfluid.core.setup.boundary import boundary_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.scene.scene import Scene
     from rigidfluid.core.setup.parts import Parts, Selected
 
@@ -44,13 +45,15 @@ def law_tables(scene: Scene) -> tuple[LawTable, ...]:
     return tuple(found)
 
 
-def check_interactions(scene: Scene) -> None:
+def check_interactions(scene: Scene, domain: Domain) -> None:
     """Refuse tables of laws that act nowhere, or whose smallest gap is none.
 
     Parameters
     ----------
     scene : Scene
-        Its single keys are valid, and so are its bodies and faces.
+        Its single keys are valid, and so are its bodies and conditions.
+    domain : Domain
+        The domain that it names.
 
     Raises
     ------
@@ -61,7 +64,7 @@ def check_interactions(scene: Scene) -> None:
         if table.smallest_gap is not None and table.smallest_gap >= table.range:
             allowed = f"a length above 0 and below {table.at}.range = {table.range}"
             raise SceneError(f"{table.at}.smallest_gap", table.smallest_gap, allowed, "Shorten it, or widen the range.")
-        _check_names(scene, table)
+        _check_names(scene, domain, table)
 
 
 def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads) -> tuple[Interaction, ...]:
@@ -94,7 +97,6 @@ def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], load
             law=_law(table, selected, loads),
             between=table.between,
             surfaces=tuple(surfaces.index(name) for name in table.names),
-            bodies=len(scene.body),
             smallest_gap=table.smallest_gap,
         )
         for table, selected in zip(law_tables(scene), parts.laws, strict=True)
@@ -111,11 +113,11 @@ def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads) -> ForceLa
         raise SceneError(subject, error.found, allowed, error.remedy) from None
 
 
-def _check_names(scene: Scene, table: LawTable) -> None:
-    bodies, walls = [body.name for body in scene.body], _walls(scene)
+def _check_names(scene: Scene, domain: Domain, table: LawTable) -> None:
+    bodies, walls = [body.name for body in scene.body], _walls(scene, domain)
     for number, name in enumerate(table.names):
         if name not in (*bodies, *walls):
-            raise _unknown(scene, f"{table.at}.names.{number}", name, [*bodies, *walls])
+            raise _unknown(domain, f"{table.at}.names.{number}", name, [*bodies, *walls])
     at_walls = any(name in walls for name in table.names)
     pair = len(table.names) == 2
     if pair and (len(set(table.names)) == 1 or all(name in walls for name in table.names)):
@@ -127,13 +129,13 @@ def _check_names(scene: Scene, table: LawTable) -> None:
         raise _nowhere(table, "bodies that are not parts of one articulated body, which do not touch")
 
 
-def _walls(scene: Scene) -> list[str]:
-    tables = ((name, face_table(scene, name)) for name in faces(scene.dimension))
+def _walls(scene: Scene, domain: Domain) -> list[str]:
+    tables = ((name, boundary_table(scene, name)) for name in domain.names)
     return [name for name, table in tables if table is None or table.type == "wall"]
 
 
-def _unknown(scene: Scene, field: str, name: str, known: Sequence[str]) -> SceneError:
-    open_face = "a face that is no wall, and does not repel" if name in faces(scene.dimension) else "no surface"
+def _unknown(domain: Domain, field: str, name: str, known: Sequence[str]) -> SceneError:
+    open_face = "a surface that is no wall, and does not repel" if name in domain.names else "no surface"
     shown = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
     remedy = suggestion(name, known) or "Name a body or a wall."
     return SceneError(field, f"{name!r}, {open_face}", f"one of {shown}", remedy)

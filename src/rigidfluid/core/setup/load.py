@@ -9,6 +9,8 @@ from typing import Any
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.boundary_checks import check_boundary
+from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 
@@ -35,7 +37,10 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     """
     scene = read_table(Scene, data)
     check_tables(scene)
-    check_fluid(scene, known_parts(scene).backend.part)
+    parts = known_parts(scene)
+    check_boundary(scene, parts.domain)
+    check_interactions(scene, parts.domain)
+    check_fluid(scene, parts.backend.part, parts.domain)
     return scene
 
 

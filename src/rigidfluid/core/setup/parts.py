@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import ContactTable, FluidTable, Scene
@@ -45,6 +46,7 @@ class Parts:
     """
 
     backend: Selected[FluidBackend]
+    domain: Domain
     bodies: tuple[Body, ...]
     detector: Selected[Detector]
     laws: tuple[Selected[ForceLaw], ...]
@@ -63,7 +65,7 @@ def select_plugins(scene: Scene) -> Parts:
     Returns
     -------
     Parts
-        Classes with options; the bodies are built, as the default detector depends on their shapes.
+        Classes with options; bodies and domain are built, as the default detector depends on their shapes.
 
     Raises
     ------
@@ -73,18 +75,19 @@ def select_plugins(scene: Scene) -> Parts:
         If an option is unknown, missing or has a value that is not allowed.
     """
     registry = Registry.load()
+    domain = _domain(scene, registry)
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
     mesh = backend.part.needs_mesh
     tables = law_tables(scene)
     laws = [registry.get(FORCE_LAW, table.law, f"{table.at}.law") for table in tables]
-    detector, why = _detector(scene.contact, registry, bodies, mesh, bool(laws))
+    detector, why = _detector(scene.contact, registry, bodies, domain, mesh and bool(laws))
     _refuse_detector(detector, mesh)
     _refuse_contact_keys(scene.contact, detector, laws)
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
-    exact = exact_detector(bodies, registry)
+    exact = exact_detector(bodies, domain, registry)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
-    return Parts(backend, bodies, found, chosen, why, exact)
+    return Parts(backend, domain, bodies, found, chosen, why, exact)
 
 
 def known_parts(scene: Scene) -> Parts:
@@ -108,34 +111,46 @@ def known_parts(scene: Scene) -> Parts:
     return _KNOWN[id(scene)]
 
 
-def cheapest_detector(bodies: Sequence[Body], mesh: bool) -> tuple[str, str]:
-    """The cheapest detector that is exact for these bodies.
+def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tuple[str, str]:
+    """The cheapest detector that is exact for these bodies between these surfaces.
 
     Parameters
     ----------
     bodies : sequence of Body
         The shapes.
+    domain : Domain
+        Its surfaces.
     mesh : bool
         Whether there is a mesh around them, and no need to know gaps beyond the range of a law.
 
     Returns
     -------
     str, str
-        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids; else
-        ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
+        walls are flat; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"
+    reason = "not all bodies are ellipsoids"
     if all(body.semi_axes is not None for body in bodies):
-        return "ellipsoid", "all bodies are balls or ellipsoids"
+        if all(piece.shape.plane for piece in domain.pieces):
+            return "ellipsoid", "all bodies are balls or ellipsoids"
+        reason = "not all bodies are balls and not all walls are flat"
     if mesh:
-        return "narrow_band", "not all bodies are ellipsoids, and there is a mesh and a law"
-    return "brute_force", "not all bodies are ellipsoids, and there is no mesh or no law"
+        return "narrow_band", f"{reason}, and there is a mesh and a law"
+    return "brute_force", f"{reason}, and there is no mesh or no law"
 
 
-def exact_detector(bodies: Sequence[Body], registry: Registry) -> type[Detector]:
-    """The cheapest detector that is exact for these bodies and needs no mesh."""
-    return registry.get(DETECTOR, cheapest_detector(bodies, mesh=False)[0])
+def exact_detector(bodies: Sequence[Body], domain: Domain, registry: Registry) -> type[Detector]:
+    """The cheapest detector that is exact for these bodies between these surfaces and needs no mesh."""
+    return registry.get(DETECTOR, cheapest_detector(bodies, domain, mesh=False)[0])
+
+
+def _domain(scene: Scene, registry: Registry) -> Domain:
+    table = scene.domain
+    part = registry.get(DOMAIN, table.type)
+    _refuse_unread(table.options, [part], type(table).model_fields, "domain")
+    return part(read_table(part.Options, table.options, "domain"), scene.dimension)
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:
@@ -159,11 +174,11 @@ def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
 
 
 def _detector(
-    table: ContactTable, registry: Registry, bodies: Sequence[Body], mesh: bool, law: bool
+    table: ContactTable, registry: Registry, bodies: Sequence[Body], domain: Domain, mesh: bool
 ) -> tuple[type[Detector], str]:
     if table.detector != AUTO:
         return registry.get(DETECTOR, table.detector), "the scene names it"
-    name, why = cheapest_detector(bodies, mesh and law)
+    name, why = cheapest_detector(bodies, domain, mesh)
     return registry.get(DETECTOR, name), f"chosen as {why}"
 
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.setup.boundary import face_table, face_velocity, faces, inward_normal
-from rigidfluid.core.setup.interactions import check_interactions
+from rigidfluid.core.setup.boundary_checks import check_inflow
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
-    from rigidfluid.core.scene.scene import BodyTable, BoundaryTable, MeshTable, Scene
+    from rigidfluid.core.scene.scene import BodyTable, MeshTable, Scene
 
     Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
 
@@ -40,19 +39,14 @@ def check_tables(scene: Scene) -> None:
         At the first contradiction.
     """
     _check_vectors(scene)
-    _check_box(scene)
-    for number, table in enumerate(scene.boundary):
-        _check_boundary(scene, table, f"boundary.{number}")
     for number, body in enumerate(scene.body):
         _check_body(scene, body, f"body.{number}")
-    _check_names(scene)
     _check_assemblies(scene)
     _check_contact(scene)
-    check_interactions(scene)
     _check_sizes(scene)
 
 
-def check_fluid(scene: Scene, backend: type[FluidBackend]) -> None:
+def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
     """Refuse a scene that lacks what its backend needs, or prescribes a flow that cannot be.
 
     Parameters
@@ -61,6 +55,8 @@ def check_fluid(scene: Scene, backend: type[FluidBackend]) -> None:
         Its tables are checked.
     backend : type
         The class that its fluid table names.
+    domain : Domain
+        The domain that it names.
 
     Raises
     ------
@@ -75,8 +71,8 @@ def check_fluid(scene: Scene, backend: type[FluidBackend]) -> None:
             raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
     if scene.mesh is None:
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
-    _check_cells(scene, scene.mesh)
-    _check_inflow(scene)
+    _check_cells(scene.mesh, domain)
+    check_inflow(scene, domain)
 
 
 def _check_vectors(scene: Scene) -> None:
@@ -92,8 +88,6 @@ def _vectors(scene: Scene) -> Vectors:
     d = scene.dimension
     k = 1 if d == 2 else 3
     yield "fluid.gravity", scene.fluid.gravity, d
-    yield "domain.lower", scene.domain.lower, d
-    yield "domain.upper", scene.domain.upper, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d
     for i, body in enumerate(scene.body):
@@ -106,28 +100,6 @@ def _vectors(scene: Scene) -> Vectors:
             yield f"body.{i}.prescribed.amplitude", body.prescribed.amplitude, d
     for i, probe in enumerate(scene.output.probes):
         yield f"output.probes.{i}", probe, d
-
-
-def _check_box(scene: Scene) -> None:
-    lower, upper = np.array(scene.domain.lower), np.array(scene.domain.upper)
-    if np.any(upper <= lower):
-        allowed = f"a corner above domain.lower = {list(scene.domain.lower)}"
-        raise SceneError("domain.upper", list(scene.domain.upper), allowed, "Swap or correct them.")
-    for i, probe in enumerate(scene.output.probes):
-        if np.any(probe < lower) or np.any(probe > upper):
-            raise SceneError(f"output.probes.{i}", list(probe), "a point of the domain", "Move it inside.")
-
-
-def _check_boundary(scene: Scene, table: BoundaryTable, at: str) -> None:
-    allowed = ("all", *faces(scene.dimension))
-    if table.on not in allowed:
-        raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a face of the box.")
-    for key in ("velocity", "pressure"):
-        given = getattr(table, key) is not None
-        if given and table.type != key:
-            raise SceneError(f"{at}.{key}", f"it on a {table.type!r} face", f"it with type = {key!r}", "Keep one.")
-        if table.type == key and not given:
-            raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
 
 
 def _check_body(scene: Scene, body: BodyTable, at: str) -> None:
@@ -153,14 +125,6 @@ def _check_control(body: BodyTable, at: str) -> None:
         missing = "amplitude" if body.prescribed.amplitude is None else "frequency"
         field = f"{at}.prescribed.{missing}"
         raise SceneError(field, "nothing", "amplitude and frequency together, or neither", f"Add {missing!r}.")
-
-
-def _check_names(scene: Scene) -> None:
-    names = [body.name for body in scene.body]
-    for name, count in Counter(names + list(faces(scene.dimension))).items():
-        if count > 1:
-            last = len(names) - 1 - names[::-1].index(name)
-            raise SceneError(f"body.{last}.name", repr(name), "a name that no other body or face has", "Rename it.")
 
 
 def _check_assemblies(scene: Scene) -> None:
@@ -203,28 +167,7 @@ def _check_sizes(scene: Scene) -> None:
         raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
 
 
-def _check_cells(scene: Scene, mesh: MeshTable) -> None:
-    volume = float(np.prod(np.subtract(scene.domain.upper, scene.domain.lower)))
-    least = (volume / MOST_CELLS) ** (1.0 / scene.dimension)
+def _check_cells(mesh: MeshTable, domain: Domain) -> None:
+    least = (domain.volume / MOST_CELLS) ** (1.0 / domain.dimension)
     if mesh.size < least:
         raise SceneError("mesh.size", mesh.size, f"at least {least:.3g} for this domain", "Coarsen it.")
-
-
-def _check_inflow(scene: Scene) -> None:
-    """An incompressible fluid needs a way out where it flows in."""
-    extent = np.array(scene.domain.upper) - np.array(scene.domain.lower)
-    flows = []
-    for face, name in enumerate(faces(scene.dimension)):
-        table = face_table(scene, name)
-        if table and table.type == "pressure":
-            return
-        if table and table.type == "velocity":
-            area = np.prod(np.delete(extent, face // 2))
-            flows.append(float(area * face_velocity(scene, face, table).mean @ inward_normal(face, scene.dimension)))
-    if abs(sum(flows)) > 1e-12 * sum(map(abs, flows)):
-        raise SceneError(
-            "boundary",
-            f"a net inflow of {sum(flows):.6g} [length^{scene.dimension}/time] and no outlet",
-            "as much outflow as inflow, or a face of type 'pressure'",
-            "Give one face type = 'pressure', pressure = 0.0.",
-        )

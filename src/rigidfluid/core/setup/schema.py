@@ -5,16 +5,23 @@ from __future__ import annotations
 from typing import Any
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Entry, Registry
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Entry, Registry
 
 _TABLES = {
     FLUID_BACKEND: ("FluidTable",),
     BODY: ("BodyTable",),
     DETECTOR: ("ContactTable",),
     FORCE_LAW: ("ContactTable", "InteractionTable"),
+    DOMAIN: ("DomainTable",),
 }
 # The parts that a table means where it names none.
-_UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "ellipsoid", "brute_force"), BODY: (), FORCE_LAW: ()}
+_UNNAMED = {
+    FLUID_BACKEND: ("scikit-fem",),
+    DETECTOR: ("sphere", "ellipsoid", "brute_force"),
+    BODY: (),
+    FORCE_LAW: (),
+    DOMAIN: ("box",),
+}
 
 
 def json_schema() -> dict[str, Any]:

@@ -68,8 +68,8 @@ def collision_rows(most_bodies: int = 125, repeats: int = 5) -> Iterator[Collisi
 
 
 def _row(dimension: int, bodies: int, counts: tuple[int, int], repeats: int) -> CollisionRow:
-    balls, pose, walls = balls_in_a_box(dimension, bodies)
-    mesh = initial_mesh(balls, pose, np.zeros(dimension), np.ones(dimension), walls, mesh_sizes(dimension, bodies))
+    balls, pose, box, walls = balls_in_a_box(dimension, bodies)
+    mesh = initial_mesh(balls, pose, box, walls, mesh_sizes(dimension, bodies))
     detectors = (
         SphereDetector(PartOptions(), balls, walls),
         NarrowBandDetector(NarrowBandOptions(), balls, walls),

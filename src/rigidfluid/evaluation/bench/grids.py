@@ -10,7 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.model.types import FloatArray, Pose, Wall
+from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.domains.box import Box, BoxOptions
 
 RANGE = 0.03
 """Range of the contact force [length]."""
@@ -22,8 +25,8 @@ FILLED = {2: 0.6, 3: 0.6}
 """Part of a row that the balls fill."""
 
 
-def balls_in_a_box(dimension: int, count: int) -> tuple[list[Sphere], Pose, list[Wall]]:
-    """A grid of balls, their pose, and the walls of the box.
+def balls_in_a_box(dimension: int, count: int) -> tuple[list[Sphere], Pose, Box, tuple[Wall, ...]]:
+    """A grid of balls, their pose, the unit box and its walls.
 
     Parameters
     ----------
@@ -34,15 +37,16 @@ def balls_in_a_box(dimension: int, count: int) -> tuple[list[Sphere], Pose, list
 
     Returns
     -------
-    list of Sphere, Pose, list of Wall
-        All walls of the unit box repel.
+    list of Sphere, Pose, Box, tuple of Wall
+        All walls of the box repel.
     """
     side = round(count ** (1 / dimension))
     radius = FILLED[dimension] / (2 * max(side, 4))
     centres = np.array([[0.5] * (dimension - 1) + [radius + NEAR]]) if side == 1 else _grid(dimension, side, radius)
     upright = np.eye(1, 1 if dimension == 2 else 4) * (dimension == 3)
     balls = [Sphere(SphereOptions(radius=radius), dimension)] * count
-    return balls, Pose(centres, np.tile(upright, (count, 1))), _walls(dimension, count)
+    box = Box(BoxOptions(lower=(0.0,) * dimension, upper=(1.0,) * dimension), dimension)
+    return balls, Pose(centres, np.tile(upright, (count, 1))), box, surfaces_of(box, count)
 
 
 def _grid(dimension: int, side: int, radius: float) -> FloatArray:
@@ -59,12 +63,3 @@ def _row(side: int, radius: float, narrow: int) -> FloatArray:
     wide = (1.0 - 2 * NEAR - 2 * radius * side - NEAR * narrow) / (side - 1 - narrow)
     gaps = np.array([NEAR] * narrow + [wide] * (side - 1 - narrow))
     return NEAR + radius + np.append(0.0, np.cumsum(gaps + 2 * radius))
-
-
-def _walls(dimension: int, count: int) -> list[Wall]:
-    axes = np.eye(dimension)
-    faces = [(axis, upper) for axis in range(dimension) for upper in (0, 1)]
-    return [
-        Wall(count + number, f"wall {number}", upper * axes[axis], (1 - 2 * upper) * axes[axis])
-        for number, (axis, upper) in enumerate(faces)
-    ]

@@ -30,7 +30,7 @@ _COLLISION = ("contact", "detect")
 
 def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfinx") -> Scene:
     """Balls at rest in a box of fluid at rest, without gravity, and contact forces that hardly move them."""
-    balls, pose, _ = balls_in_a_box(dimension, bodies)
+    balls, pose, *_ = balls_in_a_box(dimension, bodies)
     sizes = mesh_sizes(dimension, bodies, coarseness)
     ball = {"type": "sphere", "radius": balls[0].radius, "density": 1.0}
     return scene_from_dict(

@@ -114,8 +114,8 @@ def _scale(values: FloatArray) -> float:
 
 
 def _means(system: System, samples: Samples, energy: FloatArray, momentum: FloatArray) -> Means:
-    sides = system.upper - system.lower
-    area = sum(float(np.prod(sides[wall.normal == 0.0])) for wall in system.walls)
+    repelling = {wall.name for wall in system.walls}
+    area = sum(piece.area for piece in system.domain.pieces if piece.name in repelling)
     force = float(samples.wall_force.sum(axis=1).mean()) if area else 0.0
     total = float(np.linalg.norm(momentum, axis=1).mean())
     return Means(float(energy.mean()), total, force / area if area else 0.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.balls import on_wall
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.state import State
@@ -67,7 +66,7 @@ def _sample(system: System, state: State) -> Sample:
 def _wall_forces(system: System, state: State) -> FloatArray:
     """How hard the bodies push each wall outwards (w,) [force]."""
     forces = np.zeros(len(system.walls))
-    near = select(state.contacts, on_wall(state.contacts))
+    near = select(state.contacts, state.contacts.at_wall)
     if system.law is None or len(near) == 0:
         return forces
     body = near.body_a

@@ -22,8 +22,9 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     Raises
     ------
     CrosscheckError
-        For a fluid, shapes other than balls, motions that are prescribed, articulated bodies, several laws or one for
-        some contacts alone, and laws that take energy out, but for ``spring-dashpot``.
+        For a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
+        articulated bodies, several laws or one for some contacts alone, and laws that take energy out, but for
+        ``spring-dashpot``.
     """
     if system.backend.needs_mesh:
         raise CrosscheckError(
@@ -47,6 +48,11 @@ def refuse_foreign(scene: Scene, system: System) -> None:
             )
         if table.part_of is not None:
             raise CrosscheckError(f"{field}.part_of", repr(table.part_of), "bodies of one part", "Leave part_of out.")
+    for wall in system.walls:
+        plane = wall.shape.plane
+        if plane is None or plane.axis is None or wall.velocity is not None:
+            found, allowed = f"the wall {wall.name!r}", "flat walls across an axis and at rest"
+            raise CrosscheckError("domain", found, allowed, "Use domain.type = 'box', without velocities of walls.")
     law = system.law
     if isinstance(law, SumOfLaws):
         raise CrosscheckError(

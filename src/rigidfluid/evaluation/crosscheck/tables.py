@@ -19,10 +19,11 @@ CLOSEST = 0.01
 
 @dataclass(frozen=True)
 class Pair:
-    """Two surfaces: the numbers of ``bodies`` a and b, and their ``radii``; a wall's radius is infinite [length]."""
+    """Two surfaces: the numbers of ``bodies`` a and b, and their ``radii``, infinite of a flat wall [length]."""
 
     bodies: tuple[int, int]
     radii: tuple[float, float]
+    at_wall: bool = False
 
     @property
     def touching(self) -> float:
@@ -79,4 +80,5 @@ def _contacts(pair: Pair, gap: FloatArray) -> Contacts:
         gap=gap,
         radius_a=np.full(count, pair.radii[0]),
         radius_b=np.full(count, pair.radii[1]),
+        at_wall=np.full(count, pair.at_wall),
     )

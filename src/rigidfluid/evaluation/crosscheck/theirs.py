@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.wall import require_plane
 from rigidfluid.core.run.step import contact_energy
 from rigidfluid.evaluation.crosscheck.kinds import Kinds, kinds, radii
 from rigidfluid.evaluation.crosscheck.library import lammps_session
@@ -101,12 +102,13 @@ def _sample(engine: Any, system: System, sorts: Kinds) -> Sample:
     order = np.argsort(engine.numpy.extract_atom("id")[:here])[:count]
     position, velocity, spin = (engine.numpy.extract_atom(name)[order] for name in ("x", "v", "omega"))
     spin = spin[:, 3 - system.twist.angular_velocity.shape[1] :]
+    normals = [require_plane(wall, "lammps").unit_normal for wall in system.walls]
     if isinstance(system.law, SpringDashpotLaw):
         stored = _spring_energy(system, position[:, :d])
-        pushed = [_granular_push(engine, number, wall.normal) for number, wall in enumerate(system.walls)]
+        pushed = [_granular_push(engine, number, normal) for number, normal in enumerate(normals)]
     else:
         stored = float(engine.get_thermo("pe"))
-        pushed = [_table_push(engine, number, wall.normal, sorts) for number, wall in enumerate(system.walls)]
+        pushed = [_table_push(engine, number, normal, sorts) for number, normal in enumerate(normals)]
     return Sample(position[:, :d], velocity[:, :d], spin, stored, np.array(pushed))
 
 

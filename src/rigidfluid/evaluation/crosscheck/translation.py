@@ -10,7 +10,8 @@ import numpy as np
 
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Wall
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.evaluation.crosscheck.kinds import Kinds, radii
 from rigidfluid.evaluation.crosscheck.tables import POINTS, Pair, write_table
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
@@ -41,7 +42,8 @@ def ballast_type(kinds: Kinds) -> int:
 
 def set_up(system: System, kinds: Kinds) -> Iterator[str]:
     """Commands before the bodies are there: a box that grows where they leave, and a type for each kind."""
-    lower, upper = _three(system.lower, -0.5), _three(system.upper, 0.5)
+    low, high = system.domain.extent
+    lower, upper = _three(low, -0.5), _three(high, 0.5)
     periodic = "p" if system.dimension == 2 else "m"
     yield "units lj"
     yield f"dimension {system.dimension}"
@@ -129,9 +131,9 @@ def _granular(law: SpringDashpotLaw, walls: tuple[Wall, ...], kind_count: int) -
     yield f"pair_coeff * * {model}"
     yield f"group balls type <= {kind_count}"
     for number, wall in enumerate(walls):
-        axis, place = _plane(wall)
-        place += wall.normal[axis] * shell(law)
-        sides = f"{place:.17g} NULL" if wall.normal[axis] > 0 else f"NULL {place:.17g}"
+        axis, place, side = _plane(wall)
+        place += side * shell(law)
+        sides = f"{place:.17g} NULL" if side > 0 else f"NULL {place:.17g}"
         yield f"fix {wall_fix(number)} balls wall/gran granular {model} {'xyz'[axis]}plane {sides} contacts"
 
 
@@ -156,18 +158,21 @@ def _tabulated(law: ForceLaw, system: System, kinds: Kinds, folder: Path) -> Ite
         yield f"group kind{kind} type {kind}"
         path = folder / f"wall{kind}"
         if system.walls:
-            cutoff = write_table(path, law, Pair((int(body), system.walls[0].surface), (radius[body], np.inf)))
+            meeting = Pair((int(body), system.walls[0].surface), (radius[body], np.inf), at_wall=True)
+            cutoff = write_table(path, law, meeting)
         for number, wall in enumerate(system.walls):
-            axis, place = _plane(wall)
-            side = f"{'xyz'[axis]}{'lo' if wall.normal[axis] > 0 else 'hi'} {place:.17g}"
+            axis, place, towards = _plane(wall)
+            side = f"{'xyz'[axis]}{'lo' if towards > 0 else 'hi'} {place:.17g}"
             name = wall_fix(number, kind)
             yield f"fix {name} kind{kind} wall/table spline {POINTS} {side} {path} LAW {cutoff:.17g}"
             yield f"fix_modify {name} energy yes"
 
 
-def _plane(wall: Wall) -> tuple[int, float]:
-    axis = int(np.flatnonzero(wall.normal)[0])
-    return axis, float(wall.point[axis])
+def _plane(wall: Wall) -> tuple[int, float, float]:
+    """The axis across it, its place there, and the sign of its normal."""
+    plane = require_plane(wall, "lammps")
+    assert plane.axis is not None
+    return plane.axis, float(plane.point[plane.axis]), float(plane.unit_normal[plane.axis])
 
 
 def _three(vector: FloatArray, last: float) -> FloatArray:

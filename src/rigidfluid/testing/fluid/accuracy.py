@@ -69,7 +69,7 @@ class AccuracyContract(FluidContract):
             velocity[:, 0] = np.prod(np.where(points[:, :1] < 0.5, parabola, sine), axis=1)
             return velocity
 
-        sides = {"left": "velocity", "right": "velocity"}
+        sides = {"x0": "velocity", "x1": "velocity"}
         posed, mesh = problem(dimension, sides, dict.fromkeys(sides, through)), box(dimension, 3)
         flow, other = (self.empty(posed, whole).after(None) for whole in (mesh, renumbered(mesh)))
         points = samples(dimension)

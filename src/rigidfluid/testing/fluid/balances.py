@@ -24,7 +24,7 @@ from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Value
 from rigidfluid.testing.fluid.flow import Bodies, components
 
 DROP, BACK = 2.0, 0.4
-"""Of the pressure from the left to the right face, and at the right one."""
+"""Of the pressure from the first to the second face, and at that one."""
 
 
 class BalancesContract(FluidContract):
@@ -36,7 +36,7 @@ class BalancesContract(FluidContract):
 
         Midway from rest half the velocity dissipates a quarter.
         """
-        started = self.empty(_channel(dimension, inertia, wall="top"), box(dimension, 3)).after(None)
+        started = self.empty(_channel(dimension, inertia, wall="y1"), box(dimension, 3)).after(None)
         flow = started.after(0.1)
         points, advance = samples(dimension), flow.advance
         velocity, pressure = flow.probe(points)
@@ -51,10 +51,24 @@ class BalancesContract(FluidContract):
         kinetic = 0.5 * DENSITY * (DROP / (2 * VISCOSITY)) ** 2 * 8 / 15
         self.assert_close(advance.kinetic_energy, kinetic if inertia else 0.0)
 
+    @pytest.mark.parametrize("inertia", [False, True], ids=["stokes", "navier-stokes"])
+    def test_flow_along_a_wall_that_slides(self, dimension: int, inertia: bool) -> None:
+        """Couette's: u = U y between a wall at rest and one that slides at U, whose power μ U² is dissipated."""
+        types = dict.fromkeys(("z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
+        sliding = np.eye(dimension)[0] * DROP
+        values = {"x0": _constant(BACK), "x1": _constant(BACK), "y1": lambda _, x: np.tile(sliding, (len(x), 1))}
+        flow = self.empty(problem(dimension, types, values, inertia=inertia), box(dimension, 3)).after(None).after(0.1)
+        points = samples(dimension)
+        velocity, pressure = flow.probe(points)
+        self.assert_close(velocity, points[:, 1:2] * sliding)
+        self.assert_close(pressure, BACK, scale=10.0)
+        work = VISCOSITY * DROP**2
+        self.assert_close([flow.advance.dissipation, flow.advance.boundary_power], work, scale=10.0)
+
     def test_rest_stays_rest(self, dimension: int) -> None:
         """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
         bodies = Bodies(np.ones(2), Bodies.of(balls_pose(dimension)).inertia, np.array([True, False]))
-        faces = {"left": "pressure", "right": "pressure"}
+        faces = {"x0": "pressure", "x1": "pressure"}
         flow = self.with_balls(problem(dimension, faces, dict.fromkeys(faces, _constant(BACK)), bodies=2), bodies)
         sway = np.full(dimension, 0.02)
         for length in (0.1, 0.1, 0.05):
@@ -207,10 +221,10 @@ def _lid(_time: float, points: FloatArray) -> FloatArray:
 
 def _channel(dimension: int, inertia: bool, wall: str = "") -> FluidProblem:
     """From left to right by pressures; the other faces are planes of symmetry but for one."""
-    types = dict.fromkeys(("bottom", "top", "back", "front"), "slip") | {"left": "pressure", "right": "pressure"}
+    types = dict.fromkeys(("y0", "y1", "z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
     if wall:
         types[wall] = "wall"
-    values = {"left": _constant(DROP + BACK), "right": _constant(BACK)}
+    values = {"x0": _constant(DROP + BACK), "x1": _constant(BACK)}
     return problem(dimension, types, values, 0 if wall else 2, inertia)
 
 

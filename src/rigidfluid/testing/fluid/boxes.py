@@ -12,7 +12,6 @@ from scipy.special import roots_jacobi
 
 from rigidfluid.core.mesh.topology import boundary_facets, orient
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.setup.boundary import faces
 from rigidfluid.testing.arrangement import in_a_box
 
 CENTRES, RADII = np.array([[0.3, 0.35, 0.5], [0.68, 0.62, 0.45]]), (0.12, 0.1)
@@ -158,7 +157,7 @@ def _marked(points: FloatArray, cells: IntArray) -> Mesh:
     """A mesh of the unit box whose facets carry the number of the face that they lie on."""
     facets = boundary_facets(cells)
     middle = points[facets].mean(axis=1)
-    distance = np.stack([middle, 1.0 - middle], axis=2).reshape(len(facets), len(faces(points.shape[1])))
+    distance = np.stack([middle, 1.0 - middle], axis=2).reshape(len(facets), 2 * points.shape[1])
     return Mesh(points, cells, facets, np.argmin(distance, axis=1))
 
 

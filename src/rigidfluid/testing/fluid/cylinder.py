@@ -11,14 +11,16 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
-from rigidfluid.core.setup.boundary import FaceVelocity, inward_normal
+from rigidfluid.core.setup.boundary import BoundaryVelocity
+from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.testing.fluid.base import FluidContract
+from rigidfluid.testing.fluid.exact import inward_normal
 from rigidfluid.testing.fluid.flow import Flow
 
 DRAG, LIFT, PRESSURE_DIFFERENCE = 5.57953523384, 0.010618948146, 0.11752016697
 """Converged values of John & Matthies (2001)."""
 
-LOWER, UPPER, POSE = np.zeros(2), np.array([2.2, 0.41]), Pose(np.array([[0.2, 0.2]]), np.zeros((1, 1)))
+CHANNEL, POSE = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.2, 0.41)), 2), Pose(np.array([[0.2, 0.2]]), np.zeros((1, 1)))
 ITERATIONS = 12
 
 
@@ -30,12 +32,12 @@ class CylinderContract(FluidContract):
 
     def test_flow_past_a_cylinder(self) -> None:
         """Steady steps, each advected by the one before, from Stokes flow to Re 20."""
-        inflow = FaceVelocity(np.array([0.3, 0.0]), LOWER, UPPER, axis=0, parabolic=True)
+        inflow = BoundaryVelocity(np.array([0.3, 0.0]), CHANNEL.pieces[0].coordinates)
         conditions = (
-            BoundaryCondition(1, "left", "velocity", inward_normal(0, 2), inflow),
-            BoundaryCondition(2, "right", "pressure", inward_normal(1, 2), _nothing),
-            BoundaryCondition(3, "bottom", "wall", inward_normal(2, 2)),
-            BoundaryCondition(4, "top", "wall", inward_normal(3, 2)),
+            BoundaryCondition(1, "x0", "velocity", inward_normal(0, 2), inflow),
+            BoundaryCondition(2, "x1", "pressure", inward_normal(1, 2), _nothing),
+            BoundaryCondition(3, "y0", "wall", inward_normal(2, 2)),
+            BoundaryCondition(4, "y1", "wall", inward_normal(3, 2)),
         )
         backend = self.make_backend(FluidProblem(2, 1, 1.0, 1e-3, True, conditions))
         flow = Flow.start(backend, self.make_mesh(_mesh()), POSE)
@@ -51,7 +53,7 @@ class CylinderContract(FluidContract):
 @cache
 def _mesh() -> Mesh:
     cylinder = Sphere(SphereOptions(radius=0.05), 2)
-    return initial_mesh([cylinder], POSE, LOWER, UPPER, (), Sizes(0.05, 0.005))
+    return initial_mesh([cylinder], POSE, CHANNEL, (), Sizes(0.05, 0.005))
 
 
 def _nothing(time: float, points: FloatArray) -> FloatArray:

@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem
-from rigidfluid.core.setup.boundary import faces, inward_normal
 
 DENSITY, VISCOSITY = 1.3, 0.7
+
+FACES = ("x0", "x1", "y0", "y1", "z0", "z1")
+"""Of the unit box: the axis across a face, and its coordinate there."""
 
 Value = Callable[[float, FloatArray], FloatArray]
 
@@ -23,7 +25,7 @@ def problem(
     inertia: bool = True,
     source: Value | None = None,
 ) -> FluidProblem:
-    """A box whose faces are walls but for the ``types`` given by their names, with the ``values`` prescribed there."""
+    """A box whose `FACES` are walls but for the ``types`` of some, with the ``values`` prescribed there."""
     conditions = tuple(
         BoundaryCondition(
             bodies + face,
@@ -32,7 +34,7 @@ def problem(
             inward_normal(face, dimension),
             (values or {}).get(name),
         )
-        for face, name in enumerate(faces(dimension))
+        for face, name in enumerate(FACES[: 2 * dimension])
     )
     return FluidProblem(dimension, bodies, DENSITY, VISCOSITY, inertia, conditions, source)
 
@@ -41,8 +43,13 @@ def enclosed(
     dimension: int, velocity: Value, source: Value | None = None, bodies: int = 0, inertia: bool = True
 ) -> FluidProblem:
     """Velocity prescribed on all faces."""
-    every = faces(dimension)
+    every = FACES[: 2 * dimension]
     return problem(dimension, dict.fromkeys(every, "velocity"), dict.fromkeys(every, velocity), bodies, inertia, source)
+
+
+def inward_normal(face: int, dimension: int) -> FloatArray:
+    """Unit normal (d,) of a face of the unit box, by its number, into the box."""
+    return np.asarray((1.0 - 2.0 * (face % 2)) * np.eye(dimension)[face // 2])
 
 
 @dataclass(frozen=True)

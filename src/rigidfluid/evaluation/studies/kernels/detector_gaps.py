@@ -17,6 +17,7 @@ from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.bench.timing import fastest
 from rigidfluid.evaluation.studies.kernels.convex_gaps import true_gap
@@ -120,8 +121,8 @@ class DetectorGaps(Kernel):
         return Pose(cells + 0.5 + rng.uniform(-JITTER, JITTER, cells.shape), turns)
 
     def _mesh(self, bodies: list[Body], pose: Pose) -> Mesh:
-        lower, upper = np.zeros(self.dimension), np.full(self.dimension, float(self._side))
-        return generate_mesh(bodies, pose, lower, upper, max(FAR_SIZE, self.size), self.size, 0.5)
+        corners = BoxOptions(lower=(0.0,) * self.dimension, upper=(float(self._side),) * self.dimension)
+        return generate_mesh(bodies, pose, Box(corners, self.dimension), max(FAR_SIZE, self.size), self.size, 0.5)
 
     @property
     def _side(self) -> int:

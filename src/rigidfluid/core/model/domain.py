@@ -1,0 +1,85 @@
+"""The region that fluid and bodies share: the fifth replaceable part."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.model.interfaces import Part, PartOptions
+from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.types import BoolArray, FloatArray
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of the domain's boundary that conditions can be set on by its name.
+
+    ``shape``: the surface it lies on; of a flat piece all of its plane. ``area`` of the piece [length^(d-1)].
+    ``coordinates``: from points (N, d) of the piece to its own coordinates (N, d-1), each from 0 to 1 and with equal
+    areas for equal parts; profiles are given in them, and a piece without them has none.
+    """
+
+    name: str
+    shape: Surface
+    area: float
+    coordinates: Callable[[FloatArray], FloatArray] | None = None
+
+
+class Domain(Part):
+    """A bounded region, its boundary made of named pieces.
+
+    Surfaces are numbered through, the n bodies first: piece i is surface n + i. Nodes of the mesh slide along flat
+    pieces across an axis, and are held on all others. When the mesh is made anew, nodes of flat pieces are put back
+    into their planes; the facets of other pieces are kept as those of bodies are, or halved with the new node on the
+    closest point of the piece.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The type's own keys of the ``[domain]`` table.
+    dimension : int
+        2 or 3.
+    """
+
+    def __init__(self, options: PartOptions, dimension: int) -> None:
+        self.options = options
+        self.dimension = dimension
+
+    @property
+    @abstractmethod
+    def pieces(self) -> tuple[Piece, ...]:
+        """The pieces of the boundary, each with a name of its own, in the order of their surface numbers."""
+
+    @property
+    @abstractmethod
+    def extent(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper corner of the box around the domain, (d,) each [length]."""
+
+    @property
+    @abstractmethod
+    def volume(self) -> float:
+        """Exact volume (area in 2D), without bodies [length^d]."""
+
+    @abstractmethod
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Which of ``points`` (N, d) are inside, (N,); on the boundary either may be said."""
+
+    @abstractmethod
+    def cad_shape(self) -> Any:
+        """The domain as a ``netgen.occ`` face (2D) or solid (3D) whose edges (2D) or faces (3D) have the names of the
+        pieces that they lie on."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the pieces, in the order of their surface numbers."""
+        return tuple(piece.name for piece in self.pieces)
+
+    @property
+    def size(self) -> FloatArray:
+        """Lengths of the sides of the box around the domain, (d,) [length]."""
+        lower, upper = self.extent
+        return np.asarray(upper - lower)

@@ -1,0 +1,65 @@
+"""A piece of the domain's boundary that bodies may meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.errors import SceneError
+
+
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """A wall that repels: its ``surface`` number, its name, the ``shape`` of its surface, and the ``velocity`` (d,) at
+    which it slides in itself, None at rest [length/time]."""
+
+    surface: int
+    name: str
+    shape: Surface
+    velocity: FloatArray | None = None
+
+
+def radius_of(shape: Surface) -> float:
+    """The radius of curvature of a shape, NaN where it is not known, as contacts have it [length]."""
+    return np.nan if shape.radius is None else shape.radius
+
+
+def wall_radii(walls: Sequence[Wall], surfaces: IntArray) -> FloatArray:
+    """The radius of curvature of the wall of each number in ``surfaces`` (m,), NaN where it is not known, (m,)
+    [length]."""
+    known = {wall.surface: radius_of(wall.shape) for wall in walls}
+    return np.array([known[surface] for surface in surfaces.tolist()], dtype=float)
+
+
+def require_plane(wall: Wall, detector: str) -> Plane:
+    """The plane of a wall, for a detector that knows no other shapes.
+
+    Parameters
+    ----------
+    wall : Wall
+        Any wall.
+    detector : str
+        Name of the detector, for the message.
+
+    Returns
+    -------
+    Plane
+        Its plane.
+
+    Raises
+    ------
+    SceneError
+        If the wall is not flat.
+    """
+    if wall.shape.plane is not None:
+        return wall.shape.plane
+    raise SceneError(
+        "contact.detector",
+        f'"{detector}" with the wall {wall.name!r}, which is not flat',
+        "flat walls only",
+        'Use detector = "auto", which takes one for this wall.',
+    )

@@ -1,0 +1,110 @@
+"""Refuses conditions that the domain's surfaces do not have, or cannot have."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.setup.boundary import boundary_table, prescribed_velocity
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain, Piece
+    from rigidfluid.core.scene.scene import BoundaryTable, Scene
+
+ACROSS = 1e-12
+"""A wall may slide with so much of its speed across itself, by rounding [1]."""
+
+
+def check_boundary(scene: Scene, domain: Domain) -> None:
+    """Refuse names that the domain does not know, and conditions that contradict themselves or a surface's shape.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its tables ``boundary``, its bodies' names and its probes.
+    domain : Domain
+        The domain that it names.
+
+    Raises
+    ------
+    SceneError
+        At the first contradiction.
+    """
+    for number, table in enumerate(scene.boundary):
+        _check_table(domain, table, f"boundary.{number}")
+    for piece in domain.pieces:
+        held = boundary_table(scene, piece.name)
+        if held is not None:
+            _check_shape(piece, held, f"boundary.{scene.boundary.index(held)}")
+    _check_names(scene, domain)
+    outside = ~domain.contains(np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension))
+    if outside.any():
+        i = int(np.argmax(outside))
+        field, found = f"output.probes.{i}", list(scene.output.probes[i])
+        raise SceneError(field, found, "a point of the domain", "Move it inside.")
+
+
+def check_inflow(scene: Scene, domain: Domain) -> None:
+    """Raise SceneError where more flows in than out: an incompressible fluid needs a way out."""
+    flows = []
+    for piece in domain.pieces:
+        table, plane = boundary_table(scene, piece.name), piece.shape.plane
+        if table and table.type == "pressure":
+            return
+        if table and table.type == "velocity" and plane:
+            flows.append(float(piece.area * prescribed_velocity(piece, table).mean @ plane.unit_normal))
+    if abs(sum(flows)) > 1e-12 * sum(map(abs, flows)):
+        raise SceneError(
+            "boundary",
+            f"a net inflow of {sum(flows):.6g} [length^{scene.dimension}/time] and no outlet",
+            "as much outflow as inflow, or a surface of type 'pressure'",
+            "Give one surface type = 'pressure', pressure = 0.0.",
+        )
+
+
+def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
+    allowed = ("all", *domain.names)
+    if table.on not in allowed:
+        raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+    for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
+        given = getattr(table, key) is not None
+        if given and table.type not in types:
+            raise SceneError(f"{at}.{key}", f"it on a {table.type!r} surface", f"it with type = {key!r}", "Keep one.")
+        if table.type == key and not given:
+            raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
+    if table.profile != "uniform" and table.type != "velocity":
+        found = f"{table.profile!r} on a {table.type!r} surface"
+        raise SceneError(f"{at}.profile", found, "it with type = 'velocity'", "Leave it out.")
+
+
+def _check_shape(piece: Piece, table: BoundaryTable, at: str) -> None:
+    plane = piece.shape.plane
+    if table.type in ("slip", "pressure") and (plane is None or plane.axis is None):
+        found = f"{table.type!r} on {piece.name!r}, which does not lie across an axis"
+        raise SceneError(f"{at}.type", found, "'wall' there", "Make it a wall, or a flat surface across an axis.")
+    if table.velocity is None:
+        return
+    if plane is None:
+        found = f"{list(table.velocity)} on {piece.name!r}, which is not flat"
+        raise SceneError(f"{at}.velocity", found, "none there", "Leave it out, or make the surface flat.")
+    velocity = np.array(table.velocity)
+    across = float(velocity @ plane.unit_normal)
+    if table.type == "wall" and abs(across) > ACROSS * float(np.linalg.norm(velocity)):
+        along = (velocity - across * plane.unit_normal).tolist()
+        found = f"{list(table.velocity)}, of which {across:.6g} across the wall {piece.name!r}"
+        remedy = f"Keep what is along it, {along}, or set type = 'velocity'."
+        raise SceneError(f"{at}.velocity", found, "a velocity along the wall", remedy)
+    if table.profile == "parabolic" and piece.coordinates is None:
+        found = f"'parabolic' on {piece.name!r}, which has no coordinates of its own"
+        raise SceneError(f"{at}.profile", found, "'uniform' there", "Leave it out.")
+
+
+def _check_names(scene: Scene, domain: Domain) -> None:
+    names = [body.name for body in scene.body]
+    for name, count in Counter([*names, *domain.names]).items():
+        if count > 1:
+            last = len(names) - 1 - names[::-1].index(name)
+            raise SceneError(f"body.{last}.name", repr(name), "a name that no other body or surface has", "Rename it.")

@@ -1,0 +1,13 @@
+"""The domains that come with rigidfluid."""
+
+from __future__ import annotations
+
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.domains.box import Box
+from rigidfluid.hookspecs import hookimpl
+
+
+@hookimpl
+def rigidfluid_domains() -> list[type[Domain]]:
+    """The built-in domains."""
+    return [Box]

@@ -1,0 +1,80 @@
+"""Every built-in domain, and the one of the page on plug-ins, satisfy the contract."""
+
+import numpy as np
+import pytest
+from dish import dish
+from wedge import wedge
+
+from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.testing import DomainContract
+
+
+class TestBox(DomainContract):
+    @pytest.fixture(params=[2, 3])
+    def domain(self, request):
+        corners = {"lower": (-1.0, 0.5, 2.0)[: request.param], "upper": (1.0, 1.5, 2.7)[: request.param]}
+        return Box(BoxOptions(**corners), request.param)
+
+
+class TestDish(DomainContract):
+    @pytest.fixture(params=[2, 3])
+    def domain(self, request):
+        return dish(1.0, request.param)
+
+
+class TestWedge(DomainContract):
+    @pytest.fixture
+    def domain(self):
+        return wedge()
+
+
+class _Lying(Box):
+    """A box of which one thing is not true."""
+
+    def __init__(self, what):
+        super().__init__(BoxOptions(lower=(0.0, 0.0), upper=(1.0, 1.0)), 2)
+        self.what = what
+
+    @property
+    def pieces(self):
+        first, *others = super().pieces
+        if self.what == "normal":
+            first = Piece(first.name, Plane(first.shape.point, -first.shape.unit_normal), first.area)
+        if self.what == "area":
+            first = Piece(first.name, first.shape, 2.0)
+        if self.what == "name":
+            first = Piece(others[0].name, first.shape, first.area)
+        return (first, *others)
+
+    @property
+    def volume(self):
+        return 1.0 if self.what != "volume" else 1.1
+
+    def contains(self, points):
+        return super().contains(points if self.what != "contains" else points - 0.1)
+
+
+@pytest.mark.parametrize(
+    ("what", "test"),
+    [
+        ("normal", "test_the_fluid_is_where_normals_point"),
+        ("area", "test_volume_and_areas_are_those_of_fine_meshes"),
+        ("volume", "test_volume_and_areas_are_those_of_fine_meshes"),
+        ("contains", "test_the_fluid_is_where_normals_point"),
+        ("name", "test_names_are_names"),
+    ],
+)
+def test_the_contract_sees_what_is_not_true(what, test):
+    domain, contract = _Lying(what), DomainContract()
+    arguments = [domain]
+    if test != "test_names_are_names":
+        arguments.append(DomainContract.meshes.__wrapped__(contract, Box(domain.options, 2)))
+    with pytest.raises(AssertionError):
+        getattr(contract, test)(*arguments)
+
+
+def test_a_piece_has_the_distance_of_its_plane():
+    bottom = Box(BoxOptions(lower=(0.0, -1.0), upper=(1.0, 1.0)), 2).pieces[2]
+    np.testing.assert_array_equal(bottom.shape.signed_distance(np.array([[7.0, 1.5]])), [2.5])
