@@ -12,7 +12,15 @@ from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.state import State
-from rigidfluid.core.run.impacts import HALVINGS, TOLERATED, impact_tick, is_unresolved, level_after_impact
+from rigidfluid.core.run.impacts import (
+    FELT,
+    HALVINGS,
+    STORED,
+    TOLERATED,
+    impact_tick,
+    is_unresolved,
+    level_after_impact,
+)
 from rigidfluid.core.run.simulation import Simulation
 
 STEP = 4e-3
@@ -47,10 +55,13 @@ def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
     assert not is_unresolved(state, enough, 0)
 
 
-def test_an_impact_is_remembered_where_friction_took_a_tenth_of_that(state):
+@pytest.mark.parametrize(
+    ("friction", "stored", "found"), [(1.1 * FELT, 0.0, 99), (0.9 * FELT, 0.9 * STORED, 7), (0.0, -1.1 * STORED, 99)]
+)
+def test_an_impact_is_remembered_where_friction_or_a_contact_took_much(state, friction, stored, found):
     before = replace(state, impact=7)
-    assert impact_tick(before, path(state, 0.11 * TOLERATED * PUT_IN), 99) == 99
-    assert impact_tick(before, path(state, 0.09 * TOLERATED * PUT_IN), 99) == 7
+    after = replace(state, tick=99, ledger=replace(state.ledger, contact=stored * PUT_IN))
+    assert impact_tick(before, path(state, friction * PUT_IN), after) == found
 
 
 def test_steps_grow_no_faster_than_the_impact_ages(run, state):

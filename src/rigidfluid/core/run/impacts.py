@@ -10,8 +10,9 @@ TOLERATED = 3e-4
 """What friction may take on the bodies' path of one step, over the energy put in since the start. Where it takes more,
 the step is halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
 
-FELT = 0.1
-"""Of what is tolerated: an impact that takes less leaves the fluid as it was."""
+FELT, STORED = 3e-5, 1e-2
+"""Over the energy put in: an impact whose friction takes less in a step, and whose contacts store or give back less,
+leaves the fluid as it was."""
 
 HALVINGS = 3
 """An impact halves a step so many times at most: it may last a millionth of it."""
@@ -22,9 +23,10 @@ def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
     return level < HALVINGS and path.friction > TOLERATED * state.ledger.put_in
 
 
-def impact_tick(state: State, path: BodyStep, end: int) -> int | None:
-    """The ``end`` of a step with an impact on its ``path``, and of other steps the end of the one before it."""
-    return end if path.friction > FELT * TOLERATED * state.ledger.put_in else state.impact
+def impact_tick(state: State, path: BodyStep, candidate: State) -> int | None:
+    """The ``candidate``'s tick where an impact is on the ``path`` that led there, and else that of the one before."""
+    put_in, stored = candidate.ledger.put_in, abs(candidate.ledger.contact - state.ledger.contact)
+    return candidate.tick if path.friction > FELT * put_in or stored > STORED * put_in else state.impact
 
 
 def level_after_impact(state: State, clock: Clock, level: int) -> int:

@@ -108,7 +108,7 @@ class Stepper:
             path = self._path(state, level, found)
             if level < self._clock.levels and self._changes_gaps_too_fast(state, path.pose):
                 raise _too_fast()
-        return replace(candidate, coupling=found, impact=impact_tick(state, path, candidate.tick)), agreed
+        return replace(candidate, coupling=found, impact=impact_tick(state, path, candidate)), agreed
 
     def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodyStep:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
