@@ -161,15 +161,15 @@ def test_auto_is_computed_for_each_law() -> None:
 
 
 def touching(gap: float) -> Contacts:
-    one, normal = np.ones(1), np.array([[1.0, 0.0]])
-    return Contacts(np.zeros(1, int), np.ones(1, int), gap * normal, 0 * normal, normal, gap * one, one, one, np.zeros(1, bool))
+    one, normal, at_wall = np.ones(1), np.array([[1.0, 0.0]]), np.zeros(1, bool)
+    return Contacts(np.zeros(1, int), np.ones(1, int), gap * normal, 0 * normal, normal, gap * one, one, one, at_wall)
 
 
 def test_the_stiffness_on_the_way_sees_each_range() -> None:
     """`contact` is stiffest at a third of its range, which steps toward a far longer range would pass over."""
     short = ContactLaw(ContactOptions(epsilon=1e-6), 0.001)
     film = LubricationLaw(LubricationOptions(viscosity=1.0, cutoff=1e-4), 0.1)
-    both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", (), 2) for i, law in enumerate((short, film))])
+    both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", ()) for i, law in enumerate((short, film))])
     assert both.range == 0.1
     alone = greatest_stiffness(short, touching(0.0), np.zeros(1))
     assert alone > 0.0
@@ -179,7 +179,7 @@ def test_the_stiffness_on_the_way_sees_each_range() -> None:
 def test_the_stiffness_on_the_way_is_not_that_further_in() -> None:
     """Where a contact turns before it comes into the shorter range, what lies within is out."""
     long, short = NormalLaw(NormalOptions(epsilon=1e-6), 0.1), NormalLaw(NormalOptions(epsilon=1e-9), 0.001)
-    both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", (), 2) for i, law in enumerate((short, long))])
+    both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", ()) for i, law in enumerate((short, long))])
     deepest = np.full(1, 0.05)
     np.testing.assert_array_equal(greatest_stiffness(both, touching(0.0), deepest), 2.0 * 0.05 / 1e-6)
 
@@ -204,9 +204,9 @@ def test_a_law_is_not_asked_for_contacts_of_others() -> None:
             return super().force(contacts)
 
     law = Picky(NormalOptions(epsilon=1e-6), 0.02)
-    pairs = SumOfLaws([Interaction("interaction.0", law, "pairs", (), 2)])
+    pairs = SumOfLaws([Interaction("interaction.0", law, "pairs", ())])
     pair = touching(0.01)
-    wall = replace(pair, body_b=np.full(1, 2))
+    wall = replace(pair, body_b=np.full(1, 2), at_wall=np.ones(1, bool))
     assert not pairs.force(wall).any()
     assert pairs.force(pair).any()
 
