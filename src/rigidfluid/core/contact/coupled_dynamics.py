@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.state import FreeMotions
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 
@@ -29,6 +30,8 @@ class CoupledDynamics:
     coupling : Coupling
         The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
     """
+
+    free: FreeMotions | None = None
 
     def __init__(
         self,
@@ -89,6 +92,10 @@ class CoupledDynamics:
     def pull(self, time: float) -> FloatArray:
         """|A|, or |M⁻¹Φ|, whatever the time."""
         return np.asarray(np.linalg.norm(self._rate[:, : self.pose.position.shape[1]], axis=1))
+
+    def angular_pull(self, time: float) -> FloatArray:
+        """As `pull`, of the rotation."""
+        return np.asarray(np.linalg.norm(self._rate[:, self.pose.position.shape[1] :], axis=1))
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change the velocities by all that acts for so long."""

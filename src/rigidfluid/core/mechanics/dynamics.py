@@ -12,6 +12,7 @@ from scipy import sparse
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
+from rigidfluid.core.model.state import FreeMotions
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
@@ -21,6 +22,10 @@ class BodyDynamics(Protocol):
     """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
 
     pose: Pose
+
+    @property
+    def free(self) -> FreeMotions | None:
+        """What carries them, None where each moves by itself."""
 
     @property
     def twist(self) -> Twist:
@@ -40,6 +45,10 @@ class BodyDynamics(Protocol):
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for bodies that are driven: times a wrench that lasts for
         ``time``, and the time, it is what that adds to the velocities [1/mass | 1/(mass·length²)]."""
+
+    @property
+    def friction_loss(self) -> float:
+        """What a fluid's friction took that its own solutions do not see [energy]."""
 
     def copied(self) -> Self:
         """The same motion, to be tried out."""
@@ -72,6 +81,9 @@ class DryDynamics:
     controlled_twist : callable
         From a time since the start to the twist (n, d+k) of driven bodies.
     """
+
+    free: FreeMotions | None = None
+    friction_loss: float = 0.0
 
     def __init__(
         self,
@@ -129,6 +141,10 @@ class DryDynamics:
         later = [self._given(self._time + part * time) for part in _PARTS]
         change = np.max([np.linalg.norm((given - now)[:, :d], axis=1) for given in later], axis=0)
         return np.asarray(np.where(self._free[:, 0], fall, change / time))
+
+    def angular_pull(self, time: float) -> FloatArray:
+        """None: what turns freely keeps its angular momentum."""
+        return np.zeros(len(self._mass))
 
     def kick(self, wrench: Wrench, time: float) -> None:
         """Change momenta by F + W and T for so long."""

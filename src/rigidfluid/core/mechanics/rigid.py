@@ -52,6 +52,24 @@ def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
     return np.asarray(product / np.linalg.norm(product, axis=-1, keepdims=True))
 
 
+def compose(orientation: FloatArray, relative: FloatArray) -> FloatArray:
+    """Orientation of what is turned by ``relative`` in a frame that is turned by ``orientation``, R_new = R R_relative.
+
+    Parameters
+    ----------
+    orientation, relative : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n, q) array
+        Orientation in the lab frame [rad | 1].
+    """
+    if orientation.shape[-1] == 1:
+        return orientation + relative
+    return _quaternion_product(orientation, relative)
+
+
 def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
     """Angle of the rotation that leads from one orientation to another.
 

@@ -6,7 +6,7 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
 from rigidfluid.core.model.energy import Ledger
-from rigidfluid.core.model.state import State
+from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.step import bodies_energy, contact_energy
@@ -17,7 +17,7 @@ START_LEVEL = 6
 
 def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none."""
-    zero = nothing(system.pose)
+    zero, mechanisms = nothing(system.pose), system.mechanisms
     mesh = mesh_updater.first_mesh()
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
@@ -39,6 +39,7 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> St
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
         ledger=Ledger(kinetic, stored, kinetic + stored),
+        free=None if mechanisms is None else FreeMotions(mechanisms.pose, mechanisms.twist, nothing(mechanisms.pose)),
     )
 
 
