@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.interfaces import (
+    Body,
+    Component,
+    Detector,
+    FluidBackend,
+    ForceLaw,
+    Mechanism,
+    Part,
+    PartOptions,
+)
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
@@ -24,6 +33,7 @@ from rigidfluid.core.model.types import (
     FluidProblem,
     FluidState,
     IntArray,
+    Kinematics,
     Loads,
     Mesh,
     Motion,
@@ -46,7 +56,7 @@ from rigidfluid.errors import (
     StepRejected,
 )
 from rigidfluid.hookspecs import hookimpl
-from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Registry, missing_packages
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, MECHANISM, Registry, missing_packages
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
@@ -57,10 +67,12 @@ __all__ = [
     "DETECTOR",
     "FLUID_BACKEND",
     "FORCE_LAW",
+    "MECHANISM",
     "Advance",
     "Body",
     "BoolArray",
     "BoundaryCondition",
+    "Component",
     "Contacts",
     "Detector",
     "Ellipsoid",
@@ -72,7 +84,9 @@ __all__ = [
     "FluidState",
     "ForceLaw",
     "IntArray",
+    "Kinematics",
     "Loads",
+    "Mechanism",
     "Mesh",
     "MeshError",
     "Motion",

@@ -1,4 +1,4 @@
-"""The four hooks by which a plug-in offers its classes, and the marker for its functions.
+"""The hooks by which a plug-in offers its classes, and the marker for its functions.
 
 A plug-in is a module that the entry-point group ``rigidfluid`` names::
 
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
 hookimpl = pluggy.HookimplMarker("rigidfluid")
@@ -40,3 +40,8 @@ def rigidfluid_force_laws() -> list[type[ForceLaw]]:  # type: ignore[empty-body]
 @hookspec
 def rigidfluid_bodies() -> list[type[Body]]:  # type: ignore[empty-body]
     """Classes of rigid shapes."""
+
+
+@hookspec
+def rigidfluid_mechanisms() -> list[type[Mechanism]]:  # type: ignore[empty-body]
+    """Classes of several rigid bodies that move as one."""

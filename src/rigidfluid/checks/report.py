@@ -25,6 +25,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
+from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.core.setup.parts import exact_detector
 from rigidfluid.registry import Registry
 
@@ -90,6 +91,7 @@ def check(scene: Scene) -> Report:
     """
     with no_exit():
         system = build_system(scene)
+        scene = with_components(scene)[0]
         detector = exact_detector(system.bodies, Registry.load())
         start = initial_contacts(scene, detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))

@@ -21,6 +21,7 @@ from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
     carried_bodies,
+    carriers,
     inertias,
     kinematics_now,
     masses,
@@ -351,7 +352,12 @@ def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynam
 
 
 def _surfaces(system: System) -> Reach:
-    return Reach(arms(system), system.leverage)
+    """Balls turn in their place, but not as components of a mechanism."""
+    if system.mechanisms is None:
+        return Reach(arms(system), system.leverage)
+    radii = np.array([body.bounding_radius for body in system.bodies])
+    alone = np.bincount(carriers(system))[carriers(system)] == 1
+    return Reach(np.where(alone, arms(system), radii), system.leverage)
 
 
 class _Push(NamedTuple):

@@ -153,7 +153,7 @@ class Simulation:
         """All bodies by name, as they are now."""
         s = self.state
         return {
-            body.name or "": BodyNow(
+            name: BodyNow(
                 position=s.pose.position[i],
                 orientation=s.pose.orientation[i],
                 velocity=s.twist.velocity[i],
@@ -164,7 +164,7 @@ class Simulation:
                 contact_torque=s.contact_wrench.torque[i],
                 gap=float(s.gaps[i]),
             )
-            for i, body in enumerate(self.scene.body)
+            for i, name in enumerate(self.system.surfaces[: len(self.system.bodies)])
         }
 
     def step(self) -> State:
@@ -222,7 +222,7 @@ class Simulation:
         body["prescribed"] = {key: value for key, value in given.items() if value is not None}
         tables["body"][number] = body
         self.scene = scene_from_dict(tables)
-        motion = prescribed_motion(self.scene, self.state.pose, self.time)
+        motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
         self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
             self.state = replace(self.state, level=start_level(self.clock))
@@ -330,7 +330,7 @@ class Simulation:
     def _controlled(self, name: str) -> int:
         """The number of a body whose motion is given."""
         names = [body.name for body in self.scene.body]
-        given = [body for body, controlled in zip(names, self.system.controlled, strict=True) if controlled]
+        given = [body for body, controlled in zip(names, self.system.controlled, strict=False) if controlled]
         if name not in given:
             found = f"{name!r}, which {'is free' if name in names else 'is not there'}"
             allowed = f"a body that is fixed or prescribed: {', '.join(map(str, given)) or 'there is none'}"

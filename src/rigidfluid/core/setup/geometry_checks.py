@@ -98,8 +98,9 @@ def _check_overlap(scene: Scene, contacts: Contacts) -> None:
     worst = int(np.argmin(contacts.gap))
     a, b, gap = int(contacts.body_a[worst]), int(contacts.body_b[worst]), float(contacts.gap[worst])
     other = f"face {_name(scene, b)!r} of the domain" if b >= len(scene.body) else f"body {_name(scene, b)!r}"
+    whole = {table.name for table in scene.mechanism} & {scene.body[a].part_of}
     raise SceneError(
-        f"body.{a}.position",
+        f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
         f"{list(scene.body[a].position)}, where body {_name(scene, a)!r} overlaps {other} by {-gap:.6g}",
         "a place inside the domain and clear of all other surfaces",
         f"Move it by more than {-gap:.6g}, or make it smaller.",

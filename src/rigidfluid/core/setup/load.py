@@ -9,6 +9,7 @@ from typing import Any
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.core.setup.parts import select_plugins
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 
@@ -35,7 +36,7 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     """
     scene = read_table(Scene, data)
     check_tables(scene)
-    check_fluid(scene, select_plugins(scene).backend.part)
+    check_fluid(scene, select_plugins(with_components(scene)[0]).backend.part)
     return scene
 
 

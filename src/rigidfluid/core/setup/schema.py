@@ -5,11 +5,23 @@ from __future__ import annotations
 from typing import Any
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, Entry, Registry
+from rigidfluid.registry import BODY, DETECTOR, FLUID_BACKEND, FORCE_LAW, MECHANISM, Entry, Registry
 
-_TABLES = {FLUID_BACKEND: "FluidTable", BODY: "BodyTable", DETECTOR: "ContactTable", FORCE_LAW: "ContactTable"}
+_TABLES = {
+    FLUID_BACKEND: "FluidTable",
+    BODY: "BodyTable",
+    MECHANISM: "MechanismTable",
+    DETECTOR: "ContactTable",
+    FORCE_LAW: "ContactTable",
+}
 # The parts that a table means where it names none.
-_UNNAMED = {FLUID_BACKEND: ("scikit-fem",), DETECTOR: ("sphere", "ellipsoid", "brute_force"), BODY: (), FORCE_LAW: ()}
+_UNNAMED = {
+    FLUID_BACKEND: ("scikit-fem",),
+    DETECTOR: ("sphere", "ellipsoid", "brute_force"),
+    BODY: (),
+    MECHANISM: (),
+    FORCE_LAW: (),
+}
 
 
 def json_schema() -> dict[str, Any]:

@@ -1,0 +1,125 @@
+"""A scene's mechanisms: found and built, and their components as bodies of the scene."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mechanics.kinematics import component_twist
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import BodyTable, Scene
+from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.setup.boundary import faces
+from rigidfluid.core.setup.placing import initial_pose, initial_twist
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import MECHANISM, Registry
+
+
+def with_components(scene: Scene) -> tuple[Scene, tuple[Mechanism, ...]]:
+    """The scene with the components of its mechanisms after its bodies, and the mechanisms.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it was read.
+
+    Returns
+    -------
+    Scene
+        A component is a body named after mechanism and component, ``dumbbell.left``, and a part of the mechanism.
+    tuple of Mechanism
+        Built from their options.
+
+    Raises
+    ------
+    PluginError
+        If a mechanism is not there, or says what cannot be.
+    SceneError
+        If an option is not allowed, or a name is taken.
+    """
+    if not scene.mechanism:
+        return scene, ()
+    registry = Registry.load()
+    mechanisms = tuple(_built(scene, registry, number) for number in range(len(scene.mechanism)))
+    bodies = (*scene.body, *_component_tables(scene, mechanisms))
+    _refuse_doubles(scene, [body.name for body in bodies])
+    return scene.model_copy(update={"body": bodies}), mechanisms
+
+
+def _built(scene: Scene, registry: Registry, number: int) -> Mechanism:
+    table, at = scene.mechanism[number], f"mechanism.{number}"
+    part = registry.get(MECHANISM, table.type, f"{at}.type")
+    for key in table.options:
+        if key not in part.Options.model_fields:
+            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
+    options = read_table(part.Options, table.options, at)
+    try:
+        mechanism = part(options, scene.dimension)
+        components = mechanism.components
+    except SceneError as error:
+        subject = error.subject.replace("mechanism.", f"{at}.", 1)
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    _refuse_impossible(mechanism, at)
+    names = [component.name for component in components]
+    if not names or len(set(names)) < len(names):
+        raise PluginError(at, f"components named {names}", "components, each with a name of its own", "Name them.")
+    return mechanism
+
+
+def _refuse_impossible(mechanism: Mechanism, at: str) -> None:
+    """Placements of a wrong shape, and none at all, are an error of the mechanism's author."""
+    count, d = len(mechanism.components), mechanism.dimension
+    k, q = (1, 1) if d == 2 else (3, 4)
+    pose, rate = mechanism.placement(0.0), mechanism.rate(0.0)
+    for name, values, width in (
+        ("placement(0).position", pose.position, d),
+        ("placement(0).orientation", pose.orientation, q),
+        ("rate(0).velocity", rate.velocity, d),
+        ("rate(0).angular_velocity", rate.angular_velocity, k),
+    ):
+        if np.shape(values) != (count, width) or not np.isfinite(values).all():
+            allowed = f"finite numbers of shape {(count, width)}, a row for each component"
+            remedy = "Mend the mechanism; MechanismContract in rigidfluid.testing shows more."
+            raise PluginError(at, f"{name} of shape {np.shape(values)}", allowed, remedy)
+
+
+def _component_tables(scene: Scene, mechanisms: Sequence[Mechanism]) -> list[BodyTable]:
+    """Tables of the components where they are at the start, as if each were a body."""
+    owners = [(table, part) for table, one in zip(scene.mechanism, mechanisms, strict=True) for part in one.components]
+    mass = np.array([part.density * part.shape.volume for _, part in owners])
+    inertia = mass[:, None, None] * np.array([part.shape.unit_inertia for _, part in owners])
+    pose, twist = initial_pose(scene.mechanism, scene.dimension), initial_twist(scene.mechanism, scene.dimension)
+    carried = CarriedBodies(mechanisms, mass, inertia, np.zeros(len(mass), dtype=bool), pose, twist)
+    poses, twists = carried.poses(pose, 0.0), component_twist(carried.at(pose, 0.0), twist)
+    rows = zip(*map(_rows, (poses.position, poses.orientation, twists.velocity, twists.angular_velocity)), strict=True)
+    turned = "angle" if scene.dimension == 2 else "orientation"
+    return [
+        BodyTable(
+            name=f"{table.name}.{part.name}",
+            type=part.shape.name,
+            density=part.density,
+            position=position,
+            velocity=velocity,
+            angular_velocity=spin,
+            part_of=table.name,
+            **{turned: orientation[0] if scene.dimension == 2 else orientation},
+            **part.shape.options.model_dump(),
+        )
+        for (table, part), (position, orientation, velocity, spin) in zip(owners, rows, strict=True)
+    ]
+
+
+def _rows(values: FloatArray) -> list[tuple[Any, ...]]:
+    return [tuple(row) for row in values.tolist()]
+
+
+def _refuse_doubles(scene: Scene, bodies: Sequence[str]) -> None:
+    names = [*bodies, *(table.name for table in scene.mechanism), *faces(scene.dimension)]
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise SceneError("mechanism.name", repr(name), "a name that no body, component or face has", "Rename it.")
