@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import component_twist, motion_twist
+from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, motion_twist
 from rigidfluid.core.mechanics.wrenches import flat
-from rigidfluid.core.model.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, inviscid
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
@@ -104,26 +104,17 @@ def _system(
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
     expected = motion_twist(step.kinematics, e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+    given, driven = given_twist(step)
     return CoupledSystem(
         matrix,
         load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
         body_load=step.load,
-        given=surfaces.prescribed(step.time, node_points, step.pose.position, *_given_twist(step)),
+        given=surfaces.prescribed(step.time, node_points, step.pose.position, flat(given), driven),
         velocity=_extrapolated(fluid, step),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),
         scale=step.load_scale,
     )
-
-
-def _given_twist(step: Step) -> tuple[FloatArray, BoolArray]:
-    """Of the bodies' twists what no free motion has a share in, (n, d+k), and where there is any, (n,)."""
-    kinematics, d = step.kinematics, step.pose.position.shape[1]
-    if kinematics is None:
-        return step.controlled_twist, step.controlled
-    held = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
-    given = flat(component_twist(kinematics, Twist(held[:, :d], held[:, d:])))
-    return given, np.asarray(given.any(axis=1))
 
 
 def _extrapolated(fluid: FluidState, step: Step) -> FloatArray:

@@ -16,15 +16,14 @@ from rigidfluid.core.contact.proximity import arms, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
+from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
     carried_bodies,
     carriers,
-    inertias,
     kinematics_now,
-    masses,
     mobility,
     weights,
 )
@@ -35,7 +34,7 @@ from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Contacts, Pose, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
@@ -170,16 +169,18 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
 
 
 def _dry(system: System, state: State, start: float) -> BodyDynamics:
-    motions = DryDynamics(
-        state.free_pose,
-        state.free_twist,
-        masses(system),
-        inertias(system, start),
-        weights(system, kinematics_now(system, state)).force,
-        system.controlled_motions,
-        lambda elapsed: system.controlled_twist(start + elapsed),
-    )
-    return motions if system.mechanisms is None else ComponentDynamics(motions, system.mechanisms, start, system.weight)
+    now, mechanisms, weight = (state.free_pose, state.free_twist), system.mechanisms, system.weight
+
+    def given(elapsed: float) -> FloatArray:
+        return system.controlled_twist(start + elapsed)
+
+    if mechanisms is None:
+        return DryDynamics(*now, system.mass, system.inertia, weight, system.controlled, given)
+    carried, controlled = weights(system, kinematics_now(system, state)).force, mechanisms.controlled
+    if mechanisms.driven:
+        return ComponentDynamics(DrivenDynamics(*now, mechanisms, carried, start, given), mechanisms, start, weight)
+    rigid = DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
+    return ComponentDynamics(rigid, mechanisms, start, weight)
 
 
 def _follow_coupled(

@@ -1,31 +1,24 @@
-"""What drives the relative motion in mechanisms."""
+"""What drives the relative motion in mechanisms, by all that its bodies resist it with but contacts and fluid."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.fluid_step import mean_push
-from rigidfluid.core.mechanics.kinematics import component_twist
-from rigidfluid.core.mechanics.time_scheme import derivative_weights, newton_euler
-from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.mechanics.motions import kinematics_now
+from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Kinematics, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, Kinematics, Pose, Twist
 
 
-def actuator_power(
-    system: System,
-    state: State,
-    times: tuple[float, float],
-    kinematics: Kinematics | None,
-    pose: Pose,
-    twist: Twist,
-    impulse: Wrench,
-    by_fluid: Wrench,
+def actuator_work(
+    system: System, state: State, kinematics: Kinematics | None, pose: Pose, twist: Twist, size: float
 ) -> float:
-    """g · (dP/dt - F) at the end of a step, P the bodies' momenta and F all that acts on them from without.
+    """∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W their weight.
 
-    Contacts are left out, as the path has their part in it, which may change fast within a step.
+    With what g does against contacts and fluid it is the work ∫ g · (dP/dt - F) dt of what holds the bodies to their
+    relative motion: in the power of F · (G u + g) the free motions have no share that Newton–Euler's equations do not
+    balance.
 
     Parameters
     ----------
@@ -33,31 +26,22 @@ def actuator_power(
         Bodies and mechanisms.
     state : State
         At the start of the step.
-    times : (float, float)
-        When it starts and ends [time].
     kinematics : Kinematics or None
         At its end.
     pose, twist : Pose, Twist
-        Of the bodies there.
-    impulse, by_fluid : Wrench
-        On the bodies, of contacts in the step [force·time | force·length·time] and of the fluid at its end.
+        Of the bodies at its end.
+    size : float
+        How long it is [time].
 
     Returns
     -------
     float
-        Zero where nothing is driven relatively [energy/time].
+        Zero where nothing moves relatively [energy].
     """
-    mechanisms = system.mechanisms
-    if mechanisms is None or kinematics is None or not mechanisms.driven:
+    before = kinematics_now(system, state)
+    if before is None or kinematics is None or system.mechanisms is None or not system.mechanisms.driven:
         return 0.0
-    derivative = derivative_weights(times[1] - times[0], state.past_step)
-    poses, twists = [state.pose], [state.twist]
-    if state.past is not None:
-        earlier = times[0] - state.past.step
-        poses.append(mechanisms.poses(state.past.pose, earlier))
-        twists.append(component_twist(mechanisms.at(state.past.pose, earlier), state.past.twist))
-    pushed = mean_push(impulse, state.contact_wrench, state.past_step, derivative)
-    acting = Wrench(pushed.force + system.weight + by_fluid.force, pushed.torque + by_fluid.torque)
-    masses, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, acting)
-    driving = np.einsum("nij,nj->ni", masses, flat(twist)) - load
-    return float(np.sum(kinematics.given * driving))
+    gained: FloatArray = momentum(system.mass, system.inertia, pose, twist)
+    gained = gained - momentum(system.mass, system.inertia, state.pose, state.twist)
+    gained[:, : system.dimension] -= size * system.weight
+    return 0.5 * float(np.sum((before.given + kinematics.given) * gained))

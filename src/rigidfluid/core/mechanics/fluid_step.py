@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.mechanics.motions import weights
-from rigidfluid.core.mechanics.rigid import lab_inertia, rotation_matrices
+from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
@@ -87,19 +87,12 @@ def _relative_momentum_rate(
     derivative: FloatArray,
 ) -> FloatArray:
     """d/dt of R h, and of R (I - I_new) Rᵀ ω: what a relative motion adds to the angular momentum (N, k)."""
-    rate = derivative[0] * _turned(mechanisms.spin(time), pose)
+    rate = derivative[0] * turned(pose.orientation, mechanisms.spin(time))
     for weight, (then, there, twist) in zip(derivative[1:], past, strict=False):
         change = lab_inertia(mechanisms.inertia(then) - inertia, there.orientation)
         extra = np.einsum("nij,nj->ni", change, twist.angular_velocity)
-        rate = rate + weight * (extra + _turned(mechanisms.spin(then), there))
+        rate = rate + weight * (extra + turned(there.orientation, mechanisms.spin(then)))
     return np.asarray(rate)
-
-
-def _turned(spin: FloatArray, pose: Pose) -> FloatArray:
-    """R h; in 2D the scalar does not change."""
-    if spin.shape[1] == 1:
-        return spin
-    return np.asarray(np.einsum("nij,nj->ni", rotation_matrices(pose.orientation), spin))
 
 
 def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.types import FloatArray, IntArray, Kinematics, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Step, Twist, Wrench
 
 
 def component_twist(kinematics: Kinematics | None, motion: Twist) -> Twist:
@@ -32,6 +32,16 @@ def component_twist(kinematics: Kinematics | None, motion: Twist) -> Twist:
     d, spin = kinematics.arm.shape[1], motion.angular_velocity[kinematics.carrier]
     velocity = motion.velocity[kinematics.carrier] + cross(spin, kinematics.arm)
     return Twist(velocity + kinematics.given[:, :d], spin + kinematics.given[:, d:])
+
+
+def given_twist(step: Step) -> tuple[Twist, BoolArray]:
+    """Of the bodies' twists what no free motion has a share in, n rows, and where there is any, (n,)."""
+    kinematics, d = step.kinematics, step.pose.position.shape[1]
+    held = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
+    given = component_twist(kinematics, Twist(held[:, :d], held[:, d:]))
+    if kinematics is None:
+        return given, step.controlled
+    return given, np.any(given.velocity, axis=1) | np.any(given.angular_velocity, axis=1)
 
 
 def motion_twist(kinematics: Kinematics | None, twist: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import carried_sum
-from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices
+from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices, turned
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist
 
@@ -53,7 +53,8 @@ class CarriedBodies:
         self.controlled: BoolArray = np.append(controlled[:single], np.zeros(len(sizes), dtype=bool))
         self.mass = carried_sum(self.carrier, mass, single + len(sizes))
         self.pose, self.twist = pose, twist
-        self.driven = any(mechanism.driven for mechanism in mechanisms)
+        self.driven_motions: BoolArray = np.array([False] * single + [mechanism.driven for mechanism in mechanisms])
+        self.driven = bool(self.driven_motions.any())
         self._mechanisms, self._own_mass, self._own_inertia = tuple(mechanisms), mass, inertia
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
 
@@ -68,8 +69,7 @@ class CarriedBodies:
         """Arms R ρ, and what relative motion adds, R dρ/dt and R ν."""
         relative, orientation = self._relative(time), motions.orientation[self.carrier]
         velocity, spin = relative.twist.velocity, relative.twist.angular_velocity
-        turned = spin if velocity.shape[1] == 2 else _turned(orientation, spin)
-        given = np.concatenate([_turned(orientation, velocity), turned], axis=1)
+        given = np.concatenate([_turned(orientation, velocity), turned(orientation, spin)], axis=1)
         return Kinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
 
     def inertia(self, time: float) -> FloatArray:

@@ -12,16 +12,6 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 
-def masses(system: System) -> FloatArray:
-    """Of all that each motion carries (N,) [mass]."""
-    return system.mass if system.mechanisms is None else system.mechanisms.mass
-
-
-def inertias(system: System, time: float) -> FloatArray:
-    """Of all that each motion carries, in its frame (N, k, k) [mass·length²]."""
-    return system.inertia if system.mechanisms is None else system.mechanisms.inertia(time)
-
-
 def weights(system: System, kinematics: Kinematics | None) -> Wrench:
     """Of all that each motion carries: the sum, and its torque about the centre of mass, N rows."""
     return free_wrench(kinematics, Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))

@@ -170,6 +170,13 @@ def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
     return np.asarray(rotation @ inertia @ np.swapaxes(rotation, -1, -2))
 
 
+def turned(orientation: FloatArray, spin: FloatArray) -> FloatArray:
+    """Rotational quantities (n, k) of the bodies' frames in the lab frame, R v; in 2D the scalar does not change."""
+    if orientation.shape[-1] == 1:
+        return spin
+    return np.asarray(np.einsum("nij,nj->ni", rotation_matrices(orientation), spin))
+
+
 def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
     """Inverse inertia in the lab frame, (R I Rᵀ)⁻¹ = R I⁻¹ Rᵀ, (n, k, k), arguments as for `lab_inertia`."""
     return lab_inertia(np.asarray(np.linalg.inv(inertia), dtype=np.float64), orientation)

@@ -14,7 +14,8 @@ class Mechanisms(Protocol):
     """The N motions of a system with mechanisms, and how they carry its n bodies.
 
     ``carrier`` (n,): the motion of each body. ``controlled`` (N,): which motions are given. ``mass`` (N,) of all that a
-    motion carries. ``pose``, ``twist``: of the motions at the start. ``driven``: whether anything moves relatively.
+    motion carries. ``pose``, ``twist``: of the motions at the start. ``driven_motions`` (N,): in which something moves
+    relatively; ``driven``: whether there is any.
     """
 
     carrier: IntArray
@@ -22,6 +23,7 @@ class Mechanisms(Protocol):
     mass: FloatArray
     pose: Pose
     twist: Twist
+    driven_motions: BoolArray
     driven: bool
 
     def poses(self, motions: Pose, time: float) -> Pose:

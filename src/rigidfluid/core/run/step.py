@@ -9,9 +9,9 @@ import numpy as np
 from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
-from rigidfluid.core.mechanics.actuators import actuator_power
+from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.kinematics import component_twist
+from rigidfluid.core.mechanics.kinematics import component_twist, given_twist
 from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
@@ -57,10 +57,7 @@ def attempt(
             step = replace(step, turning=turning(system, state, path, step))
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
-    twist, times = component_twist(step.kinematics, advance.twist), (time - size, time)
-    driving = actuator_power(
-        system, state, times, step.kinematics, pose, twist, path.impulse, advance.hydrodynamic_wrench
-    )
+    twist = component_twist(step.kinematics, advance.twist)
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
@@ -78,8 +75,8 @@ def attempt(
         contact_wrench=_mean(path.impulse, size),
         ledger=state.ledger.after(
             size,
-            _power(system, advance, twist, driving),
-            _work(system, state, path),
+            _power(system, advance, step),
+            _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
             contact_energy(system, contacts),
         ),
@@ -108,13 +105,15 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(energy))
 
 
-def _power(system: System, advance: Advance, twist: Twist, driving: float) -> Power:
+def _power(system: System, advance: Advance, step: Step) -> Power:
     """What enters by the faces, what drives bodies through the fluid or relatively, and what the fluid dissipates."""
-    driven = driving - float(power(advance.hydrodynamic_wrench, twist)[system.controlled].sum())
-    return Power(advance.boundary_power, driven, advance.dissipation, advance.dissipation_midway)
+    given, where = (advance.twist, step.controlled) if step.kinematics is None else given_twist(step)
+    driven = power(advance.hydrodynamic_wrench, given)[where]
+    return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 
 
-def _work(system: System, state: State, path: BodyStep) -> Work:
-    """Of the free bodies' submerged weight, of what drives bodies against the contacts, and of dampers in contacts."""
+def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
+    """Of the free bodies' submerged weight, of what drives bodies against contacts and inertia, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
-    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)
+    free = float(fallen[~system.controlled].sum())
+    return Work(free, path.held + by_actuators, path.dissipated, path.friction)
