@@ -14,7 +14,7 @@
 
 import pytest
 
-_MODULES = ("arrangement", "body", "detector", "fluid", "fluid_backend", "force_law")
+_MODULES = ("arrangement", "body", "detector", "fluid", "fluid_backend", "force_law", "mechanism")
 pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
 
 from rigidfluid.testing.arrangement import Arrangement
@@ -22,5 +22,13 @@ from rigidfluid.testing.body import BodyContract
 from rigidfluid.testing.detector import DetectorContract
 from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
+from rigidfluid.testing.mechanism import MechanismContract
 
-__all__ = ["Arrangement", "BodyContract", "DetectorContract", "FluidBackendContract", "ForceLawContract"]
+__all__ = [
+    "Arrangement",
+    "BodyContract",
+    "DetectorContract",
+    "FluidBackendContract",
+    "ForceLawContract",
+    "MechanismContract",
+]

@@ -142,7 +142,7 @@ def first_step_again(system: System, state: State, end_twist: Twist, end: float,
 def _undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodyStep:
     """Along the way of the motions alone."""
     bodies = carried_bodies(system, pose, twist, end)
-    free = None if system.mechanisms is None else FreeMotions(pose, twist, nothing(pose))
+    free = None if system.mechanisms is None else FreeMotions(pose, twist, nothing(pose), nothing(pose))
     return BodyStep(*bodies, nothing(bodies[0]), 0.0, 0.0, 1, free=free)
 
 

@@ -11,6 +11,7 @@ from scipy import sparse
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, jacobian, levers
 from rigidfluid.core.mechanics.rigid import moment
+from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.state import FreeMotions
 from rigidfluid.core.model.system import Mechanisms
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
@@ -42,14 +43,13 @@ class ComponentDynamics:
         self, motions: MotionDynamics, mechanisms: Mechanisms, time: float, weight: FloatArray | None = None
     ) -> None:
         self._motions, self._mechanisms, self._time, self._weight = motions, mechanisms, time, weight
-        none = np.zeros_like(motions.pose.position), np.zeros_like(motions.twist.angular_velocity)
-        self._impulse = Wrench(*none)
+        self._impulse = nothing(motions.pose)
         self._place()
 
     @property
     def free(self) -> FreeMotions:
         """The motions, and what contacts gave to them."""
-        return FreeMotions(self._motions.pose, self._motions.twist, self._impulse)
+        return FreeMotions(self._motions.pose, self._motions.twist, self._impulse, nothing(self._motions.pose))
 
     @property
     def twist(self) -> Twist:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +25,8 @@ class CarriedBodies:
 
     Parameters
     ----------
-    mechanisms : sequence of Mechanism
-        One for each motion after those of single bodies.
+    mechanisms : mapping of str to Mechanism
+        By name, one for each motion after those of single bodies.
     mass : (n,) array
         Of single bodies and of all components in order [mass].
     inertia : (n, k, k) array
@@ -39,23 +39,24 @@ class CarriedBodies:
 
     def __init__(
         self,
-        mechanisms: Sequence[Mechanism],
+        mechanisms: Mapping[str, Mechanism],
         mass: FloatArray,
         inertia: FloatArray,
         controlled: BoolArray,
         pose: Pose,
         twist: Twist,
     ) -> None:
-        sizes = [len(mechanism.components) for mechanism in mechanisms]
+        self.names, self._mechanisms = tuple(mechanisms), tuple(mechanisms.values())
+        sizes = [len(mechanism.components) for mechanism in self._mechanisms]
         single = len(mass) - sum(sizes)
         owner = np.repeat(np.arange(single, single + len(sizes)), sizes)
         self.carrier: IntArray = np.concatenate([np.arange(single), owner])
         self.controlled: BoolArray = np.append(controlled[:single], np.zeros(len(sizes), dtype=bool))
         self.mass = carried_sum(self.carrier, mass, single + len(sizes))
         self.pose, self.twist = pose, twist
-        self.driven_motions: BoolArray = np.array([False] * single + [mechanism.driven for mechanism in mechanisms])
+        self.driven_motions: BoolArray = np.array([False] * single + [one.driven for one in self._mechanisms])
         self.driven = bool(self.driven_motions.any())
-        self._mechanisms, self._own_mass, self._own_inertia = tuple(mechanisms), mass, inertia
+        self._own_mass, self._own_inertia = mass, inertia
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
 
     def poses(self, motions: Pose, time: float) -> Pose:

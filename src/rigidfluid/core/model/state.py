@@ -24,11 +24,12 @@ class Reference:
 @dataclass(frozen=True, slots=True)
 class FreeMotions:
     """The N motions that carry the bodies: their ``pose``, of the centres of mass, and ``twist``; ``contact``: the
-    wrench of their contacts in a state, the impulse at the end of a path."""
+    wrench of their contacts in a state, the impulse at the end of a path; ``hydrodynamic``: the fluid's wrench."""
 
     pose: Pose
     twist: Twist
     contact: Wrench
+    hydrodynamic: Wrench
 
 
 @dataclass(frozen=True, slots=True)

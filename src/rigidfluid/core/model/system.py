@@ -13,11 +13,12 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 class Mechanisms(Protocol):
     """The N motions of a system with mechanisms, and how they carry its n bodies.
 
-    ``carrier`` (n,): the motion of each body. ``controlled`` (N,): which motions are given. ``mass`` (N,) of all that a
-    motion carries. ``pose``, ``twist``: of the motions at the start. ``driven_motions`` (N,): in which something moves
-    relatively; ``driven``: whether there is any.
+    ``names``: of the mechanisms, the last of the motions. ``carrier`` (n,): the motion of each body. ``controlled``
+    (N,): which motions are given. ``mass`` (N,) of all that a motion carries. ``pose``, ``twist``: of the motions at
+    the start. ``driven_motions`` (N,): in which something moves relatively; ``driven``: whether there is any.
     """
 
+    names: tuple[str, ...]
     carrier: IntArray
     controlled: BoolArray
     mass: FloatArray

@@ -17,7 +17,7 @@ START_LEVEL = 6
 
 def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none."""
-    zero, mechanisms = nothing(system.pose), system.mechanisms
+    zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
@@ -39,8 +39,15 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> St
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
         ledger=Ledger(kinetic, stored, kinetic + stored),
-        free=None if mechanisms is None else FreeMotions(mechanisms.pose, mechanisms.twist, nothing(mechanisms.pose)),
+        free=_free_motions(system),
     )
+
+
+def _free_motions(system: System) -> FreeMotions | None:
+    motions = system.mechanisms
+    if motions is None:
+        return None
+    return FreeMotions(motions.pose, motions.twist, nothing(motions.pose), nothing(motions.pose))
 
 
 def _level(system: System, clock: Clock, stored: float) -> int | None:

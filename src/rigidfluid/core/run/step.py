@@ -11,7 +11,7 @@ from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.kinematics import component_twist, given_twist
+from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
 from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
@@ -81,9 +81,16 @@ def attempt(
             contact_energy(system, contacts),
         ),
         remesh_failed=state.remesh_failed,
-        free=None if path.free is None else FreeMotions(path.free.pose, advance.twist, _mean(path.free.contact, size)),
+        free=_free_motions(path, step, advance, size),
     )
     return candidate, step
+
+
+def _free_motions(path: BodyStep, step: Step, advance: Advance, size: float) -> FreeMotions | None:
+    if path.free is None:
+        return None
+    by_fluid = free_wrench(step.kinematics, advance.hydrodynamic_wrench)
+    return FreeMotions(path.free.pose, advance.twist, _mean(path.free.contact, size), by_fluid)
 
 
 def _mean(impulse: Wrench, size: float) -> Wrench:

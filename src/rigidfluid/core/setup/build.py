@@ -64,7 +64,7 @@ def build_system(scene: Scene) -> System:
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
     inertia = mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies])
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
-    single = len(mass) - sum(len(mechanism.components) for mechanism in mechanisms)
+    single = len(mass) - sum(len(mechanism.components) for mechanism in mechanisms.values())
     tables: Tables = (*scene.body[:single], *scene.mechanism)
     start = initial_pose(tables, scene.dimension)
     motion = prescribed_motion(scene, start)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.interfaces import Component, Mechanism
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import BodyTable, Scene
 from rigidfluid.core.scene.validation import read_table, unknown_key
@@ -20,7 +20,7 @@ from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
 
 
-def with_components(scene: Scene) -> tuple[Scene, tuple[Mechanism, ...]]:
+def with_components(scene: Scene) -> tuple[Scene, dict[str, Mechanism]]:
     """The scene with the components of its mechanisms after its bodies, and the mechanisms.
 
     Parameters
@@ -32,8 +32,8 @@ def with_components(scene: Scene) -> tuple[Scene, tuple[Mechanism, ...]]:
     -------
     Scene
         A component is a body named after mechanism and component, ``dumbbell.left``, and a part of the mechanism.
-    tuple of Mechanism
-        Built from their options.
+    dict of str to Mechanism
+        By name, built from their options.
 
     Raises
     ------
@@ -43,11 +43,12 @@ def with_components(scene: Scene) -> tuple[Scene, tuple[Mechanism, ...]]:
         If an option is not allowed, or a name is taken.
     """
     if not scene.mechanism:
-        return scene, ()
+        return scene, {}
     registry = Registry.load()
-    mechanisms = tuple(_built(scene, registry, number) for number in range(len(scene.mechanism)))
+    built = [_built(scene, registry, number) for number in range(len(scene.mechanism))]
+    _refuse_doubles(scene, built)
+    mechanisms = dict(zip((table.name for table in scene.mechanism), built, strict=True))
     bodies = (*scene.body, *_component_tables(scene, mechanisms))
-    _refuse_doubles(scene, [body.name for body in bodies])
     return scene.model_copy(update={"body": bodies}), mechanisms
 
 
@@ -88,9 +89,9 @@ def _refuse_impossible(mechanism: Mechanism, at: str) -> None:
             raise PluginError(at, f"{name} of shape {np.shape(values)}", allowed, remedy)
 
 
-def _component_tables(scene: Scene, mechanisms: Sequence[Mechanism]) -> list[BodyTable]:
+def _component_tables(scene: Scene, mechanisms: Mapping[str, Mechanism]) -> list[BodyTable]:
     """Tables of the components where they are at the start, as if each were a body."""
-    owners = [(table, part) for table, one in zip(scene.mechanism, mechanisms, strict=True) for part in one.components]
+    owners = [(name, part) for name, mechanism in mechanisms.items() for part in mechanism.components]
     mass = np.array([part.density * part.shape.volume for _, part in owners])
     inertia = mass[:, None, None] * np.array([part.shape.unit_inertia for _, part in owners])
     pose, twist = initial_pose(scene.mechanism, scene.dimension), initial_twist(scene.mechanism, scene.dimension)
@@ -100,17 +101,17 @@ def _component_tables(scene: Scene, mechanisms: Sequence[Mechanism]) -> list[Bod
     turned = "angle" if scene.dimension == 2 else "orientation"
     return [
         BodyTable(
-            name=f"{table.name}.{part.name}",
+            name=_component_name(name, part),
             type=part.shape.name,
             density=part.density,
             position=position,
             velocity=velocity,
             angular_velocity=spin,
-            part_of=table.name,
+            part_of=name,
             **{turned: orientation[0] if scene.dimension == 2 else orientation},
             **part.shape.options.model_dump(),
         )
-        for (table, part), (position, orientation, velocity, spin) in zip(owners, rows, strict=True)
+        for (name, part), (position, orientation, velocity, spin) in zip(owners, rows, strict=True)
     ]
 
 
@@ -118,8 +119,15 @@ def _rows(values: FloatArray) -> list[tuple[Any, ...]]:
     return [tuple(row) for row in values.tolist()]
 
 
-def _refuse_doubles(scene: Scene, bodies: Sequence[str]) -> None:
-    names = [*bodies, *(table.name for table in scene.mechanism), *faces(scene.dimension)]
+def _component_name(mechanism: str, component: Component) -> str:
+    return f"{mechanism}.{component.name}"
+
+
+def _refuse_doubles(scene: Scene, mechanisms: Sequence[Mechanism]) -> None:
+    names = [*(table.name for table in scene.body), *faces(scene.dimension)]
+    names += [table.name for table in scene.mechanism]
+    for table, mechanism in zip(scene.mechanism, mechanisms, strict=True):
+        names += [_component_name(table.name, component) for component in mechanism.components]
     for name, count in Counter(names).items():
         if count > 1:
             raise SceneError("mechanism.name", repr(name), "a name that no body, component or face has", "Rename it.")
