@@ -285,7 +285,7 @@ class FluidBackend(Part):
 
     @abstractmethod
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        """How many unknowns one step solves for on this mesh, with these bodies' twists given."""
+        """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
 
     @abstractmethod
     def forget(self) -> None:

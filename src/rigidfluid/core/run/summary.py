@@ -46,7 +46,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "seed": simulation.scene.scene.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
-        "unknowns": system.backend.unknowns(state.mesh, system.controlled),
+        "unknowns": system.backend.unknowns(state.mesh, system.controlled_motions),
         "cells": 0 if state.mesh is None else _cells(state.mesh),
         "ranks": system.backend.ranks.size,
         "steps": state.count,
