@@ -115,7 +115,7 @@ class MechanismContract:
 
     def test_wrenches_do_the_same_work_on_the_whole(self, mechanism: Mechanism) -> None:
         """w · G u = Gᵀw · u."""
-        carried, pose, twist = _carried(mechanism)
+        carried, pose, _ = _carried(mechanism)
         random, d = np.random.default_rng(5), mechanism.dimension
         for time in self.times:
             kinematics = carried.at(pose, time)
