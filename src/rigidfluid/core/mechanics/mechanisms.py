@@ -60,27 +60,27 @@ class CarriedBodies:
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
 
     def poses(self, motions: Pose, time: float) -> Pose:
-        """c + R ρ and R Q of each body."""
+        """c + R s and R Q of each body."""
         relative, carrier = self._relative(time).pose, self.carrier
         arm = _turned(motions.orientation[carrier], relative.position)
         orientation = compose(motions.orientation[carrier], relative.orientation)
         return Pose(motions.position[carrier] + arm, orientation)
 
     def at(self, motions: Pose, time: float) -> Kinematics:
-        """Arms R ρ, and what relative motion adds, R dρ/dt and R ν."""
+        """Arms R s, and what relative motion adds, R ds/dt and R ν."""
         relative, orientation = self._relative(time), motions.orientation[self.carrier]
         velocity, spin = relative.twist.velocity, relative.twist.angular_velocity
         given = np.concatenate([_turned(orientation, velocity), turned(orientation, spin)], axis=1)
         return Kinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
 
     def inertia(self, time: float) -> FloatArray:
-        """Σ Q I Qᵀ + m (|ρ|² - ρ ρᵀ) of what each motion carries."""
+        """Σ Q I Qᵀ + m (|s|² - s sᵀ) of what each motion carries."""
         pose = self._relative(time).pose
         own = lab_inertia(self._own_inertia, pose.orientation)
         return self._sum(own + self._own_mass[:, None, None] * _unit_inertia(pose.position))
 
     def spin(self, time: float) -> FloatArray:
-        """Σ Q I Qᵀ ν + m ρ × dρ/dt of what each motion carries."""
+        """Σ Q I Qᵀ ν + m s × ds/dt of what each motion carries."""
         pose, twist = self._relative(time)
         own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
         return self._sum(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
