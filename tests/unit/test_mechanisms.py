@@ -9,8 +9,12 @@ import pytest
 from mechanism_parts import Dumbbell, Ellipse, Hammer, PairOptions, Stroke
 
 import rigidfluid
+from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
+from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.types import Wrench
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
@@ -71,6 +75,13 @@ def apart(simulation):
     """Distances of the components of a pair, exact where it is rigid."""
     position = simulation.state.pose.position
     return float(np.linalg.norm(position[1] - position[0]))
+
+
+def assert_evaluated(simulation):
+    """Poses are those of the motions at this very time, and no sum of substeps."""
+    evaluated = simulation.system.mechanisms.poses(simulation.state.free.pose, simulation.time)
+    np.testing.assert_array_equal(simulation.state.pose.position, evaluated.position)
+    np.testing.assert_array_equal(simulation.state.pose.orientation, evaluated.orientation)
 
 
 def angular_momentum(simulation):
@@ -184,6 +195,29 @@ def test_two_of_them_collide_and_keep_momentum_and_energy():
     assert it.state.ledger.kinetic + it.state.ledger.contact == pytest.approx(energy, rel=1e-4)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_what_contacts_are_told_of_masses_is_what_kicks_do(dimension):
+    other = pair(name="other", dimension=dimension, position=[0.5, 0.2, 0.5][:dimension])
+    system = build_system(scene(pair("hammer", dimension, ratio=3.0), other))
+    mechanisms = system.mechanisms
+    inert = mechanisms.mass, mechanisms.inertia(0.0), np.zeros((2, dimension)), mechanisms.controlled, None
+    motions = DryDynamics(mechanisms.pose, mechanisms.twist, *inert)
+    bodies = ComponentDynamics(motions, mechanisms, 0.0)
+    force = np.random.default_rng(1).normal(size=(4, dimension))
+    force /= np.linalg.norm(force, axis=1, keepdims=True)
+    wrench = Wrench(force, np.random.default_rng(2).normal(size=system.twist.angular_velocity.shape))
+    inverse, alone = bodies.inverse_masses(1.0), Wrench(np.zeros_like(force), np.zeros_like(wrench.torque))
+    alone.force[1] = force[1]
+    lightness = bodies.inverse_mass(np.array([1]), force[1:2])[0], force[1] @ bodies.mobility[1] @ force[1]
+    one = bodies.copied()
+    one.kick(alone, 0.1)
+    np.testing.assert_allclose(lightness, 10.0 * force[1] @ one.twist.velocity[1])
+    bodies.kick(wrench, 0.1)
+    np.testing.assert_allclose(flat(bodies.twist).ravel(), 0.1 * inverse @ flat(wrench).ravel())
+    pushed = 0.1 * np.array([force[:2].sum(axis=0), force[2:].sum(axis=0)])
+    np.testing.assert_allclose(bodies.free.contact.force, pushed)
+
+
 def test_components_do_not_repel_each_other():
     it = run(scene(pair(length=0.102, angular_velocity=3.0), contact=LAW | {"range": 0.05}))
     assert len(it.state.contacts.gap) == 0 or it.state.contacts.gap.min() > 0.05
@@ -232,6 +266,7 @@ def test_one_that_pushes_itself_off_the_walls_takes_the_energy_from_its_drive(st
     assert it.state.ledger.kinetic > 1e-3
     assert account.created < 0.01
     assert account.lost < 0.01
+    assert_evaluated(it)
 
 
 def test_a_saved_run_goes_on_with_the_same_bits(tmp_path):
@@ -245,9 +280,10 @@ def test_a_saved_run_goes_on_with_the_same_bits(tmp_path):
 
 
 def test_a_table_has_rows_of_components_and_of_the_whole():
-    history = rigidfluid.run(wet(pair(density=3.0), gravity=[0.0, -9.81], end=0.02, step=0.005))
+    ball = {"name": "ball", "type": "sphere", "radius": 0.05, "density": 1.0, "position": [0.5, 0.8]}
+    history = rigidfluid.run(wet(pair(density=3.0), body=[ball], gravity=[0.0, -9.81], end=0.02, step=0.005))
     table = history.bodies
-    assert table["body"][:3].tolist() == ["it.left", "it.right", "it"]
+    assert table["body"][:4].tolist() == ["ball", "it.left", "it.right", "it"]
     rows = {
         name: {key: table[key][table["body"] == name] for key in ("x", "fy", "t", "gap")} for name in set(table["body"])
     }
@@ -317,6 +353,7 @@ def test_newton_and_euler_hold_for_the_whole_with_a_stroke(model):
     assert ledger.control > 0.9 * ledger.dissipation > 0.0
     assert abs(ledger.relative_residual) < 0.03
     assert abs(apart(it) - 0.5) < 1e-12
+    assert_evaluated(it)
 
 
 def test_a_reciprocal_stroke_without_inertia_leads_nowhere():
@@ -334,7 +371,10 @@ def test_a_contact_in_the_fluid_turns_the_whole(stepping):
     table = pair(radius=0.1, length=0.8, density=3.0, position=[1.0, 0.5], angle=0.4)
     contact = {"law": "centre", "range": 0.02, "epsilon": 1e-5, "stepping": stepping}
     keys = {"end": 0.06, "step": 0.004, "upper": [2.0, 1.2], "size_body": 0.04, "gravity": [0.0, -981.0]}
-    it = run(wet(table, contact=contact, **keys))
+    it, known = Simulation(wet(table, contact=contact, **keys)), set()
+    it.observe(lambda now: known.update(now.state.coupling.model.velocities.tolist() if now.state.coupling else []))
+    it.go()
+    assert known == {0, 1, 2}
     bodies = it.history.bodies
     spin, pushed = bodies["w"][bodies["body"] == "it"], bodies["cfy"][bodies["body"] == "it.left"]
     assert pushed.max() > 5.0
