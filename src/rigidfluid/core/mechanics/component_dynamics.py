@@ -53,12 +53,12 @@ class ComponentDynamics:
 
     @property
     def twist(self) -> Twist:
-        return component_twist(self._kinematics, self._motions.twist)
+        return component_twist(self.kinematics, self._motions.twist)
 
     def given_twist(self, controlled: BoolArray) -> Twist:
         """That part of the twists that no free motion has a share in, where some (N,) are ``controlled``."""
         twist, given = self._motions.twist, controlled[:, None]
-        return component_twist(self._kinematics, Twist(given * twist.velocity, given * twist.angular_velocity))
+        return component_twist(self.kinematics, Twist(given * twist.velocity, given * twist.angular_velocity))
 
     @property
     def friction_loss(self) -> float:
@@ -67,24 +67,24 @@ class ComponentDynamics:
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """e·(G M⁻¹ Gᵀ)e: of the motion as its body feels it."""
-        motion = self._kinematics.carrier[body]
-        turning = moment(self._kinematics.arm[body], direction)
+        motion = self.kinematics.carrier[body]
+        turning = moment(self.kinematics.arm[body], direction)
         straight = self._motions.inverse_mass(motion, direction)
         return np.asarray(straight + np.einsum("mi,mij,mj->m", turning, self._motions.inverse_inertia[motion], turning))
 
     @property
     def mobility(self) -> FloatArray:
-        carrier, lever = self._kinematics.carrier, levers(self._kinematics.arm)
+        carrier, lever = self.kinematics.carrier, levers(self.kinematics.arm)
         turning = lever @ self._motions.inverse_inertia[carrier] @ np.swapaxes(lever, -1, -2)
         return np.asarray(self._motions.mobility[carrier] + turning)
 
     @property
     def inverse_inertia(self) -> FloatArray:
-        return self._motions.inverse_inertia[self._kinematics.carrier]
+        return self._motions.inverse_inertia[self.kinematics.carrier]
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """G M⁻¹ Gᵀ, bodies of one motion coupled."""
-        carried = jacobian(self._kinematics)
+        carried = jacobian(self.kinematics)
         return sparse.csr_matrix(carried @ self._motions.inverse_masses(time) @ carried.T)
 
     def copied(self) -> Self:
@@ -94,16 +94,16 @@ class ComponentDynamics:
 
     def pull(self, time: float) -> FloatArray:
         """Of the motion, and by its rotation: |α| |arm| + |ω|² |arm|; and what changes in the relative motion."""
-        now = self._kinematics
+        now = self.kinematics
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
         turning = (self._motions.angular_pull(time) + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
         later = self._mechanisms.at(self._motions.pose, self._time + time)
         change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
         return np.asarray(self._motions.pull(time)[now.carrier] + turning + change / time)
 
-    def kick(self, wrench: Wrench, time: float) -> None:
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the motions' twists as contacts with this ``wrench`` on the bodies, and all else that acts, do."""
-        pushed, so_far = free_wrench(self._kinematics, wrench), self._impulse
+        pushed, so_far = free_wrench(at or self.kinematics, wrench), self._impulse
         self._motions.kick(self._turned_by_weight(pushed), time)
         self._impulse = Wrench(so_far.force + time * pushed.force, so_far.torque + time * pushed.torque)
 
@@ -115,10 +115,10 @@ class ComponentDynamics:
     def _turned_by_weight(self, wrench: Wrench) -> Wrench:
         if self._weight is None:
             return wrench
-        carried = free_wrench(self._kinematics, Wrench(self._weight, np.zeros_like(self.inverse_inertia[:, 0])))
+        carried = free_wrench(self.kinematics, Wrench(self._weight, np.zeros_like(self.inverse_inertia[:, 0])))
         return Wrench(wrench.force, wrench.torque + carried.torque)
 
     def _place(self) -> None:
         motions = self._motions.pose
         self.pose: Pose = self._mechanisms.poses(motions, self._time)
-        self._kinematics: Kinematics = self._mechanisms.at(motions, self._time)
+        self.kinematics: Kinematics = self._mechanisms.at(motions, self._time)

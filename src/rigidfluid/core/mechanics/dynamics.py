@@ -13,7 +13,7 @@ from scipy import sparse
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
 from rigidfluid.core.model.state import FreeMotions
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 
@@ -26,6 +26,10 @@ class BodyDynamics(Protocol):
     @property
     def free(self) -> FreeMotions | None:
         """What carries them, None where each moves by itself."""
+
+    @property
+    def kinematics(self) -> Kinematics | None:
+        """How motions carry them now, None where each moves by itself."""
 
     @property
     def twist(self) -> Twist:
@@ -56,8 +60,11 @@ class BodyDynamics(Protocol):
     def pull(self, time: float) -> FloatArray:
         """Greatest acceleration of each body in so much time from now by all but contacts, (n,) [length/time²]."""
 
-    def kick(self, wrench: Wrench, time: float) -> None:
-        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``."""
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
+        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``.
+
+        ``at``: how motions carried the bodies where the wrench is of, if that is not here.
+        """
 
     def drift(self, time: float) -> None:
         """Change the pose as the twist does in ``time``."""
@@ -83,6 +90,7 @@ class DryDynamics:
     """
 
     free: FreeMotions | None = None
+    kinematics: Kinematics | None = None
     friction_loss: float = 0.0
 
     def __init__(
@@ -146,7 +154,7 @@ class DryDynamics:
         """None: what turns freely keeps its angular momentum."""
         return np.zeros(len(self._mass))
 
-    def kick(self, wrench: Wrench, time: float) -> None:
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change momenta by F + W and T for so long."""
         state = self._velocity, self._momentum
         _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)
