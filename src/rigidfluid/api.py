@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import (
     Body,
@@ -109,6 +110,8 @@ __all__ = [
     "Twist",
     "Wall",
     "Wrench",
+    "component_twist",
+    "free_wrench",
     "hookimpl",
     "load_scene",
     "missing_packages",

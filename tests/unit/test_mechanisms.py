@@ -9,6 +9,7 @@ import pytest
 from mechanism_parts import Dumbbell, Ellipse, Hammer, PairOptions, Stroke
 
 import rigidfluid
+from rigidfluid.checks.report import check
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
@@ -19,7 +20,8 @@ from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.errors import CrosscheckError, PluginError, SceneError
+from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
 from rigidfluid.testing import MechanismContract
 
 LAW = {"law": "centre", "range": 0.005, "epsilon": 1e-8}
@@ -406,6 +408,26 @@ def test_three_dimensions_in_a_fluid():
 def test_what_a_table_may_not_say_is_refused(change, error, message):
     with pytest.raises(error, match=message):
         scene(pair() | change)
+
+
+def test_components_are_looked_at_as_bodies_before_a_run():
+    found = check(wet(pair(density=2.0), contact=LAW, gravity=[0.0, -9.81]))
+    assert [(body.name, body.type) for body in found.bodies] == [("it.left", "sphere"), ("it.right", "sphere")]
+    parts = next(feature for feature in found.features if "repel each other" in feature.name)
+    assert parts.on
+
+
+def test_what_meets_a_wall_is_as_heavy_as_the_whole():
+    one, other = (build_system(scene(pair(ratio=ratio), contact=LAW, gravity=[0.0, -9.81])) for ratio in (1.0, 3.0))
+    np.testing.assert_allclose(one.loads.mass, one.mechanisms.mass[0])
+    np.testing.assert_allclose(other.loads.weight, 2.0 * one.loads.weight)
+    assert one.leverage.min() > 0.0
+
+
+def test_programs_that_know_no_mechanisms_are_not_asked():
+    given = scene(pair(), contact=LAW)
+    with pytest.raises(CrosscheckError, match=r"mechanism.*Leave mechanisms out"):
+        refuse_foreign(given, build_system(given))
 
 
 def test_names_of_components_are_taken():

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.mechanics.added_mass import added_mass
-from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
-from rigidfluid.core.mechanics.leverage import leverage_at, most_leverage, surface_points
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.system import System
@@ -21,7 +20,6 @@ from rigidfluid.core.model.types import (
     FluidProblem,
     IntArray,
     Loads,
-    Pose,
     Twist,
 )
 from rigidfluid.core.scene.scene import Scene
@@ -35,7 +33,6 @@ from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
 
 _MOST_PAIRS = 1000
-_TIMES = 33
 _SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if the scene gives none."""
 
@@ -100,7 +97,7 @@ def build_system(scene: Scene) -> System:
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
-        leverage=_leverage(parts.bodies, carried, scene.time.end),
+        leverage=leverages(parts.bodies, carried, scene.time.end),
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,
@@ -118,10 +115,8 @@ def _assemblies(scene: Scene) -> IntArray:
 
 def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
     """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are controlled."""
-    d, held = (
-        twist.velocity.shape[1],
-        np.append(controlled, np.zeros(len(given) - len(controlled), dtype=bool))[:, None],
-    )
+    d, held = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
+    held[: len(controlled), 0] = controlled
     return Twist(
         np.where(held, given[:, :d], twist.velocity),
         np.where(held, given[:, d:], twist.angular_velocity),
@@ -133,29 +128,6 @@ def _together(carried: CarriedBodies | None, rows: FloatArray) -> FloatArray:
     if carried is None:
         return rows
     return carried_sum(carried.carrier, rows, len(carried.mass))[carried.carrier]
-
-
-def _leverage(bodies: Sequence[Body], carried: CarriedBodies | None, end: float) -> FloatArray:
-    """Of each body's surface; of components as the whole gives way there, the most at any of some times."""
-    alone = np.array([most_leverage(body) for body in bodies])
-    if carried is None:
-        return alone
-    times = np.linspace(0.0, end, _TIMES) if carried.driven else np.zeros(1)
-    together = np.max([_leverage_within(bodies, carried, time) for time in times], axis=0)
-    return np.asarray(np.maximum(alone, together))
-
-
-def _leverage_within(bodies: Sequence[Body], carried: CarriedBodies, time: float) -> FloatArray:
-    """At one time, zero for bodies that move by themselves (n,)."""
-    motions = Pose(np.zeros_like(carried.pose.position), np.zeros_like(carried.pose.orientation))
-    motions.orientation[:, : motions.orientation.shape[1] - 3] = 1.0  # a quaternion's scalar; nothing in 2D
-    pose, inertia = carried.poses(motions, time), carried.inertia(time)
-    found = np.zeros(len(bodies))
-    for body in np.flatnonzero(np.bincount(carried.carrier)[carried.carrier] > 1).tolist():
-        motion = carried.carrier[body]
-        points = to_world(pose, body, surface_points(bodies[body]))
-        found[body] = leverage_at(points, inertia[motion] / carried.mass[motion])
-    return found
 
 
 def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
