@@ -12,6 +12,7 @@ import rigidfluid
 from rigidfluid.checks.report import check
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
+from rigidfluid.core.mechanics.motions import body_accelerations
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat
@@ -454,3 +455,15 @@ def test_a_placement_of_a_wrong_shape_is_its_authors_error(install):
     install(code.replace("np.zeros((2, self.dimension))", "np.zeros((2, 3))"), name="odd", module="odd_mechanism")
     with pytest.raises(PluginError, match=r"mechanism.0.*placement\(0\).position of shape \(2, 3\)"):
         scene(pair("odd"))
+
+
+def test_a_drive_that_only_starts_is_foreseen_in_a_fluid():
+    """A pair at the turning point of its stroke, just beyond the range: its speed is none, its acceleration is not."""
+    table = pair("stroke", radius=0.05, length=0.4, stroke=0.1, position=[0.5, 0.5])
+    it = Simulation(wet(table, contact=LAW | {"law": "normal"}, end=1.0, step=0.01))
+    quarter, size = 0.25, 0.01
+    rates = body_accelerations(it.system, it.state, quarter, size)
+    centripetal = -0.1 * (2.0 * np.pi) ** 2
+    share = it.system.mass[0] / it.system.mass.sum()
+    assert rates[1, 0] - rates[0, 0] == pytest.approx(centripetal, rel=0.01)
+    assert rates[1, 0] == pytest.approx(share * centripetal, rel=0.01)

@@ -146,14 +146,14 @@ def _undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodySt
     return BodyStep(*bodies, nothing(bodies[0]), 0.0, 0.0, 1, free=free)
 
 
-def near_contacts(system: System, state: State, size: float) -> Contacts:
-    """Contacts in range, or that may come into it in a step of this ``size``: at twice the speed of their surfaces
-    now, and all that acceleration can add."""
+def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
+    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: at twice the speed of
+    their surfaces now, and all that acceleration can add."""
     contacts = state.contacts
     if system.law is None or len(contacts) == 0:
         return select(contacts, np.zeros(len(contacts), dtype=bool))
     speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
-    pull = np.append(np.linalg.norm(body_accelerations(system, state), axis=1), 0.0)
+    pull = np.append(np.linalg.norm(body_accelerations(system, state, start, size), axis=1), 0.0)
     both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
@@ -186,7 +186,7 @@ def _dry(system: System, state: State, start: float) -> BodyDynamics:
 def _follow_coupled(
     system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
 ) -> BodyStep:
-    motions, near = _coupled(system, state, coupling), near_contacts(system, state, size)
+    motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
     movement: BodyDynamics = motions
     if system.mechanisms is not None:
         movement = ComponentDynamics(motions, system.mechanisms, start)

@@ -41,7 +41,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     """
     if not system.backend.needs_mesh:
         return None
-    near = near_contacts(system, state, size)
+    near = near_contacts(system, state, time, size)
     if len(near) == 0:
         return None
     velocities = _velocities(system, near)

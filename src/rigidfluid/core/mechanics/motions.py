@@ -60,15 +60,32 @@ def accelerations(system: System, state: State) -> FloatArray:
     return (flat(state.free_twist) - flat(state.past.twist)) / state.past.step - flat(by_contact)
 
 
-def body_accelerations(system: System, state: State) -> FloatArray:
-    """Of the bodies, as the motions carry them, A + α × arm + ω × (ω × arm), (n, d+k) as in `accelerations`."""
-    rate, kinematics = accelerations(system, state), kinematics_now(system, state)
-    if kinematics is None:
+def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
+    """Of the bodies, as the motions carry them, A + α × arm + ω × (ω × arm), and what relative motion adds to that.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and mechanisms.
+    state : State
+        Now.
+    time, size : float
+        When that is, and for how long relative motion is looked at from then on [time].
+
+    Returns
+    -------
+    (n, d+k) array
+        As in `accelerations`.
+    """
+    rate, mechanisms = accelerations(system, state), system.mechanisms
+    if mechanisms is None:
         return rate
-    d, carrier, arm = system.dimension, kinematics.carrier, kinematics.arm
+    now, later = (mechanisms.at(state.free_pose, when) for when in (time, time + size))
+    d, carrier, arm = system.dimension, now.carrier, now.arm
     spin = state.free_twist.angular_velocity[carrier]
     turning = cross(rate[carrier, d:], arm) + cross(spin, cross(spin, arm))
-    return np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
+    carried = np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
+    return np.asarray(carried + (later.given - now.given) / size)
 
 
 def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
