@@ -449,12 +449,24 @@ def test_a_scene_without_anything_that_moves_is_refused():
         scene_from_dict(tables)
 
 
-def test_a_placement_of_a_wrong_shape_is_its_authors_error(install):
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        (("np.zeros((2, self.dimension))", "np.zeros((2, 4))"), r"placement\(0\).position of shape \(2, 4\)"),
+        (('"left", "right"', '"left", "left"'), "a name of its own"),
+        (("ratio * self.options.density", "-1.0"), "densities.*numbers above 0"),
+        (("[1.0, 0.0, 0.0, 0.0]", "[1.1, 0.0, 0.0, 0.0]"), "quaternions of length 1"),
+        (("    driven = True\n", ""), "a rate of what is not driven"),
+    ],
+)
+def test_what_a_mechanism_may_not_say_is_its_authors_error(install, fault, message):
     code = Path(mechanism_parts.__file__).read_text(encoding="utf-8").replace('"dumbbell"', '"odd"')
-    code = code.replace("return [Dumbbell, Hammer, Ellipse, Stroke]", "return [Dumbbell]")
-    install(code.replace("np.zeros((2, self.dimension))", "np.zeros((2, 3))"), name="odd", module="odd_mechanism")
-    with pytest.raises(PluginError, match=r"mechanism.0.*placement\(0\).position of shape \(2, 3\)"):
-        scene(pair("odd"))
+    code = code.replace('"stroke"', '"odd_stroke"').replace(
+        "return [Dumbbell, Hammer, Ellipse, Stroke]", "return [Dumbbell, Stroke]"
+    )
+    install(code.replace(*fault), name="odd", module="odd_mechanism")
+    with pytest.raises(PluginError, match=rf"mechanism.0.*{message}"):
+        scene(pair("odd_stroke" if "driven" in fault[0] else "odd", 3, stroke=0.1))
 
 
 def test_a_drive_that_only_starts_is_foreseen_in_a_fluid():

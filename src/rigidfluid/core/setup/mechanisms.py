@@ -19,6 +19,8 @@ from rigidfluid.core.setup.placing import initial_pose, initial_twist
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
 
+_ROUNDING = 1e-9
+
 
 def with_components(scene: Scene) -> tuple[Scene, dict[str, Mechanism]]:
     """The scene with the components of its mechanisms after its bodies, and the mechanisms.
@@ -61,19 +63,26 @@ def _built(scene: Scene, registry: Registry, number: int) -> Mechanism:
     options = read_table(part.Options, table.options, at)
     try:
         mechanism = part(options, scene.dimension)
-        components = mechanism.components
+        _refuse_components(mechanism, at)
     except SceneError as error:
-        subject = error.subject.replace("mechanism.", f"{at}.", 1)
+        subject = f"{at}.{error.subject.partition('.')[2]}"
         raise SceneError(subject, error.found, error.allowed, error.remedy) from None
-    _refuse_impossible(mechanism, at)
-    names = [component.name for component in components]
-    if not names or len(set(names)) < len(names):
-        raise PluginError(at, f"components named {names}", "components, each with a name of its own", "Name them.")
+    _refuse_placement(mechanism, at)
     return mechanism
 
 
-def _refuse_impossible(mechanism: Mechanism, at: str) -> None:
-    """Placements of a wrong shape, and none at all, are an error of the mechanism's author."""
+def _refuse_components(mechanism: Mechanism, at: str) -> None:
+    """Names and densities that cannot be are an error of the mechanism's author."""
+    names = [component.name for component in mechanism.components]
+    densities = [component.density for component in mechanism.components]
+    if not names or len(set(names)) < len(names):
+        raise _impossible(at, f"components named {names}", "components, each with a name of its own")
+    if not all(0.0 < density < np.inf for density in densities):
+        raise _impossible(at, f"components of densities {densities}", "numbers above 0")
+
+
+def _refuse_placement(mechanism: Mechanism, at: str) -> None:
+    """So are places of a wrong shape, and a rate of what is said not to change."""
     count, d = len(mechanism.components), mechanism.dimension
     k, q = (1, 1) if d == 2 else (3, 4)
     pose, rate = mechanism.placement(0.0), mechanism.rate(0.0)
@@ -85,8 +94,15 @@ def _refuse_impossible(mechanism: Mechanism, at: str) -> None:
     ):
         if np.shape(values) != (count, width) or not np.isfinite(values).all():
             allowed = f"finite numbers of shape {(count, width)}, a row for each component"
-            remedy = "Mend the mechanism; MechanismContract in rigidfluid.testing shows more."
-            raise PluginError(at, f"{name} of shape {np.shape(values)}", allowed, remedy)
+            raise _impossible(at, f"{name} of shape {np.shape(values)}", allowed)
+    if d == 3 and np.abs(np.linalg.norm(pose.orientation, axis=1) - 1.0).max() > _ROUNDING:
+        raise _impossible(at, f"quaternions {pose.orientation.tolist()}", "quaternions of length 1")
+    if not mechanism.driven and (rate.velocity.any() or rate.angular_velocity.any()):
+        raise _impossible(at, "a rate of what is not driven", "`driven = True` beside `rate`")
+
+
+def _impossible(at: str, found: str, allowed: str) -> PluginError:
+    return PluginError(at, found, allowed, "Mend the mechanism; MechanismContract in rigidfluid.testing shows more.")
 
 
 def _component_tables(scene: Scene, mechanisms: Mapping[str, Mechanism]) -> list[BodyTable]:
