@@ -423,8 +423,8 @@ water, with contacts that are ten to a thousand times shorter than a step; what 
 Aimed at are at most 3 % created, and 1 % with steps of 1 ms and less, and at most 30, 15, 7 and 4 % lost with steps of
 4, 2, 1 and .5 ms. Above that are: {over}.
 
-A step in which an impact would lose much is shortened, to an eighth at most, so that the longer steps lose about as much
-as each other. In the squeezed channel both walls push the disk all the time, and all steps are short.
+A step in which an impact would lose much is shortened, to an eighth at most, so that the longer steps lose about as
+much as each other. In the squeezed channel both walls push the disk all the time, and all steps are short.
 
 {energies}
 

@@ -12,9 +12,19 @@ from typing import TYPE_CHECKING
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.domain import Domain, Piece
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.interfaces import (
+    Body,
+    Component,
+    Detector,
+    FluidBackend,
+    ForceLaw,
+    Mechanism,
+    Part,
+    PartOptions,
+)
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
     Advance,
@@ -26,6 +36,7 @@ from rigidfluid.core.model.types import (
     FluidProblem,
     FluidState,
     IntArray,
+    Kinematics,
     Loads,
     Mesh,
     Motion,
@@ -49,7 +60,16 @@ from rigidfluid.errors import (
     StepRejected,
 )
 from rigidfluid.hookspecs import hookimpl
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry, missing_packages
+from rigidfluid.registry import (
+    BODY,
+    DETECTOR,
+    DOMAIN,
+    FLUID_BACKEND,
+    FORCE_LAW,
+    MECHANISM,
+    Registry,
+    missing_packages,
+)
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
@@ -61,12 +81,14 @@ __all__ = [
     "DOMAIN",
     "FLUID_BACKEND",
     "FORCE_LAW",
+    "MECHANISM",
     "Advance",
     "Body",
     "BoolArray",
     "BoundaryCondition",
     "Box",
     "BoxOptions",
+    "Component",
     "Contacts",
     "Detector",
     "Domain",
@@ -79,7 +101,9 @@ __all__ = [
     "FluidState",
     "ForceLaw",
     "IntArray",
+    "Kinematics",
     "Loads",
+    "Mechanism",
     "Mesh",
     "MeshError",
     "Motion",
@@ -105,6 +129,8 @@ __all__ = [
     "Twist",
     "Wall",
     "Wrench",
+    "component_twist",
+    "free_wrench",
     "hookimpl",
     "load_scene",
     "missing_packages",

@@ -1,4 +1,4 @@
-"""The five hooks by which a plug-in offers its classes, and the marker for its functions.
+"""The hooks by which a plug-in offers its classes, and the marker for its functions.
 
 A plug-in is a module that the entry-point group ``rigidfluid`` names::
 
@@ -17,7 +17,7 @@ import pluggy
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
 hookimpl = pluggy.HookimplMarker("rigidfluid")
@@ -46,3 +46,8 @@ def rigidfluid_bodies() -> list[type[Body]]:  # type: ignore[empty-body]
 @hookspec
 def rigidfluid_domains() -> list[type[Domain]]:  # type: ignore[empty-body]
     """Classes of regions that fluid and bodies share."""
+
+
+@hookspec
+def rigidfluid_mechanisms() -> list[type[Mechanism]]:  # type: ignore[empty-body]
+    """Classes of several rigid bodies that move as one."""

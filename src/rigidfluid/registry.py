@@ -18,7 +18,7 @@ import pluggy
 from rigidfluid import hookspecs
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.errors import PluginError
 
 GROUP = "rigidfluid"
@@ -27,7 +27,7 @@ P = TypeVar("P", bound=Part)
 
 @dataclass(frozen=True)
 class Kind(Generic[P]):
-    """One of the five replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
+    """One of the replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
     ``field`` that names it."""
 
     title: str
@@ -41,7 +41,8 @@ DETECTOR = Kind("detector", "rigidfluid_detectors", Detector, "contact.detector"
 FORCE_LAW = Kind("force law", "rigidfluid_force_laws", ForceLaw, "contact.law")  # type: ignore[type-abstract]
 BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
 DOMAIN = Kind("domain", "rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
-KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN)
+MECHANISM = Kind("mechanism", "rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM)
 
 
 @dataclass(frozen=True)
@@ -114,7 +115,7 @@ class Registry:
         Parameters
         ----------
         kind : Kind
-            Which of the five kinds.
+            Which of the kinds.
         name : str
             The name that the scene gives.
         subject : str, optional

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -92,6 +95,32 @@ def test_the_example_of_a_domain_runs(install: Install) -> None:
     assert history.bodies["y"][-1] < -0.7
     energy = history.summary["energy"]
     assert max(energy["created"], energy["lost"]) < 0.01
+
+
+def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> None:
+    page = section(text("docs/plugins.md"), "A mechanism, from nothing")
+    code, contract, driven = blocks(page, "python")
+    (table,) = (tomllib.loads(block)["mechanism"] for block in blocks(page, "toml"))
+    code = code.replace("@hookimpl", f"{driven}\n\n@hookimpl").replace("return [Dumbbell]", "return [Dumbbell, Stroke]")
+    folder = install(code, name="dumbbell", module="rigidfluid_dumbbell")
+    base = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.01"]).to_dict()
+    for kind in ("dumbbell", "stroke"):
+        scene = rigidfluid.scene_from_dict(base | {"body": [], "mechanism": [table[0] | {"type": kind}]})
+        names = rigidfluid.run(scene).bodies["body"]
+        assert set(names) == {"dumbbell", "dumbbell.left", "dumbbell.right"}
+    test = tmp_path / "test_dumbbell.py"
+    both = "params=[(Dumbbell, 2), (Dumbbell, 3), (Stroke, 2), (Stroke, 3)]"
+    test.write_text(
+        contract.replace("import Dumbbell,", "import Dumbbell, Stroke,")
+        .replace("params=[2, 3]", both)
+        .replace("return Dumbbell(", "return request.param[0](")
+        .replace("request.param)", "request.param[1])")
+    )
+    path = os.pathsep.join([str(folder), *filter(None, sys.path)])
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(test)]
+    done = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "passed" in done.stdout
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -23,7 +23,7 @@ from rigidfluid.core.model.types import (
 
 
 class Dry(FluidBackend):
-    """Newton–Euler without a fluid: mass_matrix · twist = load for free bodies, the given twist for controlled ones.
+    """Newton–Euler without a fluid: mass_matrix · twist = load for free motions, the given twist for controlled ones.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ class Dry(FluidBackend):
 
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
         """The twists at the new time; the fluid's wrench and powers are zero."""
-        dimension = step.pose.position.shape[1]
-        twist, nothing = _solve(step), np.zeros_like(step.load)
+        bodies, dimension = step.pose.position.shape
+        twist, nothing = _solve(step), np.zeros((bodies, step.load.shape[1]))
         return Advance(
             fluid={},
             twist=Twist(twist[:, :dimension], twist[:, dimension:]),

@@ -88,8 +88,9 @@ def check(scene: Scene) -> Report:
         If the scene cannot be built at all.
     """
     with no_exit():
-        system, detector = build_system(scene), known_parts(scene).exact_detector
-        start = initial_contacts(system.domain, detector, system.bodies, system.pose, gap_reach(system))
+        system, parts = build_system(scene), known_parts(scene)
+        scene = parts.scene
+        start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
         return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
 

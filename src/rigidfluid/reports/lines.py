@@ -9,6 +9,7 @@ from matplotlib.patches import Rectangle
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
+from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels
@@ -111,7 +112,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
     if not results.system.backend.needs_mesh or fluid.viscosity is None or fluid.density is None:
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
-    solid = np.array([body.density for body in results.scene.body])
+    solid = np.array([body.density for body in with_components(results.scene)[0].body])
     per_density = 2.0 * radius * speed / fluid.viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns
+from rigidfluid.core.output.records import Row, columns, moving
 from rigidfluid.core.output.tables import read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
@@ -90,7 +90,9 @@ def read_results(folder: Path) -> Results:
     system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension)
     energy = _table(folder, "energy", scene.dimension)
-    by_state = {name: _by_state(folder, values, len(system.bodies)) for name, values in bodies.items()}
+    by_state = {
+        name: _by_state(folder, values, len(moving(system)))[:, : len(system.bodies)] for name, values in bodies.items()
+    }
     return Results(
         summary=summary,
         scene=scene,

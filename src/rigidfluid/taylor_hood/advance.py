@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, motion_twist
+from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, inviscid
@@ -32,25 +34,26 @@ def advance(
     on_faces = pressure_load(surfaces, matrix.node_points, step.time)
     system = _system(discretisation, matrix, on_faces, fluid, step)
     if attempt is not None:
-        system = replace(system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=attempt["twist"])
-    solution = discretisation.solve(system, tolerance)
-    velocity, twist = solution.velocity, solution.twist
+        guess = motion_twist(step.kinematics, attempt["twist"])
+        system = replace(system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=guess)
+    solution, d = discretisation.solve(system, tolerance), problem.dimension
+    velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
     state = {
         "velocity": velocity,
         "velocity_previous": fluid["velocity"],
         "pressure": _centred(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": mesh.points,
-        "twist": twist,
+        "twist": flat(component_twist(step.kinematics, twist)),
         "twist_previous": fluid["twist"],
         "position": step.pose.position,
         "position_previous": fluid["position"],
     }
-    d, at = problem.dimension, matrix.node_points
+    at = matrix.node_points
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,
-        twist=Twist(twist[:, :d], twist[:, d:]),
+        twist=twist,
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
         kinetic_energy=kinetic_energy(discretisation, points, velocity),
         dissipation=dissipation(discretisation, points, velocity),
@@ -80,7 +83,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         viscosity=problem.dynamic_viscosity,
         advection=flow - density * mesh_velocity,
         flow=flow,
-        position=step.pose.position,
+        position=step.pose.position if step.kinematics is None else step.kinematics.centre,
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
     )
@@ -94,18 +97,19 @@ def _system(
     discretisation: Discretisation, matrix: CoupledMatrix, on_faces: FloatArray, fluid: FluidState, step: Step
 ) -> CoupledSystem:
     problem, surfaces = discretisation.problem, discretisation.surfaces
-    node_points, position, controlled = matrix.node_points, matrix.position, matrix.controlled
+    node_points, controlled = matrix.node_points, matrix.controlled
     _, d1, d2 = step.derivative
     e0, e1 = step.extrapolation
     density_of_load = -problem.inert_density * (d1 * fluid["velocity"] + d2 * fluid["velocity_previous"])
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
-    expected = e0 * fluid["twist"] + e1 * fluid["twist_previous"]
+    expected = motion_twist(step.kinematics, e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+    given, driven = given_twist(step)
     return CoupledSystem(
         matrix,
         load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
         body_load=step.load,
-        given=surfaces.prescribed(step.time, node_points, position, step.controlled_twist, controlled),
+        given=surfaces.prescribed(step.time, node_points, step.pose.position, flat(given), driven),
         velocity=_extrapolated(fluid, step),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),

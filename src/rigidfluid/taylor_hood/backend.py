@@ -60,9 +60,9 @@ class TaylorHoodBackend(FluidBackend):
 
     @abstractmethod
     def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
-        """The equations on this topology with these bodies ``controlled`` (n,).
+        """The equations on this topology with these motions ``controlled`` (N,).
 
-        The same ``numbering`` comes again for other bodies and after ``forget``.
+        The same ``numbering`` comes again for other motions and after ``forget``.
         """
 
     @abstractmethod
@@ -154,7 +154,7 @@ class TaylorHoodBackend(FluidBackend):
         return self._latest_matrix[1]
 
     def _for_projection(self, mesh: Mesh) -> Discretisation:
-        return self._on(mesh, np.ones(self.problem.bodies, dtype=bool))
+        return self._on(mesh, np.ones(self.problem.motions, dtype=bool))
 
     def _any(self, mesh: Mesh) -> Discretisation:
         """On this topology, whichever bodies are controlled."""

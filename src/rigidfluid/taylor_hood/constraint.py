@@ -1,7 +1,8 @@
 """The paper's operator P: every velocity on a body is its twist's, every prescribed velocity leaves the unknowns.
 
-All unknowns = P · (free velocities, twists of the free bodies, pressures) + given values, where on a body
-u = U + ω × r. The coupled system is Pᵀ K P with the bodies' own inertia added on the twists.
+All unknowns = P · (free velocities, twists of the free motions, pressures) + given values, where on all bodies that a
+motion carries u = U + ω × r, r from its centre of mass. The coupled system is Pᵀ K P with the inertia of what the
+motions carry added on the twists.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ CROSS = {
 
 
 class Constraint:
-    """Which unknowns are free on one mesh topology, and the operator P for the bodies' present places.
+    """Which unknowns are free on one mesh topology, and the operator P for the motions' present places.
 
     Parameters
     ----------
@@ -28,8 +29,8 @@ class Constraint:
         Nodes on bodies and faces.
     mesh : Mesh
         The mesh.
-    controlled : (n,) bool
-        Bodies whose twist is given.
+    controlled : (N,) bool
+        Motions whose twist is given.
     """
 
     def __init__(self, surfaces: Surfaces, mesh: Mesh, controlled: BoolArray) -> None:
@@ -47,15 +48,15 @@ class Constraint:
         """Lay out P once, with the free velocities first, the twists next and the pressures last."""
         d = self._numbering.dimension
         size = d + (1 if d == 2 else 3)
-        free_bodies = np.flatnonzero(~self.controlled)
+        free_motions = np.flatnonzero(~self.controlled)
         is_velocity = self.free_unknowns < self._numbering.nodes * d
         velocities = int(is_velocity.sum())
         self.twist_start = velocities
-        self.unknowns = len(self.free_unknowns) + size * len(free_bodies)
-        self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_bodies))
+        self.unknowns = len(self.free_unknowns) + size * len(free_motions)
+        self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_motions))
         rows, columns = [self.free_unknowns], [self.free_columns]
-        for place, body in enumerate(free_bodies):
-            nodes, start = self.surfaces.body_nodes[body], velocities + size * place
+        for place, motion in enumerate(free_motions):
+            nodes, start = self.surfaces.motion_nodes[motion], velocities + size * place
             rows += [nodes * d + a for a in range(d)] + [nodes * d + a for a, *_ in CROSS[d]]
             columns += [np.full(len(nodes), start + a) for a in range(d)]
             columns += [np.full(len(nodes), start + d + b) for _, b, *_ in CROSS[d]]
@@ -67,11 +68,11 @@ class Constraint:
         self._transposed_order = self.transposed.data.astype(np.int64) - 1
 
     def place(self, node_points: FloatArray, position: FloatArray) -> None:
-        """Fill P for nodes at ``node_points`` (nodes, d) and bodies centred at ``position`` (n, d)."""
+        """Fill P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
         d = self._numbering.dimension
         values = [np.ones(len(self.free_unknowns))]
-        for body in np.flatnonzero(~self.controlled):
-            arm = node_points[self.surfaces.body_nodes[body]] - position[body]
+        for motion in np.flatnonzero(~self.controlled):
+            arm = node_points[self.surfaces.motion_nodes[motion]] - position[motion]
             values += [np.ones(len(arm) * d), *(sign * arm[:, c] for _, _, c, sign in CROSS[d])]
         flat = np.concatenate(values)
         self.operator.data = flat[self._order]

@@ -19,7 +19,7 @@ class CoupledMatrix:
 
     ``points`` (vertices, d), ``node_points`` (nodes, d). ``advection`` a and ``flow`` c, (nodes, d), already hold the
     density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps convection from making energy.
-    ``position``, ``mass_matrix``, ``controlled`` are of all bodies, as in `Step`.
+    ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`.
     """
 
     points: FloatArray

@@ -63,8 +63,8 @@ class SparseDiscretisation:
         told to forget the last one.
     mesh : Mesh
         The topology.
-    controlled : (n,) bool
-        Bodies whose twist is given.
+    controlled : (N,) bool
+        Motions whose twist is given.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class SparseDiscretisation:
     ) -> None:
         self.problem = problem
         self.numbering = assembly.numbering
-        self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.bodies)
+        self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.bodies, problem.carrier)
         self._constraint = Constraint(self.surfaces, mesh, controlled)
         self._assembly = assembly
         self._solver = solver

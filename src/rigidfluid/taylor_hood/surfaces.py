@@ -44,15 +44,26 @@ class Surfaces:
         One per piece of the domain's boundary.
     bodies : int
         How many.
+    carrier : sequence of int, optional
+        The motion that carries each body, where not each moves by itself.
     """
 
-    def __init__(self, numbering: Numbering, mesh: Mesh, conditions: Sequence[BoundaryCondition], bodies: int) -> None:
+    def __init__(
+        self,
+        numbering: Numbering,
+        mesh: Mesh,
+        conditions: Sequence[BoundaryCondition],
+        bodies: int,
+        carrier: Sequence[int] | None = None,
+    ) -> None:
         self.numbering = numbering
         self.ranks = mesh.ranks
         d = numbering.dimension
         on = [mesh.facets[mesh.markers == surface] for surface in range(bodies + len(conditions))]
         nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
         self.body_nodes: list[IntArray] = nodes[:bodies]
+        self.motion_nodes = self.body_nodes if carrier is None else _of_motions(self.body_nodes, carrier)
+        """What moves with each motion; of one body, its nodes."""
         self.faces = [
             Face(c, on[c.surface], numbering.facet_nodes(on[c.surface]), nodes[c.surface]) for c in conditions
         ]
@@ -121,6 +132,14 @@ class Surfaces:
             arm, force = node_points[nodes] - position[body], node_force[nodes]
             found[body] = np.concatenate([force.sum(axis=0), moment(arm, force).sum(axis=0)])
         return np.asarray(self.ranks.sum(found))
+
+
+def _of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[IntArray]:
+    """The nodes on all bodies that each motion carries."""
+    return [
+        np.concatenate([nodes for nodes, by in zip(body_nodes, carrier, strict=True) if by == motion])
+        for motion in range(max(carrier) + 1)
+    ]
 
 
 def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.testing.fluid.accuracy import AccuracyContract
 from rigidfluid.testing.fluid.balances import BalancesContract
+from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.output import OutputContract
@@ -14,6 +15,7 @@ from rigidfluid.testing.fluid.transfer import TransferContract
 class FluidBackendContract(
     AccuracyContract,
     BalancesContract,
+    CarriedContract,
     CylinderContract,
     ResponsesContract,
     TransferContract,

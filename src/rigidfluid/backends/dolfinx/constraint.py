@@ -26,8 +26,8 @@ class DistributedConstraint:
         Who owns which node.
     surfaces : Surfaces
         Nodes on bodies and faces.
-    controlled : (n,) bool
-        Bodies whose twist is given.
+    controlled : (N,) bool
+        Motions whose twist is given.
     pressure_pin : int or None
         A vertex of this process where the pressure is zero.
     """
@@ -35,12 +35,12 @@ class DistributedConstraint:
     def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pressure_pin: int | None) -> None:
         self._space, ranks = space, surfaces.ranks
         d = space.numbering.dimension
-        self._free_bodies = np.flatnonzero(~controlled)
+        self._free_motions = np.flatnonzero(~controlled)
         self._velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
         self._pressure_free = space.owned_vertices != (-1 if pressure_pin is None else pressure_pin)
         self.velocities, self.pressures = int(self._velocity_free.sum()), int(self._pressure_free.sum())
         width = d + (1 if d == 2 else 3)
-        self.twists = width * len(self._free_bodies) if ranks.is_root else 0
+        self.twists = width * len(self._free_motions) if ranks.is_root else 0
         self.columns = self.velocities + self.twists + self.pressures
         counts = ranks.allgather((self.columns, self.velocities))
         self.first_column = sum(columns for columns, _ in counts[: ranks.rank])
@@ -48,7 +48,7 @@ class DistributedConstraint:
         self._first_twist = counts[0][1]
         place = np.full(space.numbering.nodes, -1)
         place[space.owned_nodes] = np.arange(len(space.owned_nodes))
-        self._body_rows = [(on := place[surfaces.body_nodes[body]])[on >= 0] for body in self._free_bodies]
+        self._motion_rows = [(on := place[surfaces.motion_nodes[motion]])[on >= 0] for motion in self._free_motions]
         self._width = width
 
     @property
@@ -62,7 +62,7 @@ class DistributedConstraint:
         return slice(self.velocities, self.velocities + self.twists)
 
     def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
-        """P for nodes at ``node_points`` (nodes, d) and bodies centred at ``position`` (n, d)."""
+        """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
         local = self._free_columns()
         blocks = [local, *self._rigid_blocks(node_points, position)]
         row, column, value = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
@@ -76,10 +76,10 @@ class DistributedConstraint:
         return made
 
     def reduced(self, velocity: FloatArray, twist: FloatArray, pressure: FloatArray) -> FloatArray:
-        """This process' unknowns from fields on nodes and vertices and all bodies' twists (n, d+k)."""
+        """This process' unknowns from fields on nodes and vertices and all motions' twists (N, d+k)."""
         space = self._space
         on_owned = velocity[space.owned_nodes].ravel()[self._velocity_free]
-        twists = twist[self._free_bodies].ravel() if self.twists else np.zeros(0)
+        twists = twist[self._free_motions].ravel() if self.twists else np.zeros(0)
         return np.concatenate([on_owned, twists, pressure[space.owned_vertices][self._pressure_free]])
 
     def _free_columns(self) -> tuple[IntArray, IntArray, FloatArray]:
@@ -90,11 +90,11 @@ class DistributedConstraint:
     def _rigid_blocks(
         self, node_points: FloatArray, position: FloatArray
     ) -> list[tuple[IntArray, IntArray, FloatArray]]:
-        """u = U + ω × r, row by row, for each free body's nodes that this process owns."""
+        """u = U + ω × r, row by row, for each free motion's nodes that this process owns."""
         d, blocks = self._space.numbering.dimension, []
-        for number, (body, at) in enumerate(zip(self._free_bodies, self._body_rows, strict=True)):
+        for number, (motion, at) in enumerate(zip(self._free_motions, self._motion_rows, strict=True)):
             first = self._first_twist + self._width * number
-            arm = node_points[self._space.owned_nodes[at]] - position[body]
+            arm = node_points[self._space.owned_nodes[at]] - position[motion]
             one, column = np.ones(len(at)), np.full(len(at), first)
             blocks += [(at * d + a, column + a, one) for a in range(d)]
             blocks += [(at * d + a, column + d + b, sign * arm[:, c]) for a, b, c, sign in CROSS[d]]

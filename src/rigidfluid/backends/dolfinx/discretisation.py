@@ -57,8 +57,8 @@ class PetscDiscretisation:
         told to forget the last one.
     mesh : Mesh
         The mesh, for its surfaces.
-    controlled : (n,) bool
-        Bodies whose twist is given.
+    controlled : (N,) bool
+        Motions whose twist is given.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class PetscDiscretisation:
     ) -> None:
         self.problem = problem
         self.numbering = topology.numbering
-        self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies)
+        self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies, problem.carrier)
         self._topology, self._solver, self._inviscid_solver = topology, solver, inviscid_solver
         pressure_pin = (
             pinned_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, LaggedLU) else None

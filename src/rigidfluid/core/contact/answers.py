@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.mechanics.motions import carriers, reaches
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -45,10 +46,10 @@ def updated_model(
         Whose matrix and mesh the answers are of.
     contacts : Contacts
         Where the bodies are in the step.
-    twist : (n, d+k) array
-        How they move there: friction depends on the flow that it meets.
+    twist : (N, d+k) array
+        How the motions that carry them go there: friction depends on the flow that it meets.
     velocities : (c,) array
-        Numbers among the components (n, d+k) of all twists.
+        Numbers among the components (N, d+k) of all motions' twists.
     known : ReducedModel or None
         An earlier one, of these velocities or others.
 
@@ -78,8 +79,8 @@ def _changes(
     system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
 ) -> FloatArray:
     """Of each velocity's body the change of tightness, or of its way in a step over its radius, (c,) [1]."""
-    reach = np.array([body.bounding_radius for body in system.bodies])
-    arm = np.where(components < system.dimension, 1.0, reach[bodies])
+    reach, farthest = reaches(system)
+    arm = np.where(components < system.dimension, 1.0, farthest[bodies])
     way = np.zeros(len(reach))
     turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
     np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))
@@ -87,15 +88,16 @@ def _changes(
 
 
 def _tightness(system: System, contacts: Contacts) -> FloatArray:
-    """1 + Σ R/(10 gap) over the contacts of each body of radius R, (n,) [1].
+    """1 + Σ R/(10 gap) over the contacts of each motion with bodies of radius R, (N,) [1].
 
     Films are as heavy as they are thin; those thicker than a tenth of the body weigh little beside it.
     """
-    reach = np.array([body.bounding_radius for body in system.bodies])
+    reach, carrier = reaches(system)[0], carriers(system)
     total = np.ones(len(reach))
     for body in (contacts.body_a, contacts.body_b):
-        on_body = body < len(reach)
-        np.add.at(total, body[on_body], _FILM * reach[body[on_body]] / contacts.gap[on_body])
+        on_body = body < len(carrier)
+        motion = carrier[body[on_body]]
+        np.add.at(total, motion, _FILM * reach[motion] / contacts.gap[on_body])
     return total
 
 
@@ -131,13 +133,14 @@ def _asked(
     assert state.mesh is not None
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
-    group, components = _groups(system, step.pose.position, bodies), np.unique(turn)
+    position = step.pose.position if step.kinematics is None else step.kinematics.centre
+    group, components = _groups(system, position, bodies), np.unique(turn)
     question = group * len(components) + np.searchsorted(components, turn)
     numbers, question = np.unique(question, return_inverse=True)
     impulses = np.zeros((len(numbers), *step.load.shape))
     impulses[question, bodies, turn] = 1.0
     response = system.backend.response(state.fluid, state.mesh, step, impulses)
-    mine = _nearest_of(step.pose.position, velocities // width, bodies, question)
+    mine = _nearest_of(position, velocities // width, bodies, question)
     by_mass, by_step = (
         np.where(mine, twists.reshape(len(numbers), -1)[question][:, velocities].T, np.nan)
         for twists in (response.by_mass, response.by_step)
@@ -150,7 +153,7 @@ def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
     each, place = np.unique(bodies, return_inverse=True)
     if len(each) <= ALONE:
         return place
-    reach = np.array([system.bodies[body].bounding_radius for body in each])
+    reach = reaches(system)[1][each]
     apart = np.linalg.norm(position[each, None] - position[None, each], axis=2)
     near = apart < FAR * (reach[:, None] + reach[None, :])
     group = np.full(len(each), -1)

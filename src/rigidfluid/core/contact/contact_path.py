@@ -15,16 +15,26 @@ from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
+from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
-from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotation_matrices
+from rigidfluid.core.mechanics.motions import (
+    accelerations,
+    body_accelerations,
+    carried_bodies,
+    carriers,
+    kinematics_now,
+    mobility,
+    weights,
+)
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
+from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.state import State
+from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
@@ -56,7 +66,7 @@ class BodyStep:
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
     them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies and
     walls [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without
-    contacts.
+    contacts. ``free``: what carries the bodies, None where each moves by itself.
     """
 
     pose: Pose
@@ -67,6 +77,22 @@ class BodyStep:
     substeps: int
     friction: float = 0.0
     coupling: Coupling | None = None
+    free: FreeMotions | None = None
+
+    @property
+    def free_pose(self) -> Pose:
+        """Of the motions that carry the bodies."""
+        return self.pose if self.free is None else self.free.pose
+
+    @property
+    def free_twist(self) -> Twist:
+        """Of the motions that carry the bodies."""
+        return self.twist if self.free is None else self.free.twist
+
+    @property
+    def free_impulse(self) -> Wrench:
+        """Of contacts, on the motions that carry the bodies."""
+        return self.impulse if self.free is None else self.free.contact
 
 
 def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
@@ -101,39 +127,39 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
     if not system.backend.needs_mesh:
         return _follow_free(system, state, start, size)
     if coupling is None or system.law is None:
-        pose = predict_pose(state.pose, state.twist, state.past_twist, size, state.past_step)
-        return BodyStep(pose, state.twist, nothing(pose), 0.0, 0.0, 1)
-    return _follow_coupled(system, system.law, state, size, coupling)
+        pose = predict_pose(state.free_pose, state.free_twist, state.past_twist, size, state.past_step)
+        return _undisturbed(system, pose, state.free_twist, start + size)
+    return _follow_coupled(system, system.law, state, start, size, coupling)
 
 
-def first_step_again(state: State, end_twist: Twist, size: float) -> BodyStep:
-    """The first step of bodies that touch nothing, once more: by the mean of the twists at its start and its end."""
-    pose = start_pose(state.pose, state.twist, end_twist, size)
-    return BodyStep(pose, end_twist, nothing(pose), 0.0, 0.0, 1)
+def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:
+    """The first step of bodies that touch nothing, once more: by the mean of the motions' twists at its start and its
+    ``end`` [time]."""
+    pose = start_pose(state.free_pose, state.free_twist, end_twist, size)
+    return _undisturbed(system, pose, end_twist, end)
 
 
-def near_contacts(system: System, state: State, size: float) -> Contacts:
-    """Contacts in range, or that may come into it in a step of this ``size``: at twice the speed of their surfaces
-    now, and all that acceleration can add."""
+def _undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodyStep:
+    """Along the way of the motions alone."""
+    bodies = carried_bodies(system, pose, twist, end)
+    free = None if system.mechanisms is None else FreeMotions(pose, twist, nothing(pose), nothing(pose))
+    return BodyStep(*bodies, nothing(bodies[0]), 0.0, 0.0, 1, free=free)
+
+
+def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
+    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: at twice the speed of
+    their surfaces now, and all that acceleration can add."""
     contacts = state.contacts
     if system.law is None or len(contacts) == 0:
         return select(contacts, np.zeros(len(contacts), dtype=bool))
     speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
-    pull = np.append(np.linalg.norm(_accelerations(system, state), axis=1), 0.0)
+    pull = np.append(np.linalg.norm(body_accelerations(system, state, start, size), axis=1), 0.0)
     both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
 def _follow_free(system: System, state: State, start: float, size: float) -> BodyStep:
-    movement = DryDynamics(
-        state.pose,
-        state.twist,
-        system.mass,
-        system.inertia,
-        system.weight,
-        system.controlled,
-        lambda elapsed: system.controlled_twist(start + elapsed),
-    )
+    movement = _dry(system, state, start)
     if system.law is None:
         return _coast(movement, size)
     if system.implicit:
@@ -142,10 +168,30 @@ def _follow_free(system: System, state: State, start: float, size: float) -> Bod
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
 
-def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, coupling: Coupling) -> BodyStep:
-    movement, near = _coupled(system, state, coupling), near_contacts(system, state, size)
+def _dry(system: System, state: State, start: float) -> BodyDynamics:
+    now, mechanisms, weight = (state.free_pose, state.free_twist), system.mechanisms, system.weight
+
+    def given(elapsed: float) -> FloatArray:
+        return system.controlled_twist(start + elapsed)
+
+    if mechanisms is None:
+        return DryDynamics(*now, system.mass, system.inertia, weight, system.controlled, given)
+    carried, controlled = weights(system, kinematics_now(system, state)).force, mechanisms.controlled
+    if mechanisms.driven:
+        return ComponentDynamics(DrivenDynamics(*now, mechanisms, carried, start, given), mechanisms, start, weight)
+    rigid = DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
+    return ComponentDynamics(rigid, mechanisms, start, weight)
+
+
+def _follow_coupled(
+    system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
+) -> BodyStep:
+    motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
+    movement: BodyDynamics = motions
+    if system.mechanisms is not None:
+        movement = ComponentDynamics(motions, system.mechanisms, start)
     if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
-        movement.vary_load(size)
+        motions.vary_load(size)
     if system.implicit:
         path = _cross_coupled(system, law, movement, near, size)
     else:
@@ -160,7 +206,7 @@ def _follow_coupled(system: System, law: ForceLaw, state: State, size: float, co
     return replace(path, coupling=coupling)
 
 
-def _cross_free(system: System, law: ForceLaw, movement: DryDynamics, size: float) -> BodyStep:
+def _cross_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> BodyStep:
     """One implicit step; contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
     reach = law.range + 4.0 * _fastest(system, movement, size) * size
     contacts = TrackedPairs(system, movement.pose, reach)
@@ -169,7 +215,7 @@ def _cross_free(system: System, law: ForceLaw, movement: DryDynamics, size: floa
     return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
 
 
-def _cross_coupled(system: System, law: ForceLaw, movement: CoupledDynamics, near: Contacts, size: float) -> BodyStep:
+def _cross_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
     """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
 
     In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
@@ -190,7 +236,7 @@ def _cross_coupled(system: System, law: ForceLaw, movement: CoupledDynamics, nea
         path, movement = _crossed(system, law, movement, start, contacts_at, part)
         impulse = _added(impulse, path.impulse, 1.0)
         lost, held = lost + path.dissipated, held + path.held
-    return BodyStep(movement.pose, movement.twist, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
+    return _arrived(movement, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
 
 
 def _crossed(
@@ -204,12 +250,13 @@ def _crossed(
     """One implicit step, and the movement at its end."""
     end, wrench, lost, driven = implicit_contact_step(law, movement, start, contacts_at, size, system.wall_velocity)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
+    before, after = _given_twist(system, movement), _given_twist(system, end)
     mean = Twist(
-        0.5 * (movement.twist.velocity + end.twist.velocity),
-        0.5 * (movement.twist.angular_velocity + end.twist.angular_velocity),
+        0.5 * (before.velocity + after.velocity),
+        0.5 * (before.angular_velocity + after.angular_velocity),
     )
-    held = driven - float(power(impulse, mean)[system.controlled].sum())
-    return BodyStep(end.pose, end.twist, impulse, lost, held, 1), end
+    held = driven - float(power(impulse, mean)[_driven(system)].sum())
+    return _arrived(end, impulse, lost, held, 1), end
 
 
 def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
@@ -236,30 +283,9 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
 
 def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamics:
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
-    linear, angular = _mobility(system, state)
-    rate = _accelerations(system, state)
-    return CoupledDynamics(state.pose, state.twist, rate, linear, angular, coupling)
-
-
-def _accelerations(system: System, state: State) -> FloatArray:
-    """(n, d+k): those of the latest step without what its contacts gave; at the start what weight gives."""
-    linear, angular = _mobility(system, state)
-    if state.past is None:
-        fall = np.einsum("nij,nj->ni", linear, system.weight)
-        return np.concatenate([fall, np.zeros(angular.shape[:2])], axis=1)
-    wrench = state.contact_wrench
-    by_contact = Twist(np.einsum("nij,nj->ni", linear, wrench.force), np.einsum("nij,nj->ni", angular, wrench.torque))
-    return (flat(state.twist) - flat(state.past.twist)) / state.past.step - flat(by_contact)
-
-
-def _mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
-    """Inverse mass (n, d, d) of bodies with their added mass and inverse inertia (n, k, k), in the lab frame."""
-    orientation, eye = state.pose.orientation, np.eye(system.dimension)
-    rotation = rotation_matrices(orientation)
-    own = system.mass[:, None, None] * eye
-    mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
-    free = ~system.controlled[:, None, None]
-    return free * np.linalg.inv(mass), free * inverse_lab_inertia(system.inertia, orientation)
+    linear, angular = mobility(system, state)
+    rate = accelerations(system, state)
+    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling)
 
 
 def _coast(movement: BodyDynamics, size: float) -> BodyStep:
@@ -267,7 +293,15 @@ def _coast(movement: BodyDynamics, size: float) -> BodyStep:
     movement.kick(none, 0.5 * size)
     movement.drift(size)
     movement.kick(none, 0.5 * size)
-    return BodyStep(movement.pose, movement.twist, none, 0.0, 0.0, 1)
+    return _arrived(movement, none, 0.0, 0.0, 1)
+
+
+def _arrived(
+    movement: BodyDynamics, impulse: Wrench, dissipated: float, held: float, count: int, friction: float = 0.0
+) -> BodyStep:
+    """At the end of a step, or of a part of it."""
+    end = movement.pose, movement.twist, impulse
+    return BodyStep(*end, dissipated, held, count, friction, free=movement.free)
 
 
 def _resolve(
@@ -306,7 +340,7 @@ def _resolve(
         left = left - part if left - part > ROUNDING * size else 0.0
         if count == MOST_SUBSTEPS and left > 0.0:
             raise _too_stiff(system, contacts, part)
-    return BodyStep(movement.pose, movement.twist, impulse, dissipated, held, count)
+    return _arrived(movement, impulse, dissipated, held, count)
 
 
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
@@ -319,7 +353,12 @@ def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynam
 
 
 def _surfaces(system: System) -> Reach:
-    return Reach(arms(system), system.leverage)
+    """Balls turn in their place, but not as components of a mechanism."""
+    if system.mechanisms is None:
+        return Reach(arms(system), system.leverage)
+    radii = np.array([body.bounding_radius for body in system.bodies])
+    alone = np.bincount(carriers(system))[carriers(system)] == 1
+    return Reach(np.where(alone, arms(system), radii), system.leverage)
 
 
 class _Push(NamedTuple):
@@ -340,11 +379,26 @@ def _push(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynam
         damping = law.damping(contacts, motion)
         force, loss = force + damping, -float(np.sum(damping * motion.velocity))
     wrench, held = contact_wrench(contacts, force, movement.pose), 0.0
-    if system.controlled.any():
-        held = -float(power(wrench, movement.twist)[system.controlled].sum())
+    driven = _driven(system)
+    if driven.any():
+        held = -float(power(wrench, _given_twist(system, movement))[driven].sum())
     if system.wall_velocity is not None:
         held += float(np.sum(force * system.wall_velocity[contacts.body_b]))
     return _Push(wrench, loss, held)
+
+
+def _driven(system: System) -> BoolArray:
+    """Which bodies are driven, at all or relatively to others."""
+    if system.mechanisms is None or not system.mechanisms.driven:
+        return system.controlled
+    return np.ones_like(system.controlled)
+
+
+def _given_twist(system: System, movement: BodyDynamics) -> Twist:
+    """Of the bodies' twists what no free motion has a share in, where they are driven."""
+    if isinstance(movement, ComponentDynamics):
+        return movement.given_twist(system.controlled_motions)
+    return movement.twist
 
 
 def _refuse_overlap(system: System, contacts: Contacts) -> None:

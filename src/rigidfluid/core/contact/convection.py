@@ -6,6 +6,7 @@ import numpy as np
 
 from rigidfluid.core.contact.answers import CHANGED
 from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.mechanics.motions import reaches, round_motions
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
@@ -36,9 +37,10 @@ def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatAr
     if coupling is None or system.backend.problem is None or not system.backend.problem.inertia:
         return none
     change = _on_the_mesh(system, state, path, step) - _extrapolated(state, step)
-    reach = np.array([body.bounding_radius for body in system.bodies])[:, None]
+    reach, farthest = reaches(system)
     way = np.abs(change) / step.derivative[0]
-    way[:, : system.dimension] /= reach
+    way[:, : system.dimension] /= reach[:, None]
+    way[:, system.dimension :] *= (farthest / reach)[:, None]
     velocities = coupling.model.velocities
     if not np.any(way.flat[velocities] > CHANGED):
         return none
@@ -49,11 +51,11 @@ def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatAr
 def _on_the_mesh(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:
     """Twists (n, d+k) by the poses, differenced as the mesh's velocity is; balls turn without it, as on their path."""
     d0, _, d2 = step.derivative
-    found = d0 * _way(state.pose, path.pose)
+    found = d0 * _way(state.free_pose, path.free_pose)
     if state.past is not None:
-        found = found - d2 * _way(state.past.pose, state.pose)
-    is_ball = np.array([body.radius is not None for body in system.bodies])
-    found[is_ball, system.dimension :] = path.twist.angular_velocity[is_ball]
+        found = found - d2 * _way(state.past.pose, state.free_pose)
+    is_ball = round_motions(system)
+    found[is_ball, system.dimension :] = path.free_twist.angular_velocity[is_ball]
     return np.asarray(found)
 
 
@@ -66,4 +68,4 @@ def _way(start: Pose, end: Pose) -> FloatArray:
 def _extrapolated(state: State, step: Step) -> FloatArray:
     """Twists (n, d+k) at the end of the step, from those before."""
     e0, e1 = step.extrapolation
-    return np.asarray(e0 * flat(state.twist) + e1 * flat(state.twist if state.past is None else state.past.twist))
+    return np.asarray(e0 * flat(state.free_twist) + e1 * flat(state.past_twist or state.free_twist))

@@ -12,7 +12,8 @@ from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.state import FreeMotions
+from rigidfluid.core.model.types import FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 
 class CoupledDynamics:
@@ -29,6 +30,9 @@ class CoupledDynamics:
     coupling : Coupling
         The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
     """
+
+    free: FreeMotions | None = None
+    kinematics: Kinematics | None = None
 
     def __init__(
         self,
@@ -90,7 +94,11 @@ class CoupledDynamics:
         """|A|, or |M⁻¹Φ|, whatever the time."""
         return np.asarray(np.linalg.norm(self._rate[:, : self.pose.position.shape[1]], axis=1))
 
-    def kick(self, wrench: Wrench, time: float) -> None:
+    def angular_pull(self, time: float) -> FloatArray:
+        """As `pull`, of the rotation."""
+        return np.asarray(np.linalg.norm(self._rate[:, self.pose.position.shape[1] :], axis=1))
+
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the velocities by all that acts for so long."""
         d, model = wrench.force.shape[1], self._model
         load, self._time = self._load + (self._time + 0.5 * time) * self._growth, self._time + time

@@ -7,6 +7,7 @@ import numpy as np
 from rigidfluid.core.contact.answers import updated_model
 from rigidfluid.core.contact.contact_path import BodyStep, near_contacts
 from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.motions import carriers, kinematics_now, round_motions, weights
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
@@ -40,13 +41,13 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     """
     if not system.backend.needs_mesh:
         return None
-    near = near_contacts(system, state, size)
+    near = near_contacts(system, state, time, size)
     if len(near) == 0:
         return None
     velocities = _velocities(system, near)
-    step = step_to(system, state, time + size, size, state.pose, nothing(state.pose), None)
+    step = step_to(system, state, time + size, size, state.free_pose, nothing(state.free_pose), None)
     known = None if state.coupling is None else state.coupling.model
-    model = updated_model(system, state, step, state.contacts, flat(state.twist), velocities, known)
+    model = updated_model(system, state, step, state.contacts, flat(state.free_twist), velocities, known)
     before = _load_before(state, model)
     return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
 
@@ -72,14 +73,14 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodySte
     """
     assert path.coupling is not None
     used = path.coupling
-    twist, velocities = flat(candidate.twist), used.model.velocities
+    twist, velocities = flat(candidate.free_twist), used.model.velocities
     model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
-    past = state.past_twist or state.twist
-    twists = tuple(_of(model, flat(twist)) for twist in (candidate.twist, state.twist, past))
-    before = flat(state.contact_wrench) * (state.past_step or 0.0)
+    past = state.past_twist or state.free_twist
+    twists = tuple(_of(model, flat(twist)) for twist in (candidate.free_twist, state.free_twist, past))
+    before = flat(state.free_contact) * (state.past_step or 0.0)
     impulses = _of(model, step.impulse), _of(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
-    missed = _of(model, flat(path.twist)) - twists[0]
+    missed = _of(model, flat(path.free_twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
 
@@ -110,9 +111,9 @@ def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> 
     used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
     if len(model.velocities) == 0:
         return True
-    impulse = _of(model, flat(path.impulse))
+    impulse = _of(model, flat(path.free_impulse))
     gained, d0 = model.mobility @ impulse, derivative_weights(size, state.past_step)[0]
-    before, after = (_of(model, flat(twist)) for twist in (state.twist, candidate.twist))
+    before, after = (_of(model, flat(twist)) for twist in (state.free_twist, candidate.free_twist))
     by_load = size * (model.mobility @ found.load - used.model.mobility @ used.load)
     by_answer = gained - used.model.mobility @ impulse
     missed = model.answer(d0, found.correction - used.correction) / d0
@@ -122,15 +123,15 @@ def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> 
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:
-    """Numbers of the velocity components of free bodies that contacts can change: balls turn by friction alone."""
-    count, d = len(system.bodies), system.dimension
+    """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone."""
+    count, d, carrier = len(system.bodies), system.dimension, carriers(system)
     width = d + (1 if d == 2 else 3)
-    touching = np.zeros(count, dtype=bool)
-    touching[near.body_a] = True
-    touching[near.body_b[near.body_b < count]] = True
-    moves = np.repeat((touching & ~system.controlled)[:, None], width, axis=1)
+    touching = np.zeros(len(system.controlled_motions), dtype=bool)
+    touching[carrier[near.body_a]] = True
+    touching[carrier[near.body_b[near.body_b < count]]] = True
+    moves = np.repeat((touching & ~system.controlled_motions)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
-        moves[np.array([body.radius is not None for body in system.bodies]), d:] = False
+        moves[round_motions(system), d:] = False
     return np.flatnonzero(moves)
 
 
@@ -141,7 +142,7 @@ def _load_before(state: State, model: ReducedModel) -> FloatArray:
         return before
     latest = state.coupling.model.velocities
     _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
-    change = flat(state.twist) - flat(state.past.twist)
+    change = flat(state.free_twist) - flat(state.past.twist)
     slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
     before[here] = (state.coupling.load - slowed)[there]
     return before
@@ -149,10 +150,9 @@ def _load_before(state: State, model: ReducedModel) -> FloatArray:
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
     if state.past is None:
-        weight = np.concatenate([system.weight, np.zeros_like(state.twist.angular_velocity)], axis=1)
-        return _of(model, weight)
-    change = _of(model, flat(state.twist) - flat(state.past.twist))
-    impulse = _of(model, flat(state.contact_wrench)) * state.past.step
+        return _of(model, flat(weights(system, kinematics_now(system, state))))
+    change = _of(model, flat(state.free_twist) - flat(state.past.twist))
+    impulse = _of(model, flat(state.free_contact)) * state.past.step
     return expected_load(model, change, impulse, state.past.step)
 
 

@@ -14,7 +14,7 @@ from rigidfluid.core.contact.substep import relative_motion
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray, Motion, Pose, Wrench
+from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Wrench
 from rigidfluid.errors import StepRejected
 
 MOST_UPDATES = 40
@@ -100,8 +100,8 @@ def implicit_contact_step(
         spring = (force + dampers.across * (gap + offset)) / look.scale
         push = force[:, None] * look.middle.normal + dampers.along
         before = look
-        wrench = contact_wrench(look.middle, push, look.pose)
-        look = _evaluate(law, movement, start, contacts_at, wrench, size, wall_velocity)
+        acting = contact_wrench(look.middle, push, look.pose)
+        look = _evaluate(law, movement, start, contacts_at, acting, look.place, size, wall_velocity)
         used = dampers
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, look, size)
@@ -118,12 +118,14 @@ def implicit_contact_step(
 class _Iterate(NamedTuple, Generic[M]):
     """Where some forces take the bodies.
 
-    ``movement`` at the end; ``pose``, contacts and mean motion in mid-step; ``way`` n·Δx and ``gap`` at the end (m,)
-    [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force]; the ``wrench``.
+    ``movement`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
+    ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force];
+    the ``wrench``.
     """
 
     movement: M
     pose: Pose
+    place: Kinematics | None
     middle: Contacts
     motion: Motion
     way: FloatArray
@@ -147,7 +149,8 @@ def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: Float
     motion = relative_motion(start, trial, wall_velocity)
     way = size * _normal_part(motion.velocity, start)
     scale, compliance = np.ones(len(start)), _compliance(start, movement, size)
-    return _Iterate(trial, movement.pose, start, motion, way, start.gap + way, scale, compliance, none)
+    place = movement.pose, movement.kinematics
+    return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
 
 
 def _evaluate(
@@ -156,23 +159,24 @@ def _evaluate(
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     wrench: Wrench,
+    place: Kinematics | None,
     size: float,
     wall_velocity: FloatArray | None,
 ) -> _Iterate[M]:
     trial = movement.copied()
-    trial.kick(wrench, 0.5 * size)
+    trial.kick(wrench, 0.5 * size, place)
     trial.drift(0.5 * size)
-    pose, middle = trial.pose, contacts_at(trial.pose)
+    pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
-    trial.kick(wrench, 0.5 * size)
+    trial.kick(wrench, 0.5 * size, place)
     gap = contacts_at(trial.pose).gap
     if np.any(gap <= 0.0):
         raise _rejected("an overlap where they take the bodies")
     way = size * _normal_part(motion.velocity, middle)
     moves = np.abs(way) > _STILL * law.range
     scale = np.divide(gap - start.gap, way, out=np.ones_like(way), where=moves)
-    return _Iterate(trial, pose, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
+    return _Iterate(trial, pose, kinematics, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
 
 
 def _compliance(contacts: Contacts, movement: BodyDynamics, size: float) -> Any:

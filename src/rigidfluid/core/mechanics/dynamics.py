@@ -12,7 +12,8 @@ from scipy import sparse
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.state import FreeMotions
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 
@@ -21,6 +22,14 @@ class BodyDynamics(Protocol):
     """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
 
     pose: Pose
+
+    @property
+    def free(self) -> FreeMotions | None:
+        """What carries them, None where each moves by itself."""
+
+    @property
+    def kinematics(self) -> Kinematics | None:
+        """How motions carry them now, None where each moves by itself."""
 
     @property
     def twist(self) -> Twist:
@@ -41,14 +50,21 @@ class BodyDynamics(Protocol):
         """M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for bodies that are driven: times a wrench that lasts for
         ``time``, and the time, it is what that adds to the velocities [1/mass | 1/(mass·length²)]."""
 
+    @property
+    def friction_loss(self) -> float:
+        """What a fluid's friction took that its own solutions do not see [energy]."""
+
     def copied(self) -> Self:
         """The same motion, to be tried out."""
 
     def pull(self, time: float) -> FloatArray:
         """Greatest acceleration of each body in so much time from now by all but contacts, (n,) [length/time²]."""
 
-    def kick(self, wrench: Wrench, time: float) -> None:
-        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``."""
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
+        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``.
+
+        ``at``: how motions carried the bodies where the wrench is of, if that is not here.
+        """
 
     def drift(self, time: float) -> None:
         """Change the pose as the twist does in ``time``."""
@@ -72,6 +88,10 @@ class DryDynamics:
     controlled_twist : callable
         From a time since the start to the twist (n, d+k) of driven bodies.
     """
+
+    free: FreeMotions | None = None
+    kinematics: Kinematics | None = None
+    friction_loss: float = 0.0
 
     def __init__(
         self,
@@ -130,7 +150,11 @@ class DryDynamics:
         change = np.max([np.linalg.norm((given - now)[:, :d], axis=1) for given in later], axis=0)
         return np.asarray(np.where(self._free[:, 0], fall, change / time))
 
-    def kick(self, wrench: Wrench, time: float) -> None:
+    def angular_pull(self, time: float) -> FloatArray:
+        """None: what turns freely keeps its angular momentum."""
+        return np.zeros(len(self._mass))
+
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change momenta by F + W and T for so long."""
         state = self._velocity, self._momentum
         _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)

@@ -2,41 +2,97 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
+from rigidfluid.core.mechanics.motions import weights
+from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Step, Wrench
+from rigidfluid.core.model.system import Mechanisms, System
+from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step, Twist, Wrench
 
 
 def step_to(
     system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
 ) -> Step:
-    """The step of this ``size`` that ends at ``time`` with the bodies at ``pose``, after ``impulse`` by contacts."""
+    """The step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
     derivative = derivative_weights(size, state.past_step)
-    poses, twists = [state.pose], [state.twist]
-    if state.past is not None:
-        poses.append(state.past.pose)
-        twists.append(state.past.twist)
-    pushed = _mean_push(state, impulse, derivative)
-    wrench = Wrench(pushed.force + system.weight, pushed.torque)
-    mass_matrix, load = newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
+    mechanisms = system.mechanisms
+    kinematics = None if mechanisms is None else mechanisms.at(pose, time)
+    mass_matrix, load = _newton_euler(system, state, time, size, pose, impulse, derivative, kinematics)
     return Step(
         time=time,
         derivative=derivative,
         extrapolation=extrapolation_weights(size, state.past_step),
-        pose=pose,
+        pose=pose if mechanisms is None else mechanisms.poses(pose, time),
         points=None if mesh is None else mesh.points,
         mass_matrix=mass_matrix,
         load=load,
-        controlled=system.controlled,
+        controlled=system.controlled_motions,
         controlled_twist=system.controlled_twist(time),
         impulse=flat(impulse),
         load_scale=_load_scale(system, impulse, derivative),
         turning=np.zeros_like(load),
+        kinematics=kinematics,
     )
+
+
+class _Moment(NamedTuple):
+    """The motions at an earlier time."""
+
+    time: float
+    pose: Pose
+    twist: Twist
+
+
+def _newton_euler(
+    system: System,
+    state: State,
+    time: float,
+    size: float,
+    pose: Pose,
+    impulse: Wrench,
+    derivative: FloatArray,
+    kinematics: Kinematics | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Mass matrix and load of the motions, of all that they carry."""
+    past = [_Moment(time - size, state.free_pose, state.free_twist)]
+    if state.past is not None:
+        past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
+    poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
+    pushed = mean_push(impulse, state.free_contact, state.past_step, derivative)
+    mechanisms = system.mechanisms
+    if mechanisms is None:
+        wrench = Wrench(pushed.force + system.weight, pushed.torque)
+        return newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
+    weight = weights(system, kinematics)
+    wrench = Wrench(pushed.force + weight.force, pushed.torque + weight.torque)
+    inertia = mechanisms.inertia(time)
+    mass_matrix, load = newton_euler(mechanisms.mass, inertia, pose, poses, twists, derivative, wrench)
+    if mechanisms.driven:
+        load[:, system.dimension :] -= _relative_momentum_rate(mechanisms, inertia, time, pose, past, derivative)
+    return mass_matrix, load
+
+
+def _relative_momentum_rate(
+    mechanisms: Mechanisms,
+    inertia: FloatArray,
+    time: float,
+    pose: Pose,
+    past: Sequence[_Moment],
+    derivative: FloatArray,
+) -> FloatArray:
+    """d/dt of R h, and of R (I - I_new) Rᵀ ω: what a relative motion adds to the angular momentum (N, k)."""
+    rate = derivative[0] * turned(pose.orientation, mechanisms.spin(time))
+    for weight, (then, there, twist) in zip(derivative[1:], past, strict=False):
+        change = lab_inertia(mechanisms.inertia(then) - inertia, there.orientation)
+        extra = np.einsum("nij,nj->ni", change, twist.angular_velocity)
+        rate = rate + weight * (extra + turned(there.orientation, mechanisms.spin(then)))
+    return np.asarray(rate)
 
 
 def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
@@ -44,18 +100,33 @@ def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> floa
 
     What remains of them is rounding, and no residual can be made small beside it.
     """
-    free = ~system.controlled
-    pushed = derivative[0] * np.linalg.norm(impulse.force[free])
-    return float(0.01 * max(np.linalg.norm(system.weight[free]), pushed))
+    pushed = derivative[0] * np.linalg.norm(impulse.force[~system.controlled_motions])
+    return float(0.01 * max(np.linalg.norm(system.weight[~system.controlled]), pushed))
 
 
-def _mean_push(state: State, impulse: Wrench, derivative: FloatArray) -> Wrench:
+def mean_push(impulse: Wrench, latest: Wrench, past_step: float | None, derivative: FloatArray) -> Wrench:
     """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
 
     It is what differencing momentum less the impulses received so far comes to: an impact shorter than the step changes
     the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
+
+    Parameters
+    ----------
+    impulse : Wrench
+        Jⁿ⁺¹ [force·time | force·length·time].
+    latest : Wrench
+        The mean wrench in the step before.
+    past_step : float or None
+        How long that was [time].
+    derivative : (3,) array
+        d₀, d₁, d₂ [1/time].
+
+    Returns
+    -------
+    Wrench
+        As many rows as both.
     """
-    latest, before = state.contact_wrench, state.past_step or 0.0
+    before = past_step or 0.0
     return Wrench(
         derivative[0] * impulse.force - derivative[2] * before * latest.force,
         derivative[0] * impulse.torque - derivative[2] * before * latest.torque,

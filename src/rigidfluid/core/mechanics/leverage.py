@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
 
 ELLIPSOIDS = 5.0
 """No homogeneous ellipsoid has more, however slender."""
@@ -29,9 +30,34 @@ def most_leverage(body: Body) -> float:
         return 0.0
     if body.semi_axes is not None:
         return ELLIPSOIDS
-    points = body.sample_surface(_SAMPLES)
-    points = points * (body.bounding_radius / np.linalg.norm(points, axis=1).max())  # samples may miss the farthest one
     if body.dimension == 2:
         return float(body.bounding_radius**2 / body.unit_inertia[0, 0])
+    return leverage_at(surface_points(body), body.unit_inertia)
+
+
+def surface_points(body: Body) -> FloatArray:
+    """Points (N, d) spread over the surface, as far out as it reaches [length]."""
+    points = body.sample_surface(_SAMPLES)
+    farthest = np.linalg.norm(points, axis=1).max()
+    return np.asarray(points * (body.bounding_radius / farthest))  # samples may miss the farthest one
+
+
+def leverage_at(points: FloatArray, unit_inertia: FloatArray) -> float:
+    """The most at any of some points.
+
+    Parameters
+    ----------
+    points : (N, d) array
+        From the centre of mass [length].
+    unit_inertia : (k, k) array
+        Of what turns, in the same frame [length²].
+
+    Returns
+    -------
+    float
+        As in `most_leverage` [1].
+    """
+    if points.shape[1] == 2:
+        return float(np.max(np.sum(points**2, axis=1)) / unit_inertia[0, 0])
     across = np.cross(points[:, None, :], np.eye(3)[None])  # rows r × e
-    return float(np.linalg.eigvalsh(across @ np.linalg.inv(body.unit_inertia) @ np.swapaxes(across, 1, 2)).max())
+    return float(np.linalg.eigvalsh(across @ np.linalg.inv(unit_inertia) @ np.swapaxes(across, 1, 2)).max())

@@ -52,6 +52,24 @@ def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
     return np.asarray(product / np.linalg.norm(product, axis=-1, keepdims=True))
 
 
+def compose(orientation: FloatArray, relative: FloatArray) -> FloatArray:
+    """Orientation of what is turned by ``relative`` in a frame that is turned by ``orientation``, R_new = R R_relative.
+
+    Parameters
+    ----------
+    orientation, relative : (n, q) array
+        Orientations [rad | 1].
+
+    Returns
+    -------
+    (n, q) array
+        Orientation in the lab frame [rad | 1].
+    """
+    if orientation.shape[-1] == 1:
+        return orientation + relative
+    return _quaternion_product(orientation, relative)
+
+
 def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
     """Angle of the rotation that leads from one orientation to another.
 
@@ -150,6 +168,13 @@ def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
         return inertia
     rotation = rotation_matrices(orientation)
     return np.asarray(rotation @ inertia @ np.swapaxes(rotation, -1, -2))
+
+
+def turned(orientation: FloatArray, spin: FloatArray) -> FloatArray:
+    """Rotational quantities (n, k) of the bodies' frames in the lab frame, R v; in 2D the scalar does not change."""
+    if orientation.shape[-1] == 1:
+        return spin
+    return np.asarray(np.einsum("nij,nj->ni", rotation_matrices(orientation), spin))
 
 
 def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:

@@ -151,8 +151,29 @@ def newton_euler(
     """
     load = np.concatenate([wrench.force, wrench.torque], axis=1)
     for weight, old_pose, old_twist in zip(weights[1:], poses, twists, strict=False):
-        load = load - weight * _momentum(mass, inertia, old_pose, old_twist)
+        load = load - weight * momentum(mass, inertia, old_pose, old_twist)
     return weights[0] * _generalised_mass(mass, inertia, pose), load
+
+
+def momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
+    """Of each body, (m U, R I Rᵀ ω).
+
+    Parameters
+    ----------
+    mass : (n,) array
+        Masses [mass].
+    inertia : (n, k, k) array
+        Inertia in each body's frame [mass·length²].
+    pose, twist : Pose, Twist
+        Of the bodies.
+
+    Returns
+    -------
+    (n, d+k) array
+        [mass·length/time | mass·length²/time].
+    """
+    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
+    return np.concatenate([mass[:, None] * twist.velocity, spin], axis=1)
 
 
 def _mean(twist: Twist, previous: Twist, ratio: float) -> Twist:
@@ -161,11 +182,6 @@ def _mean(twist: Twist, previous: Twist, ratio: float) -> Twist:
         new * twist.velocity + old * previous.velocity,
         new * twist.angular_velocity + old * previous.angular_velocity,
     )
-
-
-def _momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
-    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
-    return np.concatenate([mass[:, None] * twist.velocity, spin], axis=1)
 
 
 def _generalised_mass(mass: FloatArray, inertia: FloatArray, pose: Pose) -> FloatArray:

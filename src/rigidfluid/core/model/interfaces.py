@@ -1,4 +1,4 @@
-"""What a fluid backend, a detector, a force law and a body type must do; the fifth replaceable part is in `domain`.
+"""What a fluid backend, a detector, a force law, a body type and a mechanism must do; `domain` has what a domain must.
 
 Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
 keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -44,7 +45,7 @@ class PartOptions(BaseModel):
 
 
 class Part(ABC):
-    """What the five kinds have in common."""
+    """What all kinds have in common."""
 
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
@@ -104,6 +105,49 @@ class Body(Surface, Part):
     @abstractmethod
     def cad_shape(self) -> Any:
         """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """A rigid body in a mechanism: its ``name`` there, its ``shape`` and its ``density`` [mass/length^d]."""
+
+    name: str
+    shape: Body
+    density: float
+
+
+class Mechanism(Part):
+    """Several rigid bodies that move as one: freely together, and relatively as a function of time or not at all.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The type's own keys of the ``[[mechanism]]`` table.
+    dimension : int
+        2 or 3.
+    """
+
+    driven: ClassVar[bool] = False
+    """Whether the placement changes with time; else it is asked for once."""
+
+    def __init__(self, options: PartOptions, dimension: int) -> None:
+        self.options = options
+        self.dimension = dimension
+
+    @property
+    @abstractmethod
+    def components(self) -> Sequence[Component]:
+        """What it consists of, m of them; the type of each shape is one that a scene can name."""
+
+    @abstractmethod
+    def placement(self, time: float) -> Pose:
+        """Where the components are in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
+        orientations [rad | 1]."""
+
+    def rate(self, time: float) -> Twist:
+        """How the placement changes, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
+        m, k = len(self.components), 1 if self.dimension == 2 else 3
+        return Twist(np.zeros((m, self.dimension)), np.zeros((m, k)))
 
 
 class Detector(Part):
@@ -245,7 +289,7 @@ class FluidBackend(Part):
 
     @abstractmethod
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        """How many unknowns one step solves for on this mesh, with these bodies' twists given."""
+        """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
 
     @abstractmethod
     def forget(self) -> None:

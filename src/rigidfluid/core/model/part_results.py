@@ -30,16 +30,17 @@ def refuse_lost_pose(names: Sequence[str], pose: Pose) -> None:
     _refuse_lost_bodies(names, "orientation", pose.orientation, "body")
 
 
-def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose) -> None:
-    """Raise an error unless a backend's result has a row of finite numbers for each body, and finite energies."""
+def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, motions: int) -> None:
+    """Raise an error unless a backend's result has a row of finite numbers for each body, or each of the ``motions``
+    that carry them, and finite energies."""
     key, (count, dimension) = "fluid.backend", pose.position.shape
-    turning = (count, 1 if dimension == 2 else 3)
+    k = 1 if dimension == 2 else 3
     twist, wrench = advance.twist, advance.hydrodynamic_wrench
     for quantity, values, shape in (
-        ("velocity", twist.velocity, pose.position.shape),
-        ("angular velocity", twist.angular_velocity, turning),
-        ("force", wrench.force, pose.position.shape),
-        ("torque", wrench.torque, turning),
+        ("velocity", twist.velocity, (motions, dimension)),
+        ("angular velocity", twist.angular_velocity, (motions, k)),
+        ("force", wrench.force, (count, dimension)),
+        ("torque", wrench.torque, (count, k)),
     ):
         refuse_shape(key, quantity, values, shape, "body")
         _refuse_lost_bodies(names, quantity, values, key)

@@ -22,8 +22,19 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class FreeMotions:
+    """The N motions that carry the bodies: their ``pose``, of the centres of mass, and ``twist``; ``contact``: the
+    wrench of their contacts in a state, the impulse at the end of a path; ``hydrodynamic``: the fluid's wrench."""
+
+    pose: Pose
+    twist: Twist
+    contact: Wrench
+    hydrodynamic: Wrench
+
+
+@dataclass(frozen=True, slots=True)
 class Past:
-    """One step earlier: what second order in time needs."""
+    """One step earlier, of the motions: what second order in time needs."""
 
     pose: Pose
     twist: Twist
@@ -38,7 +49,8 @@ class State:
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
     wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
     impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh
-    could not be made anew, None if it has not been tried.
+    could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
+    ``twist`` are then evaluated; None where each moves by itself.
     """
 
     tick: int
@@ -58,10 +70,26 @@ class State:
     ledger: Ledger
     impact: int | None = None
     remesh_failed: int | None = None
+    free: FreeMotions | None = None
+
+    @property
+    def free_pose(self) -> Pose:
+        """Of the motions that carry the bodies."""
+        return self.pose if self.free is None else self.free.pose
+
+    @property
+    def free_twist(self) -> Twist:
+        """Of the motions that carry the bodies."""
+        return self.twist if self.free is None else self.free.twist
+
+    @property
+    def free_contact(self) -> Wrench:
+        """Of contacts, on the motions that carry the bodies."""
+        return self.contact_wrench if self.free is None else self.free.contact
 
     @property
     def past_twist(self) -> Twist | None:
-        """Twist one step earlier, None at the start."""
+        """Twist of the motions one step earlier, None at the start."""
         return None if self.past is None else self.past.twist
 
     @property

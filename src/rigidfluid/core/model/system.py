@@ -4,12 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Loads, Pose, Twist
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall
+
+
+class Mechanisms(Protocol):
+    """The N motions of a system with mechanisms, and how they carry its n bodies.
+
+    ``names``: of the mechanisms, the last of the motions. ``carrier`` (n,): the motion of each body. ``controlled``
+    (N,): which motions are given. ``mass`` (N,) of all that a motion carries. ``pose``, ``twist``: of the motions at
+    the start. ``driven_motions`` (N,): in which something moves relatively; ``driven``: whether there is any.
+    """
+
+    names: tuple[str, ...]
+    carrier: IntArray
+    controlled: BoolArray
+    mass: FloatArray
+    pose: Pose
+    twist: Twist
+    driven_motions: BoolArray
+    driven: bool
+
+    def poses(self, motions: Pose, time: float) -> Pose:
+        """Of the bodies, where the ``motions`` are there."""
+
+    def at(self, motions: Pose, time: float) -> Kinematics:
+        """G and g, where the ``motions`` are there."""
+
+    def inertia(self, time: float) -> FloatArray:
+        """Of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
+
+    def spin(self, time: float) -> FloatArray:
+        """Angular momentum of the relative motion, in the motions' frames, (N, k) [mass·length²/time]."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +54,8 @@ class System:
     fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
     ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k), and the pose, by
     ``controlled_pose(time)``.
+    ``mechanisms``: which motions carry the bodies, None where each moves by itself; twists and poses that are given are
+    then the motions'.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``interactions``: the laws with the contacts that they act in; ``law``: all of them together, None where there are
     none. ``loads``: what contacts must hold; its smallest gap is the least of all laws', and 0 without any.
@@ -57,3 +90,9 @@ class System:
     loads: Loads
     substeps: int | None
     implicit: bool
+    mechanisms: Mechanisms | None = None
+
+    @property
+    def controlled_motions(self) -> BoolArray:
+        """Which of the motions are given (N,)."""
+        return self.controlled if self.mechanisms is None else self.mechanisms.controlled

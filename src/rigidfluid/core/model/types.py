@@ -154,11 +154,27 @@ class BoundaryCondition:
 
 
 @dataclass(frozen=True, slots=True)
+class Kinematics:
+    """How n components follow N motions at one moment: component twist = G u + g, free wrench = Gᵀ component wrench.
+
+    Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
+    leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
+    ``given`` (n, d+k): g, the twist that relative motion adds [length/time, rad/time].
+    """
+
+    carrier: IntArray
+    centre: FloatArray
+    arm: FloatArray
+    given: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
     With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
-    mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions.
+    mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions. ``carrier`` (bodies,):
+    the motion that carries each body, None where each moves by itself.
     """
 
     dimension: int
@@ -168,6 +184,12 @@ class FluidProblem:
     inertia: bool
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None
+    carrier: tuple[int, ...] | None = None
+
+    @property
+    def motions(self) -> int:
+        """How many motions carry the bodies."""
+        return self.bodies if self.carrier is None else max(self.carrier) + 1
 
     @property
     def inert_density(self) -> float:
@@ -181,9 +203,12 @@ class Step:
 
     ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
     uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
-    ``points`` (N, d): the mesh at the new time; None without a mesh, and for responses on the present one.
+    ``pose``: of the bodies, there. ``points`` (N, d): the mesh at the new time; None without a mesh, and for responses
+    on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
+    With ``kinematics`` all these are of the N motions that carry the bodies, and the fluid's wrench on them is Gᵀ of
+    that on the bodies; None where each body moves by itself.
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
     What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
@@ -202,11 +227,13 @@ class Step:
     impulse: FloatArray
     load_scale: float
     turning: FloatArray
+    kinematics: Kinematics | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """How the twists of all bodies answer to impulses on them, (c, n, d+k) each for c impulses.
+    """How the twists of all bodies, or of the motions that carry them, answer to impulses on them, (c, n, d+k) each
+    for c impulses.
 
     ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end
     of a step, by its own matrix, viscosity in it.
@@ -218,9 +245,10 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """What a backend returns from one step: its candidate state, the bodies' twist, and the fluid's own figures.
+    """What a backend returns from one step: its candidate state, the new twist, and the fluid's own figures.
 
-    ``hydrodynamic_wrench`` is the fluid's force and torque alone, without buoyancy, weight or contact.
+    ``twist`` is what Newton–Euler's equations are solved for: the motions', where a step has kinematics.
+    ``hydrodynamic_wrench`` is the fluid's force and torque on each body alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
     """

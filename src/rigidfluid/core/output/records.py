@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.system import Mechanisms, System
+from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
 
 Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]
@@ -53,23 +53,38 @@ def records(system: System, probes: FloatArray, state: State, time: float) -> Re
     }
 
 
+def moving(system: System) -> tuple[str, ...]:
+    """Names of all bodies, and of the mechanisms after them: one for each row of a state."""
+    wholes = () if system.mechanisms is None else system.mechanisms.names
+    return (*system.surfaces[: len(system.bodies)], *wholes)
+
+
+def least_gaps_of_motions(mechanisms: Mechanisms, gaps: FloatArray) -> FloatArray:
+    """Of each motion the least of the ``gaps`` (n,) of what it carries, (N,) [length]."""
+    least = np.full(len(mechanisms.mass), np.inf)
+    np.minimum.at(least, mechanisms.carrier, gaps)
+    return least
+
+
 def _body_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
-    numbers = np.concatenate(
-        [
-            state.pose.position,
-            state.pose.orientation,
-            state.twist.velocity,
-            state.twist.angular_velocity,
-            state.hydrodynamic_wrench.force,
-            state.hydrodynamic_wrench.torque,
-            state.contact_wrench.force,
-            state.contact_wrench.torque,
-            state.gaps[:, None],
-        ],
-        axis=1,
-    ).tolist()
-    for body, row in enumerate(numbers):
-        yield (*stamp, system.surfaces[body], *row)
+    """A row for each body, and one for each mechanism, with the least gap of its components."""
+    numbers = _numbers(state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench, state.gaps)
+    if system.mechanisms is not None and state.free is not None:
+        gaps = least_gaps_of_motions(system.mechanisms, state.gaps)
+        free = _numbers(state.free.pose, state.free.twist, state.free.hydrodynamic, state.free.contact, gaps)
+        numbers += free[-len(system.mechanisms.names) :]
+    for name, row in zip(moving(system), numbers, strict=True):
+        yield (*stamp, name, *row)
+
+
+def _numbers(pose: Pose, twist: Twist, hydrodynamic: Wrench, contact: Wrench, gaps: FloatArray) -> list[list[float]]:
+    fields = [
+        *(pose.position, pose.orientation, twist.velocity, twist.angular_velocity),
+        *(hydrodynamic.force, hydrodynamic.torque, contact.force, contact.torque),
+        gaps[:, None],
+    ]
+    rows: list[list[float]] = np.concatenate(fields, axis=1).tolist()
+    return rows
 
 
 def _contact_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:

@@ -6,7 +6,7 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
 from rigidfluid.core.model.energy import Ledger
-from rigidfluid.core.model.state import State
+from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.step import bodies_energy, contact_energy
@@ -39,7 +39,15 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> St
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
         ledger=Ledger(kinetic, stored, kinetic + stored),
+        free=_free_motions(system),
     )
+
+
+def _free_motions(system: System) -> FreeMotions | None:
+    motions = system.mechanisms
+    if motions is None:
+        return None
+    return FreeMotions(motions.pose, motions.twist, nothing(motions.pose), nothing(motions.pose))
 
 
 def _level(system: System, clock: Clock, stored: float) -> int | None:

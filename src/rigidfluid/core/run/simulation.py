@@ -16,11 +16,11 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import records
+from rigidfluid.core.output.records import least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state, start_level
@@ -150,22 +150,14 @@ class Simulation:
 
     @property
     def bodies(self) -> dict[str, BodyNow]:
-        """All bodies by name, as they are now."""
-        s = self.state
-        return {
-            body.name or "": BodyNow(
-                position=s.pose.position[i],
-                orientation=s.pose.orientation[i],
-                velocity=s.twist.velocity[i],
-                angular_velocity=s.twist.angular_velocity[i],
-                force=s.hydrodynamic_wrench.force[i],
-                torque=s.hydrodynamic_wrench.torque[i],
-                contact_force=s.contact_wrench.force[i],
-                contact_torque=s.contact_wrench.torque[i],
-                gap=float(s.gaps[i]),
-            )
-            for i, body in enumerate(self.scene.body)
-        }
+        """All bodies by name, as they are now, and after them the mechanisms as wholes."""
+        s, count = self.state, len(self.system.bodies)
+        now = _by_name(self.system.surfaces[:count], s.pose, s.twist, s.hydrodynamic_wrench, s.contact_wrench, s.gaps)
+        mechanisms, free = self.system.mechanisms, s.free
+        if mechanisms is not None and free is not None:
+            whole = (free.pose, free.twist, free.hydrodynamic, free.contact, least_gaps_of_motions(mechanisms, s.gaps))
+            now |= _by_name(mechanisms.names, *whole, first=len(mechanisms.mass) - len(mechanisms.names))
+        return now
 
     def step(self) -> State:
         """Take one accepted step, record it, call who is due, and return the new state.
@@ -222,7 +214,7 @@ class Simulation:
         body["prescribed"] = {key: value for key, value in given.items() if value is not None}
         tables["body"][number] = body
         self.scene = scene_from_dict(tables)
-        motion = prescribed_motion(self.scene, self.state.pose, self.time)
+        motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
         self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
             self.state = replace(self.state, level=start_level(self.clock))
@@ -330,12 +322,38 @@ class Simulation:
     def _controlled(self, name: str) -> int:
         """The number of a body whose motion is given."""
         names = [body.name for body in self.scene.body]
-        given = [body for body, controlled in zip(names, self.system.controlled, strict=True) if controlled]
+        given = [body for body, controlled in zip(names, self.system.controlled, strict=False) if controlled]
         if name not in given:
             found = f"{name!r}, which {'is free' if name in names else 'is not there'}"
             allowed = f"a body that is fixed or prescribed: {', '.join(map(str, given)) or 'there is none'}"
             raise SceneError("body", found, allowed, "Name another, or give it 'fixed = true' in the scene.")
         return names.index(name)
+
+
+def _by_name(
+    names: Sequence[str],
+    pose: Pose,
+    twist: Twist,
+    by_fluid: Wrench,
+    contact: Wrench,
+    gaps: FloatArray,
+    first: int = 0,
+) -> dict[str, BodyNow]:
+    """The rows from the ``first`` on, by these names."""
+    return {
+        name: BodyNow(
+            position=pose.position[i],
+            orientation=pose.orientation[i],
+            velocity=twist.velocity[i],
+            angular_velocity=twist.angular_velocity[i],
+            force=by_fluid.force[i],
+            torque=by_fluid.torque[i],
+            contact_force=contact.force[i],
+            contact_torque=contact.torque[i],
+            gap=float(gaps[i]),
+        )
+        for i, name in enumerate(names, start=first)
+    }
 
 
 def _sizes(scene: Scene, system: System) -> Sizes | None:

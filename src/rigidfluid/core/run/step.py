@@ -9,13 +9,15 @@ import numpy as np
 from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
+from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
 from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
-from rigidfluid.core.model.state import Past, State
+from rigidfluid.core.model.state import FreeMotions, Past, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Advance, Contacts, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
@@ -49,19 +51,20 @@ def attempt(
         nearest = int(np.argmin(gaps))
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.raise_on_all():
-        step = step_to(system, state, time, size, pose, path.impulse, mesh)
+        step = step_to(system, state, time, size, path.free_pose, path.free_impulse, mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
             step = replace(step, turning=turning(system, state, path, step))
         advance = system.backend.advance(state.fluid, state.mesh, step)
-        refuse_lost_advance(system.surfaces, advance, state.pose)
+        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
+    twist = component_twist(step.kinematics, advance.twist)
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
         level=level,
         pose=pose,
-        twist=advance.twist,
-        past=Past(state.pose, state.twist, size),
+        twist=twist,
+        past=Past(state.free_pose, state.free_twist, size),
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
@@ -69,18 +72,30 @@ def attempt(
         contacts=contacts,
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
-        contact_wrench=Wrench(path.impulse.force / size, path.impulse.torque / size),
+        contact_wrench=_mean(path.impulse, size),
         ledger=state.ledger.after(
             size,
-            _power(system, advance),
-            _work(system, state, path),
-            advance.kinetic_energy + bodies_energy(system, pose, advance.twist),
+            _power(system, advance, step),
+            _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
+            advance.kinetic_energy + bodies_energy(system, pose, twist),
             contact_energy(system, contacts),
         ),
         impact=state.impact,
         remesh_failed=state.remesh_failed,
+        free=_free_motions(path, step, advance, size),
     )
     return candidate, step
+
+
+def _free_motions(path: BodyStep, step: Step, advance: Advance, size: float) -> FreeMotions | None:
+    if path.free is None:
+        return None
+    by_fluid = free_wrench(step.kinematics, advance.hydrodynamic_wrench)
+    return FreeMotions(path.free.pose, advance.twist, _mean(path.free.contact, size), by_fluid)
+
+
+def _mean(impulse: Wrench, size: float) -> Wrench:
+    return Wrench(impulse.force / size, impulse.torque / size)
 
 
 def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
@@ -98,13 +113,15 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(energy))
 
 
-def _power(system: System, advance: Advance) -> Power:
-    """What enters by the boundary, what drives bodies through the fluid, and what the fluid dissipates."""
-    driven = power(advance.hydrodynamic_wrench, advance.twist)[system.controlled]
+def _power(system: System, advance: Advance, step: Step) -> Power:
+    """What enters by the boundary, what drives bodies through the fluid or relatively, what the fluid dissipates."""
+    given, where = (advance.twist, step.controlled) if step.kinematics is None else given_twist(step)
+    driven = power(advance.hydrodynamic_wrench, given)[where]
     return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 
 
-def _work(system: System, state: State, path: BodyStep) -> Work:
-    """Of the free bodies' submerged weight, of what drives bodies and walls against contacts, and of their dampers."""
+def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
+    """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
-    return Work(float(fallen[~system.controlled].sum()), path.held, path.dissipated, path.friction)
+    free = float(fallen[~system.controlled].sum())
+    return Work(free, path.held + by_actuators, path.dissipated, path.friction)

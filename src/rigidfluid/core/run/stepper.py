@@ -97,7 +97,8 @@ class Stepper:
             if path.coupling is None:
                 if number > 0 or state.past is not None or state.mesh is None:
                     return candidate, True
-                again = first_step_again(state, candidate.twist, self._clock.size(level))
+                end, size = self._end(state, level), self._clock.size(level)
+                again = first_step_again(self.system, state, candidate.free_twist, end, size)
                 path = self._as_given(again, state, level)
                 continue
             with self._watch("response"):
@@ -121,12 +122,20 @@ class Stepper:
         return self._as_given(path, state, level)
 
     def _as_given(self, path: BodyStep, state: State, level: int) -> BodyStep:
-        """The path with the poses of controlled bodies at its end evaluated, and not integrated."""
-        given = self.system.controlled_pose(self._clock.time(state.tick + self._clock.ticks(level)))
-        is_given = self.system.controlled[:, None]
-        position = np.where(is_given, given.position, path.pose.position)
-        orientation = np.where(is_given, given.orientation, path.pose.orientation)
-        return replace(path, pose=Pose(position, orientation))
+        """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies."""
+        end = self._end(state, level)
+        given, is_given = self.system.controlled_pose(end), self.system.controlled_motions[:, None]
+        position = np.where(is_given, given.position, path.free_pose.position)
+        orientation = np.where(is_given, given.orientation, path.free_pose.orientation)
+        motions = Pose(position, orientation)
+        if path.free is None or self.system.mechanisms is None:
+            return replace(path, pose=motions)
+        bodies = self.system.mechanisms.poses(motions, end)
+        return replace(path, pose=bodies, free=replace(path.free, pose=motions))
+
+    def _end(self, state: State, level: int) -> float:
+        """When a step of this level ends [time]."""
+        return self._clock.time(state.tick + self._clock.ticks(level))
 
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
         """The longest step, of those proposed and shorter ones, that changes no gap too fast and resolves its impacts,

@@ -17,6 +17,7 @@ from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 from rigidfluid.core.run.memory import peak_memory
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.mechanisms import with_components
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -45,7 +46,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "seed": simulation.scene.scene.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
-        "unknowns": system.backend.unknowns(state.mesh, system.controlled),
+        "unknowns": system.backend.unknowns(state.mesh, system.controlled_motions),
         "cells": 0 if state.mesh is None else _cells(state.mesh),
         "ranks": system.backend.ranks.size,
         "steps": state.count,
@@ -89,7 +90,7 @@ def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[s
     if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
         return {"reynolds_solid_density": None, "reynolds": None}
     per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
-    solid = np.array([body.density for body in scene.body])
+    solid = np.array([body.density for body in with_components(scene)[0].body])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),
         "reynolds": float(np.max(per_density) * scene.fluid.density),

@@ -131,6 +131,26 @@ class BodyTable(_OpenTable):
     prescribed: PrescribedTable | None = Field(default=None, description="A motion that the fluid cannot change")
 
 
+class MechanismTable(_OpenTable):
+    """Several bodies that move as one; the keys of its type say which."""
+
+    name: str = Field(
+        default="",
+        pattern=r"^[^\x00-\x1f\x7f]*$",
+        description="Name in the results, before those of its components; `mechanism0`, … if not given",
+    )
+    type: str = Field(description="Name of a mechanism")
+    position: Vector = Field(description="Initial position of the centre of mass [length]")
+    angle: float | None = Field(default=None, description="Initial angle, counter-clockwise; only in 2D [rad]")
+    orientation: tuple[float, float, float, float] | None = Field(
+        default=None, description="Initial orientation, a quaternion, scalar first; 3D only; normalised when read [1]"
+    )
+    velocity: Vector | None = Field(default=None, description="Initial velocity; zero if not given [length/time]")
+    angular_velocity: Angular | None = Field(
+        default=None, description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"
+    )
+
+
 class ContactTable(_OpenTable):
     """How contacts are found and stepped through, and a force law for all of them; `[[interaction]]` has more laws."""
 
@@ -212,7 +232,8 @@ class Scene(_Table):
     fluid: FluidTable
     domain: DomainTable
     boundary: tuple[BoundaryTable, ...] = ()
-    body: tuple[BodyTable, ...] = Field(min_length=1)
+    body: tuple[BodyTable, ...] = ()
+    mechanism: tuple[MechanismTable, ...] = ()
     contact: ContactTable = ContactTable()
     interaction: tuple[InteractionTable, ...] = ()
     mesh: MeshTable | None = Field(default=None, description="The mesh; needed by backends with a mesh")
@@ -223,6 +244,11 @@ class Scene(_Table):
     @classmethod
     def _name_bodies(cls, bodies: tuple[BodyTable, ...]) -> tuple[BodyTable, ...]:
         return tuple(body.model_copy(update={"name": body.name or f"body{i}"}) for i, body in enumerate(bodies))
+
+    @field_validator("mechanism")
+    @classmethod
+    def _name_mechanisms(cls, tables: tuple[MechanismTable, ...]) -> tuple[MechanismTable, ...]:
+        return tuple(one.model_copy(update={"name": one.name or f"mechanism{i}"}) for i, one in enumerate(tables))
 
     @property
     def name(self) -> str:
@@ -237,8 +263,8 @@ class Scene(_Table):
     def to_dict(self) -> dict[str, Any]:
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
-        # Without its empty list a scene is the same as before there were lists, and its checkpoints go on.
-        left_out = set() if self.interaction else {"interaction"}
+        # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
+        left_out = {name for name in ("interaction", "mechanism") if not getattr(self, name)}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 
 

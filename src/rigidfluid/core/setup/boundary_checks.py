@@ -103,8 +103,10 @@ def _check_shape(piece: Piece, table: BoundaryTable, at: str) -> None:
 
 
 def _check_names(scene: Scene, domain: Domain) -> None:
-    names = [body.name for body in scene.body]
-    for name, count in Counter([*names, *domain.names]).items():
+    names, wholes = [body.name for body in scene.body], [table.name for table in scene.mechanism]
+    single = sum(body.part_of not in wholes for body in scene.body)
+    for name, count in Counter([*names, *wholes, *domain.names]).items():
         if count > 1:
-            last = len(names) - 1 - names[::-1].index(name)
-            raise SceneError(f"body.{last}.name", repr(name), "a name that no other body or surface has", "Rename it.")
+            last = len(names) - 1 - names[::-1].index(name) if name in names else single
+            field = f"body.{last}.name" if last < single else "mechanism.name"
+            raise SceneError(field, repr(name), "a name that no other body or surface has", "Rename it.")

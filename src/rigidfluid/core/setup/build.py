@@ -8,7 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.mechanics.added_mass import added_mass
-from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.mechanics.carried_leverage import leverages
+from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.system import System
@@ -19,7 +21,6 @@ from rigidfluid.core.model.types import (
     FluidProblem,
     IntArray,
     Loads,
-    Pose,
     Twist,
 )
 from rigidfluid.core.model.wall import Wall
@@ -29,6 +30,7 @@ from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.parts import Parts, known_parts
+from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
 
@@ -54,17 +56,25 @@ def build_system(scene: Scene) -> System:
         If a body overlaps another body or a surface of the domain, or the mesh is too coarse for the gap between them.
     """
     parts = known_parts(scene)
-    domain, walls = parts.domain, repelling_walls(scene, parts.domain)
+    scene, mechanisms, domain = parts.scene, parts.mechanisms, parts.domain
+    walls = repelling_walls(scene, domain)
     mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
-    pose = _initial_pose(scene)
-    motion = prescribed_motion(scene, pose)
+    inertia = mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies])
     controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
+    single = len(mass) - sum(len(mechanism.components) for mechanism in mechanisms.values())
+    tables: Tables = (*scene.body[:single], *scene.mechanism)
+    start = initial_pose(tables, scene.dimension)
+    motion = prescribed_motion(scene, start)
+    started = _started(initial_twist(tables, scene.dimension), controlled[:single], motion(0.0))
+    carried = CarriedBodies(mechanisms, mass, inertia, controlled, start, started) if mechanisms else None
+    pose = start if carried is None else carried.poses(start, 0.0)
     check_geometry(scene, parts, pose)
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
-    moved = mass + np.trace(added, axis1=1, axis2=2) / scene.dimension
-    speed = impact_speeds(scene, domain, parts.bodies, moved, weight, parts.backend.part.needs_mesh)
-    loads = _loads(scene, parts, controlled, moved, weight, speed)
+    moved = _together(carried, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
+    pulled = _together(carried, weight)
+    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh)
+    loads = _loads(scene, parts, controlled, moved, pulled, speed)
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
@@ -77,24 +87,25 @@ def build_system(scene: Scene) -> System:
         wall_velocity=_wall_velocity(walls, len(parts.bodies) + len(domain.pieces)),
         mass=mass,
         added_mass=added,
-        inertia=mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies]),
+        inertia=inertia,
         weight=weight,
         pose=pose,
-        twist=_initial_twist(scene, controlled, motion(0.0)),
+        twist=started if carried is None else component_twist(carried.at(start, 0.0), started),
         assembly=_assemblies(scene),
         controlled=controlled,
         controlled_twist=motion,
         controlled_pose=motion.pose_at,
-        backend=parts.backend.part(parts.backend.options, _problem(scene, conditions(scene, domain))),
+        backend=parts.backend.part(parts.backend.options, _problem(scene, conditions(scene, domain), carried)),
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
-        leverage=np.array([most_leverage(body) for body in parts.bodies]),
+        leverage=leverages(parts.bodies, carried, scene.time.end),
         interactions=interactions,
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,
         implicit=scene.contact.stepping == "implicit",
+        mechanisms=carried,
     )
 
 
@@ -116,21 +127,21 @@ def _assemblies(scene: Scene) -> IntArray:
     return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
 
 
-def _initial_pose(scene: Scene) -> Pose:
-    position = np.array([body.position for body in scene.body])
-    if scene.dimension == 2:
-        return Pose(position, np.array([[body.angle or 0.0] for body in scene.body]))
-    quaternions = np.array([body.orientation or (1.0, 0.0, 0.0, 0.0) for body in scene.body])
-    return Pose(position, quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True))
+def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
+    """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are controlled."""
+    d, held = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
+    held[: len(controlled), 0] = controlled
+    return Twist(
+        np.where(held, given[:, :d], twist.velocity),
+        np.where(held, given[:, d:], twist.angular_velocity),
+    )
 
 
-def _initial_twist(scene: Scene, controlled: BoolArray, controlled_twist: FloatArray) -> Twist:
-    d, twist = scene.dimension, np.zeros_like(controlled_twist)
-    for i, body in enumerate(scene.body):
-        twist[i, :d] = body.velocity or 0.0
-        twist[i, d:] = body.angular_velocity or 0.0
-    twist = np.where(controlled[:, None], controlled_twist, twist)
-    return Twist(twist[:, :d], twist[:, d:])
+def _together(carried: CarriedBodies | None, rows: FloatArray) -> FloatArray:
+    """For each body the sum of ``rows`` (n, …) over all that move with it: what it meets something with."""
+    if carried is None:
+        return rows
+    return carried_sum(carried.carrier, rows, len(carried.mass))[carried.carrier]
 
 
 def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
@@ -160,7 +171,9 @@ def _loads(
     return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
 
 
-def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProblem | None:
+def _problem(
+    scene: Scene, boundary: tuple[BoundaryCondition, ...], carried: CarriedBodies | None
+) -> FluidProblem | None:
     fluid = scene.fluid
     if fluid.density is None or fluid.viscosity is None:
         return None
@@ -171,6 +184,7 @@ def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...]) -> FluidProb
         dynamic_viscosity=fluid.viscosity,
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
+        carrier=None if carried is None else tuple(carried.carrier.tolist()),
     )
 
 

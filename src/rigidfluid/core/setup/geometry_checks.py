@@ -101,9 +101,10 @@ def _check_overlap(scene: Scene, domain: Domain, contacts: Contacts) -> None:
     other = f"surface {_name(scene, domain, b)!r} of the domain"
     if b < len(scene.body):
         other = f"body {_name(scene, domain, b)!r}"
+    whole = {table.name for table in scene.mechanism} & {scene.body[a].part_of}
     raise SceneError(
-        f"body.{a}.position",
-        f"{list(scene.body[a].position)}, where body {scene.body[a].name!r} overlaps {other} by {-gap:.6g}",
+        f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
+        f"{list(scene.body[a].position)}, where body {_name(scene, domain, a)!r} overlaps {other} by {-gap:.6g}",
         "a place inside the domain and clear of all other surfaces",
         f"Move it by more than {-gap:.6g}, or make it smaller.",
     )

@@ -38,9 +38,9 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     scene = read_table(Scene, data)
     check_tables(scene)
     parts = known_parts(scene)
-    check_boundary(scene, parts.domain)
-    check_interactions(scene, parts.domain)
-    check_fluid(scene, parts.backend.part, parts.domain)
+    check_boundary(parts.scene, parts.domain)
+    check_interactions(parts.scene, parts.domain)
+    check_fluid(parts.scene, parts.backend.part, parts.domain)
     return scene
 
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Part, PartOptions
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
+from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
 
@@ -41,13 +42,16 @@ class Selected(Generic[P]):
 class Parts:
     """All that a scene names; ``laws`` are those of its `law_tables`, in their order.
 
+    ``scene`` has the components of its ``mechanisms``, by name, after its own bodies; ``bodies`` are of both.
     ``detector_why`` says who chose the detector, and for what reason; ``exact_detector`` is the cheapest that is exact
     without a mesh.
     """
 
+    scene: Scene
     backend: Selected[FluidBackend]
     domain: Domain
     bodies: tuple[Body, ...]
+    mechanisms: Mapping[str, Mechanism]
     detector: Selected[Detector]
     laws: tuple[Selected[ForceLaw], ...]
     detector_why: str
@@ -76,6 +80,7 @@ def select_plugins(scene: Scene) -> Parts:
     """
     registry = Registry.load()
     domain = _domain(scene, registry)
+    scene, mechanisms = with_components(scene, registry)
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
     mesh = backend.part.needs_mesh
@@ -87,7 +92,7 @@ def select_plugins(scene: Scene) -> Parts:
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
     exact = exact_detector(bodies, domain, registry)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
-    return Parts(backend, domain, bodies, found, chosen, why, exact)
+    return Parts(scene, backend, domain, bodies, mechanisms, found, chosen, why, exact)
 
 
 def known_parts(scene: Scene) -> Parts:

@@ -56,8 +56,8 @@ class PrescribedMotion:
 
 
 def prescribed_motion(scene: Scene, pose: Pose, start: float = 0.0) -> PrescribedMotion:
-    """The motion that a scene prescribes to its bodies, which are at ``pose`` at time ``start``."""
-    n, d = len(scene.body), scene.dimension
+    """The motion that a scene prescribes to its bodies, the first of those that are at ``pose`` at time ``start``."""
+    n, d = len(pose.position), scene.dimension
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(scene.body):
         motion = body.prescribed

@@ -14,7 +14,7 @@ from rigidfluid.registry import suggestion
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
-    from rigidfluid.core.scene.scene import BodyTable, MeshTable, Scene
+    from rigidfluid.core.scene.scene import BodyTable, MechanismTable, MeshTable, Scene
 
     Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
 
@@ -39,8 +39,13 @@ def check_tables(scene: Scene) -> None:
         At the first contradiction.
     """
     _check_vectors(scene)
+    if not (scene.body or scene.mechanism):
+        raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
+    for number, mechanism in enumerate(scene.mechanism):
+        _check_orientation(scene, mechanism, f"mechanism.{number}")
     for number, body in enumerate(scene.body):
-        _check_body(scene, body, f"body.{number}")
+        _check_orientation(scene, body, f"body.{number}")
+        _check_control(body, f"body.{number}")
     _check_assemblies(scene)
     _check_contact(scene)
     _check_sizes(scene)
@@ -98,18 +103,21 @@ def _vectors(scene: Scene) -> Vectors:
             yield f"body.{i}.prescribed.velocity", body.prescribed.velocity, d
             yield f"body.{i}.prescribed.angular_velocity", body.prescribed.angular_velocity, k
             yield f"body.{i}.prescribed.amplitude", body.prescribed.amplitude, d
+    for i, mechanism in enumerate(scene.mechanism):
+        yield f"mechanism.{i}.position", mechanism.position, d
+        yield f"mechanism.{i}.velocity", mechanism.velocity, d
+        yield f"mechanism.{i}.angular_velocity", mechanism.angular_velocity, k
     for i, probe in enumerate(scene.output.probes):
         yield f"output.probes.{i}", probe, d
 
 
-def _check_body(scene: Scene, body: BodyTable, at: str) -> None:
+def _check_orientation(scene: Scene, body: BodyTable | MechanismTable, at: str) -> None:
     if scene.dimension == 3 and body.angle is not None:
         raise SceneError(f"{at}.angle", body.angle, "no angle in 3D", "Give `orientation`, a quaternion.")
     if scene.dimension == 2 and body.orientation is not None:
         raise SceneError(f"{at}.orientation", list(body.orientation), "no quaternion in 2D", "Give `angle` in radians.")
     if body.orientation is not None and not np.linalg.norm(body.orientation) > 0:
         raise SceneError(f"{at}.orientation", list(body.orientation), "a quaternion of length above 0", "[1, 0, 0, 0].")
-    _check_control(body, at)
 
 
 def _check_control(body: BodyTable, at: str) -> None:

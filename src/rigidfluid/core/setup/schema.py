@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Entry, Registry
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, MECHANISM, Entry, Registry
 
 _TABLES = {
     FLUID_BACKEND: ("FluidTable",),
     BODY: ("BodyTable",),
+    MECHANISM: ("MechanismTable",),
     DETECTOR: ("ContactTable",),
     FORCE_LAW: ("ContactTable", "InteractionTable"),
     DOMAIN: ("DomainTable",),
@@ -19,6 +20,7 @@ _UNNAMED = {
     FLUID_BACKEND: ("scikit-fem",),
     DETECTOR: ("sphere", "ellipsoid", "brute_force"),
     BODY: (),
+    MECHANISM: (),
     FORCE_LAW: (),
     DOMAIN: ("box",),
 }

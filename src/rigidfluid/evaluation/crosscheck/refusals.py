@@ -30,6 +30,9 @@ def refuse_foreign(scene: Scene, system: System) -> None:
         raise CrosscheckError(
             "fluid.backend", repr(scene.fluid.backend), "'dry'", "Leave the fluid out: --set fluid.backend=dry."
         )
+    if scene.mechanism:
+        found = f"{len(scene.mechanism)} of them"
+        raise CrosscheckError("mechanism", found, "bodies that each move by themselves", "Leave mechanisms out.")
     for number, (table, body) in enumerate(zip(scene.body, system.bodies, strict=True)):
         field = f"body.{number}"
         if body.radius is None:

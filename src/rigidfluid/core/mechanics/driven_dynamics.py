@@ -1,0 +1,83 @@
+"""How motions with a given relative motion go without a fluid: as gyrostats whose inertia changes with time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from rigidfluid.core.mechanics.dynamics import DryDynamics
+from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate, turned
+from rigidfluid.core.model.system import Mechanisms
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.errors import StepRejected
+
+_MOST_ITERATIONS = 50
+_ROUNDING = 1e-14
+
+
+class DrivenDynamics(DryDynamics):
+    """As `DryDynamics`, but for the rotation of motions with relative motion in them: L = R (I Rᵀ ω + h) of given I(t),
+    h(t) is constant between kicks, and the orientation follows by the midpoint rule.
+
+    Parameters
+    ----------
+    pose, twist : Pose, Twist
+        At the start.
+    mechanisms : Mechanisms
+        Masses, I and h; h is zero where nothing moves relatively.
+    weight : (N, d) array
+        Constant [force].
+    start : float
+        Time at the start [time].
+    controlled_twist : callable
+        From a time since the start to the twist (N, d+k) of driven motions.
+    """
+
+    def __init__(
+        self,
+        pose: Pose,
+        twist: Twist,
+        mechanisms: Mechanisms,
+        weight: FloatArray,
+        start: float,
+        controlled_twist: Callable[[float], FloatArray],
+    ) -> None:
+        inertia = mechanisms.inertia(start)
+        super().__init__(pose, twist, mechanisms.mass, inertia, weight, mechanisms.controlled, controlled_twist)
+        self._mechanisms, self._start = mechanisms, start
+        self._momentum = self._momentum + turned(pose.orientation, mechanisms.spin(start))
+
+    @property
+    def twist(self) -> Twist:
+        spin = self._rate(self.pose.orientation, self._start + self._time)
+        return Twist(self._velocity.copy(), spin)
+
+    def drift(self, time: float) -> None:
+        """Motions without relative motion turn freely."""
+        before, driven = self.pose.orientation, self._mechanisms.driven_motions
+        middle, end = (self._start + self._time + part * time for part in (0.5, 1.0))
+        followed = self._turned(before, middle, time)
+        super().drift(time)
+        orientation = np.where(driven[:, None], followed, self.pose.orientation)
+        self.pose = Pose(self.pose.position, orientation)
+        self._inertia = self._mechanisms.inertia(end)
+        self._inverse = np.asarray(np.linalg.inv(self._inertia), dtype=np.float64)
+
+    def _turned(self, orientation: FloatArray, middle: float, time: float) -> FloatArray:
+        """The orientation that ω in mid-time, where half of the rotation is done, leads to."""
+        way = time * self._rate(orientation, middle)
+        for _ in range(_MOST_ITERATIONS):
+            found = time * self._rate(rotate(orientation, 0.5 * way), middle)
+            if np.abs(found - way).max() <= _ROUNDING * (1.0 + np.abs(way).max()):
+                return rotate(orientation, found)
+            way = found
+        raise StepRejected(
+            "mechanism", f"a rotation by {np.abs(way).max():.3g} rad in a step", "a fraction of a turn", "Shorten it."
+        )
+
+    def _rate(self, orientation: FloatArray, time: float) -> FloatArray:
+        """ω = (R I Rᵀ)⁻¹ (L - R h)."""
+        left = self._momentum - turned(orientation, self._mechanisms.spin(time))
+        inverse = inverse_lab_inertia(self._mechanisms.inertia(time), orientation)
+        return np.asarray(np.einsum("nij,nj->ni", inverse, left))

@@ -1,0 +1,123 @@
+"""The motions of a system with mechanisms: where they carry their bodies, and what they have to carry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.mechanics.kinematics import carried_sum
+from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices, turned
+from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist
+
+
+class Relative(NamedTuple):
+    """Bodies in the frames of their motions, whose origins are the centres of mass: ``pose`` and its rate ``twist``."""
+
+    pose: Pose
+    twist: Twist
+
+
+class CarriedBodies:
+    """Single bodies, each its own motion, and after them the mechanisms with their components.
+
+    Parameters
+    ----------
+    mechanisms : mapping of str to Mechanism
+        By name, one for each motion after those of single bodies.
+    mass : (n,) array
+        Of single bodies and of all components in order [mass].
+    inertia : (n, k, k) array
+        In each body's frame [mass·length²].
+    controlled : (n,) array
+        Which single bodies have a given motion.
+    pose, twist : Pose, Twist
+        Of the N motions at the start.
+    """
+
+    def __init__(
+        self,
+        mechanisms: Mapping[str, Mechanism],
+        mass: FloatArray,
+        inertia: FloatArray,
+        controlled: BoolArray,
+        pose: Pose,
+        twist: Twist,
+    ) -> None:
+        self.names, self._mechanisms = tuple(mechanisms), tuple(mechanisms.values())
+        sizes = [len(mechanism.components) for mechanism in self._mechanisms]
+        single = len(mass) - sum(sizes)
+        owner = np.repeat(np.arange(single, single + len(sizes)), sizes)
+        self.carrier: IntArray = np.concatenate([np.arange(single), owner])
+        self.controlled: BoolArray = np.append(controlled[:single], np.zeros(len(sizes), dtype=bool))
+        self.mass = carried_sum(self.carrier, mass, single + len(sizes))
+        self.pose, self.twist = pose, twist
+        self.driven_motions: BoolArray = np.array([False] * single + [one.driven for one in self._mechanisms])
+        self.driven = bool(self.driven_motions.any())
+        self._own_mass, self._own_inertia = mass, inertia
+        self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
+
+    def poses(self, motions: Pose, time: float) -> Pose:
+        """c + R s and R Q of each body."""
+        relative, carrier = self._relative(time).pose, self.carrier
+        arm = _turned(motions.orientation[carrier], relative.position)
+        orientation = compose(motions.orientation[carrier], relative.orientation)
+        return Pose(motions.position[carrier] + arm, orientation)
+
+    def at(self, motions: Pose, time: float) -> Kinematics:
+        """Arms R s, and what relative motion adds, R ds/dt and R ν."""
+        relative, orientation = self._relative(time), motions.orientation[self.carrier]
+        velocity, spin = relative.twist.velocity, relative.twist.angular_velocity
+        given = np.concatenate([_turned(orientation, velocity), turned(orientation, spin)], axis=1)
+        return Kinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
+
+    def inertia(self, time: float) -> FloatArray:
+        """Σ Q I Qᵀ + m (|s|² - s sᵀ) of what each motion carries."""
+        pose = self._relative(time).pose
+        own = lab_inertia(self._own_inertia, pose.orientation)
+        return self._sum(own + self._own_mass[:, None, None] * _unit_inertia(pose.position))
+
+    def spin(self, time: float) -> FloatArray:
+        """Σ Q I Qᵀ ν + m s × ds/dt of what each motion carries."""
+        pose, twist = self._relative(time)
+        own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
+        return self._sum(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
+
+    def _sum(self, rows: FloatArray) -> FloatArray:
+        return carried_sum(self.carrier, rows, len(self.mass))
+
+    def _relative(self, time: float) -> Relative:
+        """What was asked for last is kept, since a moment is asked about several times; nothing else moves in time."""
+        if self.driven and time != self._latest[0]:
+            self._latest = time, self._placed(time)
+        return self._latest[1]
+
+    def _placed(self, time: float) -> Relative:
+        """Of all bodies; single ones are their frames."""
+        dimension, k = self.pose.position.shape[1], self._own_inertia.shape[1]
+        count, single = len(self.carrier), len(self.mass) - len(self._mechanisms)
+        position, velocity, spin = np.zeros((count, dimension)), np.zeros((count, dimension)), np.zeros((count, k))
+        orientation = np.tile(np.eye(1, 4) if dimension == 3 else np.zeros((1, 1)), (count, 1))
+        for number, mechanism in enumerate(self._mechanisms, start=single):
+            mine = self.carrier == number
+            pose, rate = mechanism.placement(time), mechanism.rate(time)
+            share = self._own_mass[mine] / self.mass[number]
+            position[mine] = pose.position - share @ pose.position
+            velocity[mine] = rate.velocity - share @ rate.velocity
+            orientation[mine], spin[mine] = pose.orientation, rate.angular_velocity
+        return Relative(Pose(position, orientation), Twist(velocity, spin))
+
+
+def _turned(orientation: FloatArray, vectors: FloatArray) -> FloatArray:
+    """R v, (n, d)."""
+    return np.asarray(np.einsum("nij,nj->ni", rotation_matrices(orientation), vectors))
+
+
+def _unit_inertia(arm: FloatArray) -> FloatArray:
+    """|r|² - r rᵀ of points, (n, k, k), |r|² in 2D [length²]."""
+    square = np.sum(arm**2, axis=1)[:, None, None]
+    if arm.shape[1] == 2:
+        return np.asarray(square)
+    return np.asarray(square * np.eye(3) - arm[:, :, None] * arm[:, None, :])

@@ -1,0 +1,152 @@
+"""A scene's mechanisms: found and built, and their components as bodies of the scene."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mechanics.kinematics import component_twist
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.model.interfaces import Component, Mechanism
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import BodyTable, Scene
+from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.setup.placing import initial_pose, initial_twist
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import MECHANISM, Registry
+
+_ROUNDING = 1e-9
+
+
+def with_components(scene: Scene, registry: Registry | None = None) -> tuple[Scene, dict[str, Mechanism]]:
+    """The scene with the components of its mechanisms after its bodies, and the mechanisms.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it was read.
+    registry : Registry, optional
+        Loaded where it is not given.
+
+    Returns
+    -------
+    Scene
+        A component is a body named after mechanism and component, ``dumbbell.left``, and a part of the mechanism.
+    dict of str to Mechanism
+        By name, built from their options.
+
+    Raises
+    ------
+    PluginError
+        If a mechanism is not there, or says what cannot be.
+    SceneError
+        If an option is not allowed, or a name is taken.
+    """
+    if not scene.mechanism:
+        return scene, {}
+    registry = registry or Registry.load()
+    built = [_built(scene, registry, number) for number in range(len(scene.mechanism))]
+    _refuse_doubles(scene, built)
+    mechanisms = dict(zip((table.name for table in scene.mechanism), built, strict=True))
+    bodies = (*scene.body, *_component_tables(scene, mechanisms))
+    return scene.model_copy(update={"body": bodies}), mechanisms
+
+
+def _built(scene: Scene, registry: Registry, number: int) -> Mechanism:
+    table, at = scene.mechanism[number], f"mechanism.{number}"
+    part = registry.get(MECHANISM, table.type, f"{at}.type")
+    for key in table.options:
+        if key not in part.Options.model_fields:
+            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
+    options = read_table(part.Options, table.options, at)
+    try:
+        mechanism = part(options, scene.dimension)
+        _refuse_components(mechanism, at)
+    except SceneError as error:
+        subject = f"{at}.{error.subject.partition('.')[2]}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    _refuse_placement(mechanism, at)
+    return mechanism
+
+
+def _refuse_components(mechanism: Mechanism, at: str) -> None:
+    """Names and densities that cannot be are an error of the mechanism's author."""
+    names = [component.name for component in mechanism.components]
+    densities = [component.density for component in mechanism.components]
+    if not names or len(set(names)) < len(names):
+        raise _impossible(at, f"components named {names}", "components, each with a name of its own")
+    if not all(0.0 < density < np.inf for density in densities):
+        raise _impossible(at, f"components of densities {densities}", "numbers above 0")
+
+
+def _refuse_placement(mechanism: Mechanism, at: str) -> None:
+    """So are places of a wrong shape, and a rate of what is said not to change."""
+    count, d = len(mechanism.components), mechanism.dimension
+    k, q = (1, 1) if d == 2 else (3, 4)
+    pose, rate = mechanism.placement(0.0), mechanism.rate(0.0)
+    for name, values, width in (
+        ("placement(0).position", pose.position, d),
+        ("placement(0).orientation", pose.orientation, q),
+        ("rate(0).velocity", rate.velocity, d),
+        ("rate(0).angular_velocity", rate.angular_velocity, k),
+    ):
+        if np.shape(values) != (count, width) or not np.isfinite(values).all():
+            allowed = f"finite numbers of shape {(count, width)}, a row for each component"
+            raise _impossible(at, f"{name} of shape {np.shape(values)}", allowed)
+    if d == 3 and np.abs(np.linalg.norm(pose.orientation, axis=1) - 1.0).max() > _ROUNDING:
+        raise _impossible(at, f"quaternions {pose.orientation.tolist()}", "quaternions of length 1")
+    if not mechanism.driven and (rate.velocity.any() or rate.angular_velocity.any()):
+        raise _impossible(at, "a rate of what is not driven", "`driven = True` beside `rate`")
+
+
+def _impossible(at: str, found: str, allowed: str) -> PluginError:
+    return PluginError(at, found, allowed, "Mend the mechanism; MechanismContract in rigidfluid.testing shows more.")
+
+
+def _component_tables(scene: Scene, mechanisms: Mapping[str, Mechanism]) -> list[BodyTable]:
+    """Tables of the components where they are at the start, as if each were a body."""
+    owners = [(name, part) for name, mechanism in mechanisms.items() for part in mechanism.components]
+    mass = np.array([part.density * part.shape.volume for _, part in owners])
+    inertia = mass[:, None, None] * np.array([part.shape.unit_inertia for _, part in owners])
+    pose, twist = initial_pose(scene.mechanism, scene.dimension), initial_twist(scene.mechanism, scene.dimension)
+    carried = CarriedBodies(mechanisms, mass, inertia, np.zeros(len(mass), dtype=bool), pose, twist)
+    poses, twists = carried.poses(pose, 0.0), component_twist(carried.at(pose, 0.0), twist)
+    rows = zip(*map(_rows, (poses.position, poses.orientation, twists.velocity, twists.angular_velocity)), strict=True)
+    turned = "angle" if scene.dimension == 2 else "orientation"
+    return [
+        BodyTable(
+            name=_component_name(name, part),
+            type=part.shape.name,
+            density=part.density,
+            position=position,
+            velocity=velocity,
+            angular_velocity=spin,
+            part_of=name,
+            **{turned: orientation[0] if scene.dimension == 2 else orientation},
+            **part.shape.options.model_dump(),
+        )
+        for (name, part), (position, orientation, velocity, spin) in zip(owners, rows, strict=True)
+    ]
+
+
+def _rows(values: FloatArray) -> list[tuple[Any, ...]]:
+    return [tuple(row) for row in values.tolist()]
+
+
+def _component_name(mechanism: str, component: Component) -> str:
+    return f"{mechanism}.{component.name}"
+
+
+def _refuse_doubles(scene: Scene, mechanisms: Sequence[Mechanism]) -> None:
+    names = [table.name for table in scene.body]
+    names += [table.name for table in scene.mechanism]
+    for table, mechanism in zip(scene.mechanism, mechanisms, strict=True):
+        names += [_component_name(table.name, component) for component in mechanism.components]
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise SceneError(
+                "mechanism.name", repr(name), "a name that no other body, component or mechanism has", "Rename it."
+            )

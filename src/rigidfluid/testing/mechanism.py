@@ -1,0 +1,175 @@
+"""What every mechanism must satisfy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from rigidfluid.core.mechanics.frames import distance_to_body, to_world
+from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, jacobian
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.rigid import lab_inertia, rotate, rotation_between, turned
+from rigidfluid.core.mechanics.time_scheme import momentum
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.registry import BODY, Registry
+
+_NUDGE = 1e-6
+
+
+class MechanismContract:
+    """Placement, masses and kinematics of one mechanism, as it is carried by a motion that it had no part in choosing.
+
+    Override the fixture ``mechanism``; parametrise it to hold several to the same standard.
+    """
+
+    times: ClassVar[tuple[float, ...]] = (0.0, 0.13, 0.5, 1.7)
+    """When a mechanism that is driven is looked at [time]."""
+    tolerance: ClassVar[float] = 1e-10
+    """Of what is exact, relatively."""
+    slope_tolerance: ClassVar[float] = 1e-6
+    """Of derivatives, against differences of places [1]."""
+
+    @pytest.fixture
+    def mechanism(self) -> Mechanism:
+        """The mechanism under test."""
+        raise NotImplementedError("override the fixture `mechanism`")
+
+    def test_components_have_names_of_their_own_and_mass(self, mechanism: Mechanism) -> None:
+        """Names differ, densities are positive, and the number is always the same."""
+        names = [component.name for component in mechanism.components]
+        assert names
+        assert len(set(names)) == len(names)
+        assert all(component.density > 0 for component in mechanism.components)
+
+    def test_shapes_are_of_types_that_a_scene_can_name(self, mechanism: Mechanism) -> None:
+        """Each shape is made again from its type's name and its options."""
+        for component in mechanism.components:
+            shape = component.shape
+            part = Registry.load().get(BODY, shape.name)
+            again = part(part.Options.model_validate(shape.options.model_dump()), mechanism.dimension)
+            assert again.volume == pytest.approx(shape.volume)
+
+    def test_placements_have_a_row_for_each_component(self, mechanism: Mechanism) -> None:
+        """Positions and orientations of the right shape; quaternions of length 1."""
+        for time in self.times:
+            count, pose, rate = len(mechanism.components), mechanism.placement(time), mechanism.rate(time)
+            d = mechanism.dimension
+            assert pose.position.shape == rate.velocity.shape == (count, d)
+            assert pose.orientation.shape == ((count, 1) if d == 2 else (count, 4))
+            assert rate.angular_velocity.shape == ((count, 1) if d == 2 else (count, 3))
+            if d == 3:
+                np.testing.assert_allclose(np.linalg.norm(pose.orientation, axis=1), 1.0, atol=self.tolerance)
+
+    def test_what_is_not_driven_keeps_its_shape(self, mechanism: Mechanism) -> None:
+        """Without ``driven`` the placement does not depend on time, and its rate is zero."""
+        if mechanism.driven:
+            return
+        start = mechanism.placement(self.times[0])
+        for time in self.times:
+            pose, rate = mechanism.placement(time), mechanism.rate(time)
+            np.testing.assert_array_equal(pose.position, start.position)
+            np.testing.assert_array_equal(pose.orientation, start.orientation)
+            assert not rate.velocity.any()
+            assert not rate.angular_velocity.any()
+
+    def test_the_rate_is_the_derivative_of_the_placement(self, mechanism: Mechanism) -> None:
+        """d position/dt = velocity, and orientations turn with the angular velocity."""
+        for time in self.times:
+            found, expected = mechanism.rate(time), _difference(mechanism.placement, time)
+            self._same_slopes(flat(found), expected, self._length(mechanism))
+
+    def test_components_do_not_overlap(self, mechanism: Mechanism) -> None:
+        """No point of a component's surface is inside another component."""
+        shapes = [component.shape for component in mechanism.components]
+        for time in self.times:
+            pose = mechanism.placement(time)
+            for one, shape in enumerate(shapes):
+                points = to_world(pose, one, shape.sample_surface(500))
+                for other, beside in enumerate(shapes):
+                    assert one == other or np.all(distance_to_body(pose, other, beside, points) > 0)
+
+    def test_its_kinematics_are_derivatives_of_the_poses(self, mechanism: Mechanism) -> None:
+        """Poses of the components change by G u with the motion's pose, and by g with time."""
+        carried, pose, twist = _carried(mechanism)
+        for time in self.times:
+            kinematics = carried.at(pose, time)
+
+            def moved(way: float, time: float = time) -> Pose:
+                motion = Pose(
+                    pose.position + way * twist.velocity, rotate(pose.orientation, way * twist.angular_velocity)
+                )
+                return carried.poses(motion, time)
+
+            rigid = jacobian(kinematics) @ flat(twist).ravel()
+            scale = self._length(mechanism)
+            self._same_slopes(rigid.reshape(kinematics.given.shape), _difference(moved, 0.0), scale)
+            by_time = _difference(lambda time: carried.poses(pose, time), time)
+            self._same_slopes(kinematics.given, by_time, scale)
+            both = flat(component_twist(kinematics, twist))
+            np.testing.assert_allclose(both, rigid.reshape(both.shape) + kinematics.given, atol=self.tolerance * scale)
+
+    def test_wrenches_do_the_same_work_on_the_whole(self, mechanism: Mechanism) -> None:
+        """w · G u = Gᵀw · u."""
+        carried, pose, _ = _carried(mechanism)
+        random, d = np.random.default_rng(5), mechanism.dimension
+        for time in self.times:
+            kinematics = carried.at(pose, time)
+            rows = random.normal(size=kinematics.given.shape)
+            on_whole = flat(free_wrench(kinematics, Wrench(rows[:, :d], rows[:, d:])))
+            expected = jacobian(kinematics).T @ rows.ravel()
+            scale = np.abs(expected).max()
+            np.testing.assert_allclose(on_whole.ravel(), expected, atol=self.tolerance * scale)
+
+    def test_the_whole_has_the_momentum_of_its_components(self, mechanism: Mechanism) -> None:
+        """Gᵀ M (G u + g) = (m U, R (I Rᵀ ω + h)), about the common centre of mass."""
+        carried, pose, twist = _carried(mechanism)
+        mass, inertia = _masses(mechanism)
+        for time in self.times:
+            kinematics = carried.at(pose, time)
+            assert np.abs(mass @ kinematics.arm).max() <= self.tolerance * mass.sum() * self._length(mechanism)
+            parts = momentum(mass, inertia, carried.poses(pose, time), component_twist(kinematics, twist))
+            d = mechanism.dimension
+            together = flat(free_wrench(kinematics, Wrench(parts[:, :d], parts[:, d:])))[0]
+            lab = lab_inertia(carried.inertia(time), pose.orientation)[0]
+            spin = lab @ twist.angular_velocity[0] + turned(pose.orientation, carried.spin(time))[0]
+            whole = np.append(carried.mass[0] * twist.velocity[0], spin)
+            np.testing.assert_allclose(together, whole, atol=self.tolerance * np.abs(whole).max())
+            assert carried.mass[0] == pytest.approx(mass.sum())
+
+    def _same_slopes(self, found: FloatArray, expected: FloatArray, scale: float) -> None:
+        enough = self.slope_tolerance * (scale + float(np.abs(found).max()))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=enough)
+
+    def _length(self, mechanism: Mechanism) -> float:
+        """How large it is."""
+        reach = [component.shape.bounding_radius for component in mechanism.components]
+        return float(np.ptp(mechanism.placement(self.times[0]).position, axis=0).max() + max(reach))
+
+
+def _carried(mechanism: Mechanism) -> tuple[CarriedBodies, Pose, Twist]:
+    """The mechanism on a motion with any pose and twist."""
+    random, d = np.random.default_rng(2), mechanism.dimension
+    turn = np.array([[0.7]]) if d == 2 else random.normal(size=(1, 4))
+    pose = Pose(random.normal(size=(1, d)), turn if d == 2 else turn / np.linalg.norm(turn))
+    twist = Twist(random.normal(size=(1, d)), random.normal(size=(1, 1 if d == 2 else 3)))
+    mass, inertia = _masses(mechanism)
+    return CarriedBodies({"it": mechanism}, mass, inertia, np.zeros(len(mass), dtype=bool), pose, twist), pose, twist
+
+
+def _masses(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
+    """Mass (m,) and inertia (m, k, k) of the components."""
+    mass = np.array([component.density * component.shape.volume for component in mechanism.components])
+    unit = np.array([component.shape.unit_inertia for component in mechanism.components])
+    return mass, mass[:, None, None] * unit
+
+
+def _difference(poses: Callable[[float], Pose], at: float) -> FloatArray:
+    """Central difference of poses, (m, d+k)."""
+    before, after = poses(at - _NUDGE), poses(at + _NUDGE)
+    straight, turning = after.position - before.position, rotation_between(before.orientation, after.orientation)
+    return np.concatenate([straight, turning], axis=1) / (2.0 * _NUDGE)
