@@ -10,7 +10,7 @@ from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, m
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, inviscid
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
 
 _TURNING_TOLERANCE = 1e-3
@@ -87,9 +87,12 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
     )
-    if density == 0.0 or not step.turning.any():
+    if density == 0.0 or d0 == 0.0:
         return matrix
-    turned = density * discretisation.velocity_by(inviscid(matrix, d0), step.turning, _TURNING_TOLERANCE)
+    matrix = with_masses(matrix, d0)
+    if matrix.at_once is None or not step.turning.any():
+        return matrix
+    turned = density * discretisation.velocity_by(matrix.at_once, step.turning, _TURNING_TOLERANCE)
     return replace(matrix, advection=matrix.advection + turned, flow=flow + turned)
 
 

@@ -27,6 +27,9 @@ from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
 
+_PROVISIONAL = 1e-5
+"""Relative residual of steps that will be solved again."""
+
 
 class TaylorHoodOptions(PartOptions):
     """Keys of ``[fluid]`` that these backends read."""
@@ -85,7 +88,8 @@ class TaylorHoodBackend(FluidBackend):
         matrix = self._matrix(discretisation, fluid, _given(mesh), step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
-        advanced = advance(discretisation, matrix, self.options.tolerance, fluid, _given(mesh), step, guess)
+        tolerance = max(self.options.tolerance, _PROVISIONAL if step.provisional else 0.0)
+        advanced = advance(discretisation, matrix, tolerance, fluid, _given(mesh), step, guess)
         self._latest_attempt = fluid, advanced.fluid
         return advanced
 

@@ -19,7 +19,8 @@ class CoupledMatrix:
 
     ``points`` (vertices, d), ``node_points`` (nodes, d). ``advection`` a and ``flow`` c, (nodes, d), already hold the
     density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps convection from making energy.
-    ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`.
+    ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
+    the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
     """
 
     points: FloatArray
@@ -31,13 +32,13 @@ class CoupledMatrix:
     position: FloatArray
     mass_matrix: FloatArray
     controlled: BoolArray
+    at_once: CoupledMatrix | None = None
 
 
-def inviscid(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
-    """The masses alone of a step's ``matrix`` with the BDF weight ``d0`` [1/time]: 𝓜, which answers to impulses at
-    once."""
+def with_masses(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
+    """A step's ``matrix`` with the BDF weight ``d0`` [1/time], and its masses alone."""
     still = np.zeros_like(matrix.advection)
-    return replace(
+    masses = replace(
         matrix,
         inertia=matrix.inertia / d0,
         viscosity=0.0,
@@ -45,6 +46,7 @@ def inviscid(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
         flow=still,
         mass_matrix=matrix.mass_matrix / d0,
     )
+    return replace(matrix, at_once=masses)
 
 
 @dataclass(frozen=True)

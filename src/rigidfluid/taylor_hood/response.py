@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray, Response, Step
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, inviscid
+from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
 _TOLERANCE = 1e-4
@@ -24,10 +24,10 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
     """
     d0, loads = step.derivative[0], np.moveaxis(impulses, 0, -1)
     by_step = d0 * discretisation.twists_by(matrix, loads, _TOLERANCE)
-    if matrix.inertia == 0.0:
+    if matrix.at_once is None:
         by_mass = _of_bodies_alone(matrix, d0 * loads)
     else:
-        by_mass = discretisation.twists_by(inviscid(matrix, d0), loads, _INVISCID_TOLERANCE)
+        by_mass = discretisation.twists_by(matrix.at_once, loads, _INVISCID_TOLERANCE)
     return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
 
 

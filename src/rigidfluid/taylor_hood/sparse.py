@@ -83,7 +83,7 @@ class SparseDiscretisation:
         self._assembly = assembly
         self._solver = solver
         self._inviscid_solver = inviscid_solver
-        self._latest: _Assembled | None = None
+        self._latest: dict[bool, _Assembled] = {}
         self._reduced: dict[bool, ReducedMatrix] = {}
 
     @property
@@ -136,11 +136,12 @@ class SparseDiscretisation:
         return solver.solve_columns(assembled.apply, assembled.build, right_sides, tolerance)
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
-        """The latest is kept, since a step's matrix is asked again how bodies answer to impulses."""
-        if self._latest is None or self._latest.of is not matrix:
-            self._latest = None  # frees the one before
-            self._latest = self._assemble(matrix)
-        return self._latest
+        """The latest of a step and the latest of its masses are kept, since both are asked again how bodies answer."""
+        viscous = matrix.viscosity != 0.0
+        if viscous not in self._latest or self._latest[viscous].of is not matrix:
+            self._latest.pop(viscous, None)  # frees the one before
+            self._latest[viscous] = self._assemble(matrix)
+        return self._latest[viscous]
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
         stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow)

@@ -21,6 +21,9 @@ SETTLED = 1e-3
 SETTLED_SHARED = 1e-2
 """The same where bodies share questions, whose answers are no better."""
 
+STEADY = 1e-2
+"""Contacts whose impulses change by less than this part of them may need no second solution of the fluid."""
+
 
 def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
     """The coupling of a step from what was before it; None where nothing can touch.
@@ -103,6 +106,15 @@ def _correction(system: System, model: ReducedModel, step: Step, missed: FloatAr
     if problem is None or problem.inertia:
         return np.zeros_like(missed)
     return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
+
+
+def unsteady(state: State, path: BodyStep, size: float) -> bool:
+    """Whether contacts give other impulses than in the step before, so that the path of this ``size`` is sure to be
+    followed again."""
+    if path.coupling is None:
+        return False
+    now, before = flat(path.free_impulse), size * flat(state.free_contact)
+    return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
 
 
 def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:

@@ -213,6 +213,7 @@ class Step:
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
     What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
     convects; it is zero but for steps in which contacts turn bodies around.
+    ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
     """
 
     time: float
@@ -228,6 +229,7 @@ class Step:
     load_scale: float
     turning: FloatArray
     kinematics: Kinematics | None = None
+    provisional: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,9 +31,18 @@ WIDEST_OPENING = 1.5
 
 
 def attempt(
-    system: System, clock: Clock, mesh_updater: MeshUpdater, watch: Stopwatch, state: State, level: int, path: BodyStep
+    system: System,
+    clock: Clock,
+    mesh_updater: MeshUpdater,
+    watch: Stopwatch,
+    state: State,
+    level: int,
+    path: BodyStep,
+    provisional: bool,
 ) -> tuple[State, Step]:
     """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
+
+    One that is ``provisional`` shows where another path leads, and is not to be accepted.
 
     Raises
     ------
@@ -54,7 +63,7 @@ def attempt(
         step = step_to(system, state, time, size, path.free_pose, path.free_impulse, mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
-            step = replace(step, turning=turning(system, state, path, step))
+            step = replace(step, turning=turning(system, state, path, step), provisional=provisional)
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
     twist = component_twist(step.kinematics, advance.twist)

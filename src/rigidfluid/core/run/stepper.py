@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigidfluid.core.contact.contact_path import BodyStep, first_step_again, follow
-from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen
+from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen, unsteady
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, least_gaps, travel
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.reduced_model import Coupling
@@ -91,7 +91,9 @@ class Stepper:
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
         """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
-            candidate, step = attempt(self.system, self._clock, self._mesh_updater, self._watch, state, level, path)
+            provisional = number == 0 and unsteady(state, path, self._clock.size(level))
+            tools = self.system, self._clock, self._mesh_updater, self._watch
+            candidate, step = attempt(*tools, state, level, path, provisional)
             if level < self._clock.levels and unforeseen(self.system, state, candidate):
                 raise _too_fast()
             if path.coupling is None:
@@ -103,7 +105,7 @@ class Stepper:
                 continue
             with self._watch("response"):
                 found = shown_coupling(self.system, state, candidate, path, step)
-            agreed = settled(found, path, state, candidate)
+            agreed = not provisional and settled(found, path, state, candidate)
             if agreed or number == MOST_ATTEMPTS - 1:
                 break
             path = self._path(state, level, found)
