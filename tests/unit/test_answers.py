@@ -30,6 +30,7 @@ class Bodies:
         self.backend = self
         self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
         self.dimension = 2
+        self.mechanisms = None
         self.twist = np.zeros((count, WIDTH))
 
     def step_answer(self, d0: float) -> FloatArray:
@@ -54,7 +55,9 @@ class Bodies:
         pose = Pose(self.position, np.zeros((count, 1)))
         system: Any = self
         state: Any = SimpleNamespace(fluid=None, mesh=object())
-        step: Any = SimpleNamespace(derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose)
+        step: Any = SimpleNamespace(
+            derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose, kinematics=None
+        )
         return updated_model(system, state, step, contacts, self.twist, velocities, known)
 
 
