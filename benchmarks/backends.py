@@ -23,8 +23,7 @@ import numpy as np
 from disk_under_way import MESHES, OUTPUT_EVERY, falling
 from stages import STAGES, measured
 
-from rigidfluid.core.run.memory import peak_memory
-from rigidfluid.core.run.threads import one_openblas_thread
+from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.evaluation.bench.processes import measured_apart
 from rigidfluid.registry import FLUID_BACKEND, Registry

@@ -23,8 +23,8 @@ sys.path.append(str(ROOT / "tests" / "support"))
 import fluid_contacts  # noqa: E402
 import numpy as np  # noqa: E402
 
+from rigidfluid.core.run.process import one_openblas_thread  # noqa: E402
 from rigidfluid.core.run.simulation import Simulation  # noqa: E402
-from rigidfluid.core.run.threads import one_openblas_thread  # noqa: E402
 from rigidfluid.core.scene.scene import Scene  # noqa: E402
 from rigidfluid.core.setup.load import load_scene, scene_from_dict  # noqa: E402
 

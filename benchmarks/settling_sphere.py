@@ -15,9 +15,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from rigidfluid.core.run.memory import peak_memory
+from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.setup.load import load_scene
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 

@@ -20,7 +20,7 @@ from disk_under_way import MESHES, falling
 from ngsolve_step import time_ngsolve
 from stages import measured
 
-from rigidfluid.core.run.threads import one_openblas_thread
+from rigidfluid.core.run.process import one_openblas_thread
 
 
 def compare(thousands: int, steps: int) -> dict[str, Any]:

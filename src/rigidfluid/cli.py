@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid import __version__
-from rigidfluid.core.run.launch import Launch
+from rigidfluid.core.run.process import Launch
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:

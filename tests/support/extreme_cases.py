@@ -29,8 +29,8 @@ from fluid_contacts import Stepping, put_in
 
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.history import History
+from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import MeshError, StepError
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
-from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.mechanics.rigid import kinetic_energy, rotate, rotation_matrices
 from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.types import Pose, Twist
 

@@ -5,7 +5,7 @@ from typer.testing import CliRunner
 
 import rigidfluid.core.run.run
 from rigidfluid import cli
-from rigidfluid.core.run.launch import Launch
+from rigidfluid.core.run.process import Launch
 from rigidfluid.errors import OutputError
 
 OPEN_MPI = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"}

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.taylor_hood.facets import facet_weights
-from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.taylor_hood.surfaces import Surfaces, facet_weights
 
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:

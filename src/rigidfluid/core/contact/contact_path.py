@@ -9,10 +9,9 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
-from rigidfluid.core.contact.detection import detect
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
-from rigidfluid.core.contact.proximity import arms, interacting, refuse_overlap
+from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics

@@ -5,13 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact import broad_phase
-from rigidfluid.core.contact.detection import detect
 from rigidfluid.core.mechanics.rigid import angle_between
+from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
 from rigidfluid.errors import StepRejected
+
+
+def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+    """All contacts with gap ≤ ``reach`` [length], as the system's detector finds them.
+
+    Raises
+    ------
+    PluginError
+        If they are between surfaces that there are not, or arrays have a wrong shape.
+    StepRejected
+        If a gap, point or normal is no number.
+    """
+    contacts = system.detector.detect(pose, mesh, reach)
+    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
+    return contacts
 
 
 def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:

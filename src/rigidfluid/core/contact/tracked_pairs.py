@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.detection import detect
-from rigidfluid.core.contact.proximity import interacting, travel
+from rigidfluid.core.contact.proximity import detect, interacting, travel
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, IntArray, Pose

@@ -1,4 +1,4 @@
-"""Rotations, cross products and inertia of rigid bodies, the same calls in 2D and in 3D.
+"""Rotations, cross products, inertia and kinetic energy of rigid bodies, the same calls in 2D and in 3D.
 
 An orientation has one component in 2D, an angle, and four in 3D, a scalar-first unit quaternion; a rotational
 quantity (angular velocity, torque) has k = 1 component in 2D and k = 3 in 3D. Everything is right-handed.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 
 def rotation_matrices(orientation: FloatArray) -> FloatArray:
@@ -180,6 +180,12 @@ def turned(orientation: FloatArray, spin: FloatArray) -> FloatArray:
 def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
     """Inverse inertia in the lab frame, (R I Rᵀ)⁻¹ = R I⁻¹ Rᵀ, (n, k, k), arguments as for `lab_inertia`."""
     return lab_inertia(np.asarray(np.linalg.inv(inertia), dtype=np.float64), orientation)
+
+
+def kinetic_energy(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> float:
+    """Of the bodies, Σ ½ m|U|² + ½ ω·(R I Rᵀ)ω [energy]."""
+    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
+    return 0.5 * float(mass @ np.sum(twist.velocity**2, axis=1) + np.sum(spin * twist.angular_velocity))
 
 
 def _planar_matrices(angle: FloatArray) -> FloatArray:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
+from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, RigidfluidError
 

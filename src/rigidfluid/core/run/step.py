@@ -12,7 +12,7 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_o
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
-from rigidfluid.core.mechanics.kinetic_energy import kinetic_energy
+from rigidfluid.core.mechanics.rigid import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Power, Work

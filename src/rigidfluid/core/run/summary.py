@@ -15,7 +15,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
-from rigidfluid.core.run.memory import peak_memory
+from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.mechanisms import with_components
 

@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.run.launch import Launch
+from rigidfluid.core.run.process import Launch, one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.run.threads import one_openblas_thread
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.evaluation.bench.collisions import count_contacts

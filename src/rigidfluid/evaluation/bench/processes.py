@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.run.child import environment, failure, python
 from rigidfluid.errors import LaunchError
+from rigidfluid.evaluation.python_process import environment, failure, python
 
 
 def measured_apart(program: Sequence[str], ranks: int = 1, threads: int = 1) -> Any:
