@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.cli import app
-from rigidfluid.core.contact.meetings import representatives
+from rigidfluid.core.contact.representative_contacts import representatives
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.stepping import ACCURATE
 from rigidfluid.core.contact.loads import of_both
@@ -46,12 +46,12 @@ class _Rates(NamedTuple):
         return float(2.0**cut * root**2)
 
 
-def in_the_fluid(met: Encounters, fluid: FluidProblem, step: float) -> Iterator[Finding]:
+def in_the_fluid(met: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:
     """Estimate what share of an impact's energy the fluid's step gets wrong, where it is long beside the contact.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, with a wall or with each other.
     fluid : FluidProblem
         The fluid; without inertia it lets nothing rebound, and nothing is estimated.
@@ -79,7 +79,7 @@ def in_the_fluid(met: Encounters, fluid: FluidProblem, step: float) -> Iterator[
             yield _finding(met, row, _Rates(float(layer[row]), float(fall[row])), float(frequency[row]), step)
 
 
-def _layer_rate(met: Encounters, fluid: FluidProblem) -> FloatArray:
+def _layer_rate(met: DesignContacts, fluid: FluidProblem) -> FloatArray:
     """ρ √ν Σ S/m² over Σ 1/m, both sums over the two bodies (m,) [time^-1/2]."""
     bodies = met.system.bodies
     surface = np.array([body.dimension * body.volume / equal_volume_radius(body) for body in bodies])
@@ -88,7 +88,7 @@ def _layer_rate(met: Encounters, fluid: FluidProblem) -> FloatArray:
     return np.asarray(_LAYER_FACTOR * shear * drawn / met.inverse_mass)
 
 
-def _fall_rate(met: Encounters) -> FloatArray:
+def _fall_rate(met: DesignContacts) -> FloatArray:
     """The larger W/m of the two bodies over the speed of the impact, zero without speed (m,) [1/time]."""
     loads = met.system.loads
     fastest = of_both(loads.weight / loads.mass, met.contacts).max(axis=0)
@@ -96,7 +96,7 @@ def _fall_rate(met: Encounters) -> FloatArray:
     return rate
 
 
-def _finding(met: Encounters, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
+def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
     bodies = int(np.sum(~met.system.controlled))
     cut = rates.at_impact(step, bodies)
     error = min(rates.error(cut), 1.0)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.checks.remedies import stronger
 from rigidfluid.checks.response import barrier, energy_along
@@ -17,12 +17,12 @@ _SLACK = 0.8
 """An impact may end at this share of the smallest gap wanted."""
 
 
-def on_impact(met: Encounters) -> Iterator[Finding]:
+def on_impact(met: DesignContacts) -> Iterator[Finding]:
     """Compare what the law stores up to contact with the energy of the impact, that of a stack if need be, + W range.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, with a wall or with each other.
 
     Yields
@@ -44,7 +44,7 @@ def on_impact(met: Encounters) -> Iterator[Finding]:
         yield from _too_near(met, gaps, wanted)
 
 
-def _finding(met: Encounters, row: int, share: float, stops_two: bool, gap: float) -> Finding:
+def _finding(met: DesignContacts, row: int, share: float, stops_two: bool, gap: float) -> Finding:
     found = _figures(met, row, gap if share >= 1.0 else np.nan) | {"barrier_over_impact": share}
     fast = f"{' against '.join(met.names(row))} at a speed of {figure(met.speed[row])}"
     if met.energy[row] > met.pair_energy[row]:
@@ -63,7 +63,7 @@ def _finding(met: Encounters, row: int, share: float, stops_two: bool, gap: floa
     return Finding(grade, QUESTION, met.names(row), text, remedy, found, enough)
 
 
-def _too_near(met: Encounters, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
+def _too_near(met: DesignContacts, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
     """Which impacts end nearer than the smallest gap that the scene asks for."""
     needed = met.energy + met.stacked_weight * (met.law.range - wanted)
     stored = energy_along(met.law, met.contacts, np.full((len(gaps), 1), wanted))[:, 0]
@@ -76,7 +76,7 @@ def _too_near(met: Encounters, gaps: FloatArray, wanted: float) -> Iterator[Find
             yield Finding("warning", "smallest-gap", met.names(row), text, remedy, found, enough)
 
 
-def _figures(met: Encounters, row: int, gap: float) -> dict[str, float]:
+def _figures(met: DesignContacts, row: int, gap: float) -> dict[str, float]:
     return {
         "turning_gap": gap,
         "impact_speed": float(met.speed[row]),

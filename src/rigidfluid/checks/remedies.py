@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
 
 
-def stronger(met: Encounters, share: float) -> tuple[Mapping[str, float], str]:
+def stronger(met: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
     """How to make laws strong enough that give only a ``share`` < 1 of what is needed.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         Where they are too weak; a law with a stiffness parameter ε has a force proportional to 1/ε.
     share : float
         What it gives over what is needed [1].

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.checks.encounters import encounters
+from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
-from rigidfluid.checks.holding import by_a_law, by_auto, by_walls
 from rigidfluid.checks.impact import on_impact
-from rigidfluid.checks.reach import at_the_start, beside_sizes, between_walls
+from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
-from rigidfluid.checks.rest import at_rest, under_a_stack
+from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
+from rigidfluid.checks.static_load import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
@@ -99,7 +99,7 @@ def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
     mesh = scene.mesh if system.backend.needs_mesh else None
-    for met in encounters(system):
+    for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
         if mesh is not None:
             yield from in_the_gap(met, mesh)

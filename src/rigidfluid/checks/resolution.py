@@ -7,7 +7,7 @@ from math import ceil, log2
 
 import numpy as np
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.response import rest_gap
 from rigidfluid.core.scene.scene import MeshTable
@@ -17,12 +17,12 @@ _MOST_REFINEMENTS = 20
 _ROUNDING = 1e-9
 
 
-def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
+def in_the_gap(met: DesignContacts, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the finest cells, size_body/2^refinements, with the gap at rest under a stack, or where an impact ends.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, with a wall or with each other.
     mesh : MeshTable
         Sizes of the cells.
@@ -41,7 +41,7 @@ def in_the_gap(met: Encounters, mesh: MeshTable) -> Iterator[Finding]:
             yield _finding(met, row, float(gaps[row]), finest, mesh)
 
 
-def _finding(met: Encounters, row: int, gap: float, finest: float, mesh: MeshTable) -> Finding:
+def _finding(met: DesignContacts, row: int, gap: float, finest: float, mesh: MeshTable) -> Finding:
     cells = gap / float(np.clip(gap / mesh.cells_per_gap, finest, mesh.size_body))
     found = {"gap": gap, "cells": cells, "finest_cell": finest}
     where = "gap at rest" if met.stacked_weight[row] > 0.0 else "gap at the impact"

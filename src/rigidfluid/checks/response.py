@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.meetings import at_gaps
+from rigidfluid.core.contact.representative_contacts import at_gaps
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray
 

@@ -7,7 +7,7 @@ from math import ceil, log2
 
 import numpy as np
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, at_most, figure
 from rigidfluid.core.contact.contact_path import MOST_SUBSTEPS
 from rigidfluid.core.contact.substep import RESOLUTION
@@ -20,12 +20,12 @@ ACCURATE = 0.5
 """Up to this step times frequency a contact is resolved."""
 
 
-def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
+def in_steps(met: DesignContacts, time: TimeTable) -> Iterator[Finding]:
     """Compare π √(m/k), with the greatest stiffness k that the impact reaches, with the step and its substeps.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, with a wall or with each other.
     time : TimeTable
         Nominal and shortest step.
@@ -43,7 +43,7 @@ def in_steps(met: Encounters, time: TimeTable) -> Iterator[Finding]:
             yield _finding(met, row, float(frequency[row]), float(stiffness[row]), time)
 
 
-def _finding(met: Encounters, row: int, frequency: float, stiffness: float, time: TimeTable) -> Finding:
+def _finding(met: DesignContacts, row: int, frequency: float, stiffness: float, time: TimeTable) -> Finding:
     found = {
         "contact_time": np.pi / frequency,
         "stiffness": stiffness,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_weight
-from rigidfluid.core.contact.meetings import body_meetings, free, representatives, wall_meetings
+from rigidfluid.core.contact.representative_contacts import free, pair_contacts, representatives, wall_contacts
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
@@ -42,10 +42,10 @@ def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]
     if system.walls and (at_walls or between) == AUTO:
         moving = free(system, bodies)
         wall = next((wall for wall in system.walls if wall.surface in interaction.surfaces), system.walls[0])
-        met = wall_meetings(system, moving, [wall] * len(moving))
+        met = wall_contacts(system, moving, [wall] * len(moving))
         yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
     if between == AUTO:
-        met = body_meetings(system, bodies)
+        met = pair_contacts(system, bodies)
         yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
 
 

@@ -1,4 +1,4 @@
-"""Who may meet whom: a few bodies that stand for all, and contacts of them that are made up to question a law."""
+"""A few bodies that stand for all, and contacts of them that are made up to question a law."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ MOST = 40
 """More bodies than that do not stand for all: then those with the extremes of all that counts do."""
 
 
-def kinds(system: System) -> tuple[tuple[int, ...], ...]:
-    """Bodies of one shape, mass, weight and freedom, each kind in the order of the expected speed."""
+def body_classes(system: System) -> tuple[tuple[int, ...], ...]:
+    """Bodies of one shape, mass, weight and freedom, each class in the order of the expected speed."""
     found = defaultdict(list)
     for i in np.argsort(system.loads.speed, kind="stable").tolist():
         body = shape_key(system.bodies[i]), float(system.mass[i]), *system.weight[i].tolist()
@@ -40,7 +40,7 @@ def representatives(system: System) -> tuple[int, ...]:
     """
     loads = system.loads
     stacks = loads.stacked_weight, loads.stacked_energy
-    chosen = sorted({i for kind in kinds(system) for i in _extremes(kind, (loads.speed, *stacks))})
+    chosen = sorted({i for kind in body_classes(system) for i in _extremes(kind, (loads.speed, *stacks))})
     if len(chosen) <= MOST:
         return tuple(chosen)
     size = np.array([body.bounding_radius for body in system.bodies])
@@ -54,7 +54,7 @@ def _extremes(bodies: Sequence[int], columns: Sequence[FloatArray]) -> set[int]:
     return {bodies[i] for order in orders for i in (*order[:2], *order[-2:])}
 
 
-def wall_meetings(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:
+def wall_contacts(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:
     """A contact of each of ``bodies`` with its wall, one of ``walls`` for each, gap zero."""
     normals = [facing_normal(system, body, wall.shape) for body, wall in zip(bodies, walls, strict=True)]
     radius = np.array([radius_of(wall.shape) for wall in walls])
@@ -75,7 +75,7 @@ def free(system: System, bodies: Sequence[int]) -> list[int]:
     return [i for i in bodies if not system.controlled[i]]
 
 
-def body_meetings(system: System, bodies: Sequence[int]) -> Contacts:
+def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:
     """A contact of each pair of ``bodies`` that are not parts of one, and of which one is free, gap zero."""
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]

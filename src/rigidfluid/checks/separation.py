@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rigidfluid.checks.encounters import meetings
+from rigidfluid.checks.design_contacts import representative_contacts
 from rigidfluid.checks.finding import Finding, Grade, figure
-from rigidfluid.core.contact.meetings import facing_normal, free, kinds
+from rigidfluid.core.contact.representative_contacts import body_classes, facing_normal, free
 from rigidfluid.core.contact.strength import chosen_strengths
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.system import System
@@ -43,7 +43,7 @@ def by_a_law(system: System) -> Iterator[Finding]:
 
 
 def _lawless(system: System) -> Iterator[Finding]:
-    for met in meetings(system):
+    for met in representative_contacts(system):
         if not any(interaction.law.conservative for interaction in met.interactions):
             names = system.surfaces[met.contacts.body_a[0]], system.surfaces[met.contacts.body_b[0]]
             laws = " and ".join(interaction.field for interaction in met.interactions)
@@ -68,7 +68,7 @@ def by_walls(system: System) -> Iterator[Finding]:
     """
     solid = {wall.name for wall in system.walls}
     for piece in system.domain.pieces:
-        name, moving = piece.name, (kind[0] for kind in kinds(system) if free(system, kind))
+        name, moving = piece.name, (kind[0] for kind in body_classes(system) if free(system, kind))
         driven = [body for body in moving if _drives(system, body, piece.shape)]
         if driven and name not in solid:
             text = f"{system.surfaces[driven[0]]} is driven to {name}, which is no wall and does not repel"

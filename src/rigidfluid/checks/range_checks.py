@@ -9,8 +9,8 @@ import numpy as np
 
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.contact.loads import impact_energy
-from rigidfluid.core.contact.meetings import free, kinds, wall_meetings
 from rigidfluid.core.contact.proximity import of_different_bodies
+from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
 from rigidfluid.core.mechanics.shapes import inscribed_radius
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
@@ -79,8 +79,8 @@ def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]
         if not np.array_equal(plane.unit_normal, -other.unit_normal):
             continue
         pair, width = [wall.name, opposite.name], float(plane.signed_distance(other.point[None])[0])
-        for kind in kinds(system):
-            both = wall_meetings(system, kind[:1] * 2, [wall, opposite])
+        for kind in body_classes(system):
+            both = wall_contacts(system, kind[:1] * 2, [wall, opposite])
             if free(system, kind) and interaction.acts_in(both).all():
                 yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, interaction)
 
@@ -117,7 +117,7 @@ def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | Non
         Warnings alone.
     """
     law, key = interaction.law, f"{interaction.field}.range"
-    smallest = min((kind[0] for kind in kinds(system)), key=lambda body: inscribed_radius(system.bodies[body]))
+    smallest = min((kind[0] for kind in body_classes(system)), key=lambda body: inscribed_radius(system.bodies[body]))
     name, size = system.surfaces[smallest], inscribed_radius(system.bodies[smallest])
     if law.range > size:
         text = f"the law reaches {figure(law.range)}, further than {name} is thick, {figure(size)} from its centre"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rigidfluid.checks.encounters import Encounters
+from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure
 from rigidfluid.checks.remedies import stronger
 from rigidfluid.checks.response import largest_force, rest_gap
@@ -16,12 +16,12 @@ _STACK = "stack"
 _ROUNDING = 1e-9
 
 
-def at_rest(met: Encounters) -> Iterator[Finding]:
+def at_rest(met: DesignContacts) -> Iterator[Finding]:
     """Compare the largest force without overlap with the weight, and say at which gap they balance.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, one at a wall or on another body.
 
     Yields
@@ -40,12 +40,12 @@ def at_rest(met: Encounters) -> Iterator[Finding]:
             yield _finding(met, row, float(share[row]), float(gaps[row]))
 
 
-def under_a_stack(met: Encounters) -> Iterator[Finding]:
+def under_a_stack(met: DesignContacts) -> Iterator[Finding]:
     """Compare the largest force without overlap with the weight of all that may come to press on the contact.
 
     Parameters
     ----------
-    met : Encounters
+    met : DesignContacts
         The bodies, one at a wall or on another body.
 
     Yields
@@ -63,7 +63,7 @@ def under_a_stack(met: Encounters) -> Iterator[Finding]:
             yield _stack(met, row, float(share[row]), float(gaps[row]))
 
 
-def _stack(met: Encounters, row: int, share: float, gap: float) -> Finding:
+def _stack(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
     pressing = float(met.stacked_weight[row])
     found = {"force_over_stacked_weight": share, "stacked_weight": pressing, "rest_gap": gap}
     text = f"{' on '.join(met.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
@@ -74,7 +74,7 @@ def _stack(met: Encounters, row: int, share: float, gap: float) -> Finding:
     return Finding("warning", _STACK, met.names(row), text, remedy, found, enough)
 
 
-def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
+def _finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
     pair = " on ".join(met.names(row))
     found = {"force_over_weight": share, "rest_gap": gap, "weight": float(met.weight[row])}
     if share >= 1.0:
@@ -87,6 +87,6 @@ def _finding(met: Encounters, row: int, share: float, gap: float) -> Finding:
     return Finding("error", QUESTION, met.names(row), text, remedy, found, enough)
 
 
-def _deepest(met: Encounters) -> float:
+def _deepest(met: DesignContacts) -> float:
     """How far into overlap a law is asked: no body is gone through [length]."""
     return min(met.law.range, min(body.bounding_radius for body in met.system.bodies))

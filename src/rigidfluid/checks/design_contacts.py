@@ -1,4 +1,4 @@
-"""What the questions are about: who may meet whom, and what such a contact must hold."""
+"""The contacts that the questions are about: which bodies may touch which, and what such a contact must hold."""
 
 from __future__ import annotations
 
@@ -17,7 +17,14 @@ from rigidfluid.core.contact.loads import (
     pair_energy,
     stacked_weight,
 )
-from rigidfluid.core.contact.meetings import body_meetings, facing_normal, free, kinds, representatives, wall_meetings
+from rigidfluid.core.contact.representative_contacts import (
+    body_classes,
+    facing_normal,
+    free,
+    pair_contacts,
+    representatives,
+    wall_contacts,
+)
 from rigidfluid.core.contact.stiffness import greatest_stiffness
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction, acting_together
@@ -27,11 +34,11 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.core.model.wall import Wall
 
 MOST_SHOWN = 8
-"""Of the kinds of pairs, for one question."""
+"""Of the classes of pairs, for one question."""
 
 
 @dataclass(frozen=True)
-class Encounters:
+class DesignContacts:
     """Contacts of bodies with walls, or with each other, as they are to be expected.
 
     ``weight`` (m,) presses the two together at rest [force], ``speed`` (m,) is that of the approach [length/time] and
@@ -80,7 +87,7 @@ class Encounters:
         return list(first.values())[:MOST_SHOWN]
 
 
-class Meetings(NamedTuple):
+class RepresentativeContacts(NamedTuple):
     """Contacts made up of bodies ``at_walls`` or with each other in which the same ``interactions`` act; none is where
     there are walls or pairs that no law keeps apart. ``pressing`` (m,): the part of the weight that acts across [1]."""
 
@@ -90,7 +97,7 @@ class Meetings(NamedTuple):
     pressing: FloatArray
 
 
-def meetings(system: System) -> Iterator[Meetings]:
+def representative_contacts(system: System) -> Iterator[RepresentativeContacts]:
     """Of bodies with the wall that their weight presses them on, or else any wall; and with each other.
 
     Parameters
@@ -100,21 +107,21 @@ def meetings(system: System) -> Iterator[Meetings]:
 
     Yields
     ------
-    Meetings
+    RepresentativeContacts
         For walls, and then for bodies, one for each set of interactions that act together.
     """
     bodies = representatives(system)
     moving = free(system, bodies)
     if system.walls and moving:
-        contacts = wall_meetings(system, moving, [_pressing(system, body) for body in moving])
+        contacts = wall_contacts(system, moving, [_pressing(system, body) for body in moving])
         yield from _by_interactions(system, True, contacts, _pressing_share(system, moving, contacts))
-    contacts = body_meetings(system, bodies)
+    contacts = pair_contacts(system, bodies)
     if len(contacts):
         yield from _by_interactions(system, False, contacts, np.ones(len(contacts)))
 
 
-def encounters(system: System) -> Iterator[Encounters]:
-    """The meetings in which a law with an energy acts, with all that is expected of them.
+def design_contacts(system: System) -> Iterator[DesignContacts]:
+    """The representative contacts in which a law with an energy acts, with all that is expected of them.
 
     Parameters
     ----------
@@ -123,22 +130,24 @@ def encounters(system: System) -> Iterator[Encounters]:
 
     Yields
     ------
-    Encounters
-        As `meetings` gives them.
+    DesignContacts
+        As `representative_contacts` gives them.
     """
-    kind = {body: number for number, alike in enumerate(kinds(system)) for body in alike}
-    for met in meetings(system):
+    kind = {body: number for number, alike in enumerate(body_classes(system)) for body in alike}
+    for met in representative_contacts(system):
         law = acting_together(met.interactions)
         if law is not None and law.conservative:
-            yield _encounters(system, law, met, kind)
+            yield _designed(system, law, met, kind)
 
 
-def _by_interactions(system: System, at_walls: bool, contacts: Contacts, pressing: FloatArray) -> Iterator[Meetings]:
+def _by_interactions(
+    system: System, at_walls: bool, contacts: Contacts, pressing: FloatArray
+) -> Iterator[RepresentativeContacts]:
     acts = np.array([interaction.acts_in(contacts) for interaction in system.interactions]).reshape(-1, len(contacts))
     for acting in dict.fromkeys(map(tuple, acts.T.tolist())):
         here = np.all(acts == np.array(acting)[:, None], axis=0)
         together = tuple(one for one, acting_here in zip(system.interactions, acting, strict=True) if acting_here)
-        yield Meetings(at_walls, together, select(contacts, here), pressing[here])
+        yield RepresentativeContacts(at_walls, together, select(contacts, here), pressing[here])
 
 
 def _pressing(system: System, body: int) -> Wall:
@@ -153,9 +162,9 @@ def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> Fl
     return share
 
 
-def _encounters(system: System, law: ForceLaw, met: Meetings, kind: Mapping[int, int]) -> Encounters:
+def _designed(system: System, law: ForceLaw, met: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
     loads, contacts = system.loads, met.contacts
-    return Encounters(
+    return DesignContacts(
         system=system,
         interactions=met.interactions,
         law=law,
