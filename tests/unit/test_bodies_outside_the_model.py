@@ -112,5 +112,5 @@ def test_contacts_that_weight_can_close_in_a_step_are_near() -> None:
     left = state.contacts.body_b == 1
     pull = abs(accelerations(system, system.weight[0], np.zeros(1))[0])
     needed = np.sqrt((state.contacts.gap[left][0] - 0.02) / (2.0 * np.linalg.norm(pull)))
-    assert len(near_contacts(system, state, 0.99 * needed)) == 0
-    assert near_contacts(system, state, 1.01 * needed).body_b.tolist() == [1, 2]  # left and right alike
+    assert len(near_contacts(system, state, 0.0, 0.99 * needed)) == 0
+    assert near_contacts(system, state, 0.0, 1.01 * needed).body_b.tolist() == [1, 2]  # left and right alike

@@ -111,7 +111,7 @@ def known_parts(scene: Scene) -> Parts:
         As `select_plugins` gives them, which also raises.
     """
     if id(scene) not in _KNOWN:
-        _KNOWN[id(scene)] = select_plugins(scene)
+        _KNOWN[id(scene)] = select_plugins(scene.model_copy())  # itself it would live for ever
         weakref.finalize(scene, _KNOWN.pop, id(scene))
     return _KNOWN[id(scene)]
 
