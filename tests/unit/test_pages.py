@@ -81,12 +81,43 @@ def test_the_example_of_a_plug_in_runs(install: Install) -> None:
     assert history.bodies["cfx"].any()
 
 
-def test_the_example_of_a_domain_runs(install: Install) -> None:
-    """A disk falls in the round container, stays inside, and all energy is accounted for."""
+def refuse_failed_contract(folder: Path, code: str, test: Path) -> None:
+    """Fail if a contract on a page does not hold for the modules in a ``folder``."""
+    test.write_text(code)
+    path = os.pathsep.join([str(folder), *filter(None, sys.path)])
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(test)]
+    done = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "passed" in done.stdout
+
+
+def test_the_contract_of_the_example_law_holds(install: Install, tmp_path: Path) -> None:
+    page = text("docs/plugins.md")
+    folder = install(blocks(section(page, "A force law, from nothing"), "python")[0], module="rigidfluid_linear")
+    (contract,) = blocks(section(page, "Its test"), "python")
+    refuse_failed_contract(folder, contract, tmp_path / "test_linear.py")
+
+
+def test_the_example_of_a_body_runs(install: Install, tmp_path: Path) -> None:
+    """It falls onto the floor of a box, dry, comes back, and keeps its energy; its contract holds."""
+    example = section(text("docs/plugins.md"), "A body, from nothing")
+    code, contract = blocks(example, "python")
+    (table,) = (tomllib.loads(block)["body"] for block in blocks(example, "toml"))
+    folder = install(code, name="capsule", module="rigidfluid_capsule")
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.06", "time.step=2e-4"]).to_dict()
+    scene["contact"] = {"law": "normal", "range": 0.02, "epsilon": "auto"}
+    history = rigidfluid.run(rigidfluid.scene_from_dict(scene | {"body": [table[0] | {"velocity": [0.0, -3.0]}]}))
+    assert history.bodies["vy"].max() > 0.0
+    assert abs(history.summary["energy"]["relative_residual"]) < 1e-3
+    refuse_failed_contract(folder, contract, tmp_path / "test_capsule.py")
+
+
+def test_the_example_of_a_domain_runs(install: Install, tmp_path: Path) -> None:
+    """A disk falls in the round container, stays inside, and all energy is accounted for; its contract holds."""
     example = section(text("docs/plugins.md"), "A domain, from nothing")
-    code, _ = blocks(example, "python")
+    code, contract = blocks(example, "python")
     (domain,) = (tomllib.loads(block) for block in blocks(example, "toml"))
-    install(code, name="dish", module="rigidfluid_dish")
+    folder = install(code, name="dish", module="rigidfluid_dish")
     assert Registry.load().get(DOMAIN, "dish").__doc__
     scene = rigidfluid.load_scene(SCENES / "falling_disk.toml", COARSE).to_dict()
     scene |= domain | {"body": [{"type": "sphere", "radius": 0.125, "density": 1.25, "position": [0.3, -0.6]}]}
@@ -95,6 +126,7 @@ def test_the_example_of_a_domain_runs(install: Install) -> None:
     assert history.bodies["y"][-1] < -0.7
     energy = history.summary["energy"]
     assert max(energy["created"], energy["lost"]) < 0.01
+    refuse_failed_contract(folder, contract, tmp_path / "test_dish.py")
 
 
 def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> None:
@@ -108,19 +140,14 @@ def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> No
         scene = rigidfluid.scene_from_dict(base | {"body": [], "mechanism": [table[0] | {"type": kind}]})
         names = rigidfluid.run(scene).bodies["body"]
         assert set(names) == {"dumbbell", "dumbbell.left", "dumbbell.right"}
-    test = tmp_path / "test_dumbbell.py"
     both = "params=[(Dumbbell, 2), (Dumbbell, 3), (Stroke, 2), (Stroke, 3)]"
-    test.write_text(
+    of_both = (
         contract.replace("import Dumbbell,", "import Dumbbell, Stroke,")
         .replace("params=[2, 3]", both)
         .replace("return Dumbbell(", "return request.param[0](")
         .replace("request.param)", "request.param[1])")
     )
-    path = os.pathsep.join([str(folder), *filter(None, sys.path)])
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(test)]
-    done = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout
-    assert "passed" in done.stdout
+    refuse_failed_contract(folder, of_both, tmp_path / "test_dumbbell.py")
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
