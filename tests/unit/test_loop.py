@@ -69,7 +69,7 @@ def test_all_levels_are_tried(monkeypatch):
     tried = []
 
     def refuse(*arguments):
-        tried.append(arguments[-2])
+        tried.append(arguments[-3])
         raise StepRejected("x", "y", "z", "Mend it.")
 
     monkeypatch.setattr(loop, "attempt", refuse)
