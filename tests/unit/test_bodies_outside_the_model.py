@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.contact.contact_path import follow, near_contacts
+from rigidfluid.core.contact.contact_path import advance_bodies, near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
@@ -96,7 +96,7 @@ def test_what_contacts_gave_in_the_latest_step_does_not_go_on(dimension: int) ->
     before = Twist(system.twist.velocity - STEP * linear, system.twist.angular_velocity - STEP * angular)
     state = state_after(system, before, Wrench(force[None, :], torque[None, :]))
     empty = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), NONE, Asked(NONE, NONE), False)
-    end = follow(system, state, 0.0, STEP, Coupling(empty, NONE, NONE, NONE))
+    end = advance_bodies(system, state, 0.0, STEP, Coupling(empty, NONE, NONE, NONE))
     for found, kept, given in (
         (end.twist.velocity, system.twist.velocity, linear),
         (end.twist.angular_velocity, system.twist.angular_velocity, angular),

@@ -39,7 +39,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     recorded(Stepper, "longest", "propose a level")
     recorded(stepper, "expected_coupling", "expect the coupling")
-    recorded(stepper, "follow", "follow the bodies")
+    recorded(stepper, "advance_bodies", "follow the bodies")
     recorded(MeshUpdater, "remesh_if_needed", "adapt the mesh")
     recorded(MeshUpdater, "deform", "move the mesh")
     recorded(step, "detect_contacts_and_gaps", "detect contacts")

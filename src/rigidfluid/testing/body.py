@@ -40,10 +40,10 @@ class BodyContract:
         centre = _inside(body).mean(axis=0)
         assert np.abs(centre).max() < self.quadrature_tolerance * body.bounding_radius
 
-    def test_gyration_is_that_of_the_inside(self, body: Body) -> None:
-        """Gyration = mean of |r|² I - r rᵀ over the inside, in 2D its scalar."""
+    def test_unit_inertia_is_that_of_the_inside(self, body: Body) -> None:
+        """Unit inertia = mean of |r|² I - r rᵀ over the inside, in 2D its scalar."""
         inside = _inside(body)
-        counted = _gyration(inside)
+        counted = _unit_inertia(inside)
         assert body.unit_inertia.shape == counted.shape
         np.testing.assert_allclose(
             body.unit_inertia, counted, rtol=0, atol=self.quadrature_tolerance * np.abs(counted).max()
@@ -156,7 +156,7 @@ def _inside(body: Body) -> FloatArray:
     return points[body.signed_distance(points) < 0]
 
 
-def _gyration(points: FloatArray) -> FloatArray:
+def _unit_inertia(points: FloatArray) -> FloatArray:
     square = np.mean(np.sum(points**2, axis=1))
     if points.shape[1] == 2:
         return np.full((1, 1), square)

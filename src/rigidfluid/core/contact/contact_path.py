@@ -63,16 +63,16 @@ class BodyStep:
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them, ``friction`` that the fluid's own solutions do not see and ``held`` against them by what drives bodies and
-    walls [energy], the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without
-    contacts. ``free``: what carries the bodies, None where each moves by itself.
+    them, ``friction`` that the fluid's own solutions do not see, and ``actuator_work`` against them by what drives
+    bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None
+    without contacts. ``free``: what carries the bodies, None where each moves by itself.
     """
 
     pose: Pose
     twist: Twist
     impulse: Wrench
     dissipated: float
-    held: float
+    actuator_work: float
     substeps: int
     friction: float = 0.0
     coupling: Coupling | None = None
@@ -94,7 +94,7 @@ class BodyStep:
         return self.impulse if self.free is None else self.free.contact
 
 
-def follow(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
+def advance_bodies(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
     """Follow the bodies through one step, kicked by their contacts in velocity Verlet substeps.
 
     Without a fluid the substeps are the whole motion. In a fluid they take the place of the fluid's own small steps:
@@ -124,11 +124,11 @@ def follow(system: System, state: State, start: float, size: float, coupling: Co
         If bodies overlap on the way, or a contact is too stiff to be followed.
     """
     if not system.backend.needs_mesh:
-        return _follow_free(system, state, start, size)
+        return _advance_free(system, state, start, size)
     if coupling is None or system.law is None:
         pose = predict_pose(state.free_pose, state.free_twist, state.past_twist, size, state.past_step)
         return _undisturbed(system, pose, state.free_twist, start + size)
-    return _follow_coupled(system, system.law, state, start, size, coupling)
+    return _advance_coupled(system, system.law, state, start, size, coupling)
 
 
 def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:
@@ -157,12 +157,12 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
-def _follow_free(system: System, state: State, start: float, size: float) -> BodyStep:
+def _advance_free(system: System, state: State, start: float, size: float) -> BodyStep:
     movement = _dry(system, state, start)
     if system.law is None:
-        return _coast(movement, size)
+        return _free_flight(movement, size)
     if system.implicit:
-        return _cross_free(system, system.law, movement, size)
+        return _implicit_free(system, system.law, movement, size)
     reach, span = _horizon(system, movement, size)
     return _resolve(system, system.law, movement, _detected(system, reach), size, span)
 
@@ -182,7 +182,7 @@ def _dry(system: System, state: State, start: float) -> BodyDynamics:
     return ComponentDynamics(rigid, mechanisms, start, weight)
 
 
-def _follow_coupled(
+def _advance_coupled(
     system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
 ) -> BodyStep:
     motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
@@ -192,7 +192,7 @@ def _follow_coupled(
     if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
         motions.vary_load(size)
     if system.implicit:
-        path = _cross_coupled(system, law, movement, near, size)
+        path = _implicit_coupled(system, law, movement, near, size)
     else:
         contacts_at: Callable[[Pose], Contacts]
         if system.detector.needs_mesh:
@@ -205,22 +205,22 @@ def _follow_coupled(
     return replace(path, coupling=coupling)
 
 
-def _cross_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> BodyStep:
+def _implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> BodyStep:
     """One implicit step; contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
     reach = law.range + 4.0 * _fastest(system, movement, size) * size
     contacts = TrackedPairs(system, movement.pose, reach)
     if len(contacts.start) == 0:
-        return _coast(movement, size)
-    return _crossed(system, law, movement, contacts.start, contacts.at, size)[0]
+        return _free_flight(movement, size)
+    return _implicit_step(system, law, movement, contacts.start, contacts.at, size)[0]
 
 
-def _cross_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
+def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
     """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
 
     In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
     be too great for the fluid's mass.
     """
-    part, impulse, lost, held = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
+    part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
     followed = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
     reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
     for _ in range(IMPLICIT_PARTS):
@@ -230,15 +230,15 @@ def _cross_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: 
             contacts = TrackedPairs(system, movement.pose, reach)
             start, contacts_at = contacts.start, contacts.at
         if len(start) == 0:
-            _coast(movement, part)
+            _free_flight(movement, part)
             continue
-        path, movement = _crossed(system, law, movement, start, contacts_at, part)
+        path, movement = _implicit_step(system, law, movement, start, contacts_at, part)
         impulse = _added(impulse, path.impulse, 1.0)
-        lost, held = lost + path.dissipated, held + path.held
-    return _arrived(movement, impulse, lost, held, IMPLICIT_PARTS, movement.friction_loss)
+        lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
+    return _arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS, movement.friction_loss)
 
 
-def _crossed(
+def _implicit_step(
     system: System,
     law: ForceLaw,
     movement: M,
@@ -254,8 +254,8 @@ def _crossed(
         0.5 * (before.velocity + after.velocity),
         0.5 * (before.angular_velocity + after.angular_velocity),
     )
-    held = driven - float(power(impulse, mean)[_driven(system)].sum())
-    return _arrived(end, impulse, lost, held, 1), end
+    actuator_work = driven - float(power(impulse, mean)[_driven(system)].sum())
+    return _arrived(end, impulse, lost, actuator_work, 1), end
 
 
 def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
@@ -287,7 +287,7 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling)
 
 
-def _coast(movement: BodyDynamics, size: float) -> BodyStep:
+def _free_flight(movement: BodyDynamics, size: float) -> BodyStep:
     none = nothing(movement.pose)
     movement.kick(none, 0.5 * size)
     movement.drift(size)
@@ -296,11 +296,11 @@ def _coast(movement: BodyDynamics, size: float) -> BodyStep:
 
 
 def _arrived(
-    movement: BodyDynamics, impulse: Wrench, dissipated: float, held: float, count: int, friction: float = 0.0
+    movement: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int, friction: float = 0.0
 ) -> BodyStep:
     """At the end of a step, or of a part of it."""
     end = movement.pose, movement.twist, impulse
-    return BodyStep(*end, dissipated, held, count, friction, free=movement.free)
+    return BodyStep(*end, dissipated, actuator_work, count, friction, free=movement.free)
 
 
 def _resolve(
@@ -317,36 +317,36 @@ def _resolve(
     are over.
     """
     contacts = contacts_at(movement.pose)
-    impulse, dissipated, held, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
-    push = _push(system, law, contacts, movement)
-    planned, coast, substep = 0.0, 0.0, 0.0
+    impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
+    push = _contact_load(system, law, contacts, movement)
+    planned, free_flight, substep = 0.0, 0.0, 0.0
     while left > 0.0:
         if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
             planned = min(left, span)
-            coast, substep = _plan(system, law, contacts, movement, size, planned)
-            planned = min(planned, coast + MOST_ALIKE * substep)
-        part = min(coast or substep, left)
+            free_flight, substep = _plan(system, law, contacts, movement, size, planned)
+            planned = min(planned, free_flight + MOST_ALIKE * substep)
+        part = min(free_flight or substep, left)
         movement.kick(push.wrench, 0.5 * part)
         movement.drift(part)
         contacts = contacts_at(movement.pose)
         _refuse_overlap(system, contacts)
-        before, push = push, _push(system, law, contacts, movement)
+        before, push = push, _contact_load(system, law, contacts, movement)
         movement.kick(push.wrench, 0.5 * part)
         impulse = _added(_added(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
         dissipated += 0.5 * part * (before.loss + push.loss)
-        held += 0.5 * part * (before.held + push.held)
-        count, coast, planned = count + 1, 0.0, planned - part
+        actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
+        count, free_flight, planned = count + 1, 0.0, planned - part
         left = left - part if left - part > ROUNDING * size else 0.0
         if count == MOST_SUBSTEPS and left > 0.0:
             raise _too_stiff(system, contacts, part)
-    return _arrived(movement, impulse, dissipated, held, count)
+    return _arrived(movement, impulse, dissipated, actuator_work, count)
 
 
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
     planned = plan(law, contacts, movement, _surfaces(system), size, span)
-    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.coast > HOPELESS * planned.substep:
+    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.free_flight > HOPELESS * planned.substep:
         raise _too_stiff(system, contacts, planned.substep)
     return planned
 
@@ -360,30 +360,30 @@ def _surfaces(system: System) -> Reach:
     return Reach(np.where(alone, arms(system), radii), system.leverage)
 
 
-class _Push(NamedTuple):
+class _ContactLoad(NamedTuple):
     """What the contacts do at one moment: their ``wrench``, the power ``loss`` that their dampers take, and the power
-    ``held`` that drives of bodies and walls give."""
+    ``actuator_work`` that drives of bodies and walls give."""
 
     wrench: Wrench
     loss: float
-    held: float
+    actuator_work: float
 
 
-def _push(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _Push:
+def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _ContactLoad:
     if len(contacts) == 0:
-        return _Push(nothing(movement.pose), 0.0, 0.0)
+        return _ContactLoad(nothing(movement.pose), 0.0, 0.0)
     force, loss = law.force(contacts), 0.0
     if law.dissipative:
         motion = relative_motion(contacts, movement, system.wall_velocity)
         damping = law.damping(contacts, motion)
         force, loss = force + damping, -float(np.sum(damping * motion.velocity))
-    wrench, held = contact_wrench(contacts, force, movement.pose), 0.0
+    wrench, actuator_work = contact_wrench(contacts, force, movement.pose), 0.0
     driven = _driven(system)
     if driven.any():
-        held = -float(power(wrench, _given_twist(system, movement))[driven].sum())
+        actuator_work = -float(power(wrench, _given_twist(system, movement))[driven].sum())
     if system.wall_velocity is not None:
-        held += float(np.sum(force * system.wall_velocity[contacts.body_b]))
-    return _Push(wrench, loss, held)
+        actuator_work += float(np.sum(force * system.wall_velocity[contacts.body_b]))
+    return _ContactLoad(wrench, loss, actuator_work)
 
 
 def _driven(system: System) -> BoolArray:
@@ -423,7 +423,7 @@ def _fastest(system: System, movement: BodyDynamics, size: float) -> float:
     """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
     twist = movement.twist
     turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
-    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.pull(size)))
+    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.max_acceleration(size)))
 
 
 def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:

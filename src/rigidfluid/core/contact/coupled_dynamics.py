@@ -90,7 +90,7 @@ class CoupledDynamics:
         inside = sparse.csr_matrix((dense.ravel(), (rows, columns)), shape=(width * len(self._velocity),) * 2)
         return sparse.csr_matrix(own + inside)
 
-    def pull(self, time: float) -> FloatArray:
+    def max_acceleration(self, time: float) -> FloatArray:
         """|A|, or |M⁻¹Φ|, whatever the time."""
         return np.asarray(np.linalg.norm(self._rate[:, : self.pose.position.shape[1]], axis=1))
 

@@ -91,27 +91,29 @@ def implicit_contact_step(
     Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162; Simo, Tarnow & Wong, Comput. Methods Appl. Mech.
     Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z.
     """
-    look = _straight_on(movement, start, size, wall_velocity)
-    force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, look, size)
+    iterate = _straight_on(movement, start, size, wall_velocity)
+    force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
     for update in range(MOST_UPDATES):
-        offset, free = look.way - look.gap, look.gap - look.compliance @ force
-        problem = Problem(law, start, free, look.compliance, look.scale, dampers.across, offset)
+        offset, free = iterate.way - iterate.gap, iterate.gap - iterate.compliance @ force
+        problem = Problem(law, start, free, iterate.compliance, iterate.scale, dampers.across, offset)
         force, gap = contact_forces(problem, force, gap)
-        spring = (force + dampers.across * (gap + offset)) / look.scale
-        push = force[:, None] * look.middle.normal + dampers.along
-        before = look
-        acting = contact_wrench(look.middle, push, look.pose)
-        look = _evaluate(law, movement, start, contacts_at, acting, look.place, size, wall_velocity)
+        spring = (force + dampers.across * (gap + offset)) / iterate.scale
+        push = force[:, None] * iterate.middle.normal + dampers.along
+        before = iterate
+        acting = contact_wrench(iterate.middle, push, iterate.pose)
+        iterate = _evaluate(law, movement, start, contacts_at, acting, iterate.place, size, wall_velocity)
         used = dampers
         if update < MOST_FORCE_UPDATES:
-            dampers = _dampers(law, look, size)
+            dampers = _dampers(law, iterate, size)
         else:
-            look = look._replace(scale=before.scale)
-        wanted = (look.scale * spring - dampers.across * look.way)[:, None] * look.middle.normal + dampers.along
-        if _converged(law, look, gap, wanted - push):
+            iterate = iterate._replace(scale=before.scale)
+        wanted = (iterate.scale * spring - dampers.across * iterate.way)[
+            :, None
+        ] * iterate.middle.normal + dampers.along
+        if _converged(law, iterate, gap, wanted - push):
             driven = 0.0 if wall_velocity is None else size * float(np.sum(push * wall_velocity[start.body_b]))
-            return _crossing(look, used, size, driven)
-        gap = look.gap
+            return _crossing(iterate, used, size, driven)
+        gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
 
@@ -184,30 +186,30 @@ def _compliance(contacts: Contacts, movement: BodyDynamics, size: float) -> Any:
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
 
-def _dampers(law: ForceLaw, look: _Iterate[M], size: float) -> _Dampers:
+def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
     if not law.dissipative:
-        return _Dampers(np.zeros_like(look.way), np.zeros_like(look.middle.normal))
-    speed, normal = _normal_part(look.motion.velocity, look.middle), look.middle.normal
+        return _Dampers(np.zeros_like(iterate.way), np.zeros_like(iterate.middle.normal))
+    speed, normal = _normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
     speed = np.where(speed == 0.0, 1.0, speed)
-    straight = law.damping(look.middle, replace(look.motion, velocity=speed[:, None] * normal))
-    whole = law.damping(look.middle, look.motion)
-    along = whole - _normal_part(whole, look.middle)[:, None] * normal
-    return _Dampers(-_normal_part(straight, look.middle) / speed / size, along)
+    straight = law.damping(iterate.middle, replace(iterate.motion, velocity=speed[:, None] * normal))
+    whole = law.damping(iterate.middle, iterate.motion)
+    along = whole - _normal_part(whole, iterate.middle)[:, None] * normal
+    return _Dampers(-_normal_part(straight, iterate.middle) / speed / size, along)
 
 
-def _converged(law: ForceLaw, look: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
+def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
     """Whether gaps are as foreseen, and what the forces still lack moves nothing."""
-    enough = TOLERANCE * law.range + _ROUNDING * np.abs(look.pose.position).max()
-    moved = look.compliance.diagonal() * np.linalg.norm(missing, axis=1)
-    return bool(np.all(np.abs(look.gap - gap) <= enough) and np.all(moved <= enough))
+    enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
+    moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
+    return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _crossing(look: _Iterate[M], dampers: _Dampers, size: float, driven: float) -> Crossing[M]:
+def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float) -> Crossing[M]:
     """The step is done, unless dampers that were not renewed to the end would give energy."""
-    lost = float(np.sum(dampers.across * look.way**2) - size * np.sum(dampers.along * look.motion.velocity))
+    lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
     if lost < 0.0:
         raise _rejected("dampers that would give energy")
-    return Crossing(look.movement, look.wrench, lost, driven)
+    return Crossing(iterate.movement, iterate.wrench, lost, driven)
 
 
 def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:

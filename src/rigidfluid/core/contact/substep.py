@@ -34,9 +34,9 @@ class Reach(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """``coast``: for how long nothing can touch [time]; ``substep``: what resolves the contacts from then on [time]."""
+    """``free_flight``: for how long nothing can touch; ``substep``: what resolves the contacts from then on [time]."""
 
-    coast: float
+    free_flight: float
     substep: float
 
 
@@ -68,14 +68,14 @@ def plan(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach
     """
     if len(contacts) == 0:
         return Plan(span, span)
-    pulled = _of_both(movement.pull(span), contacts).sum(axis=1)
+    pulled = _of_both(movement.max_acceleration(span), contacts).sum(axis=1)
     approach = _approach(law, contacts, movement, reach)
     speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
     halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
     substep = size / 2.0 ** ceil(halvings)
-    coast = min(float(first.min()), span)
-    return Plan(coast if coast > substep else 0.0, substep)
+    free_flight = min(float(first.min()), span)
+    return Plan(free_flight if free_flight > substep else 0.0, substep)
 
 
 class _Approach(NamedTuple):

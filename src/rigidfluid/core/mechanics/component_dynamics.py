@@ -92,14 +92,14 @@ class ComponentDynamics:
         other._motions = self._motions.copied()
         return other
 
-    def pull(self, time: float) -> FloatArray:
+    def max_acceleration(self, time: float) -> FloatArray:
         """Of the motion, and by its rotation: |α| |arm| + |ω|² |arm|; and what changes in the relative motion."""
         now = self.kinematics
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
         turning = (self._motions.angular_pull(time) + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
         later = self._mechanisms.at(self._motions.pose, self._time + time)
         change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
-        return np.asarray(self._motions.pull(time)[now.carrier] + turning + change / time)
+        return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the motions' twists as contacts with this ``wrench`` on the bodies, and all else that acts, do."""

@@ -57,7 +57,7 @@ class BodyDynamics(Protocol):
     def copied(self) -> Self:
         """The same motion, to be tried out."""
 
-    def pull(self, time: float) -> FloatArray:
+    def max_acceleration(self, time: float) -> FloatArray:
         """Greatest acceleration of each body in so much time from now by all but contacts, (n,) [length/time²]."""
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
@@ -140,7 +140,7 @@ class DryDynamics:
         other._velocity, other._momentum = self._velocity.copy(), self._momentum.copy()
         return other
 
-    def pull(self, time: float) -> FloatArray:
+    def max_acceleration(self, time: float) -> FloatArray:
         """|W|/m, and of driven bodies the greatest change of velocity over the time that it is in."""
         fall = np.linalg.norm(self._weight, axis=1) / self._mass
         if not self._driven:

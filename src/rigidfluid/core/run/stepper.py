@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodyStep, first_step_again, follow
+from rigidfluid.core.contact.contact_path import BodyStep, advance_bodies, first_step_again
 from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen, unsteady
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, least_gaps, travel
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
@@ -120,7 +120,7 @@ class Stepper:
             with self._watch("response"):
                 coupling = expected_coupling(self.system, state, time, size)
         with self._watch("contact"):
-            path = follow(self.system, state, time, size, coupling)
+            path = advance_bodies(self.system, state, time, size, coupling)
         return self._as_given(path, state, level)
 
     def _as_given(self, path: BodyStep, state: State, level: int) -> BodyStep:
