@@ -31,7 +31,7 @@ from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.state import FreeMotions, State
+from rigidfluid.core.model.state import CarriedState, FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -59,7 +59,7 @@ M = TypeVar("M", bound=BodyDynamics)
 
 
 @dataclass(frozen=True, slots=True)
-class BodyStep:
+class BodyStep(CarriedState):
     """Where the bodies are at the end of a step, and what the contacts did to them on the way.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
@@ -77,16 +77,6 @@ class BodyStep:
     friction: float = 0.0
     coupling: Coupling | None = None
     free: FreeMotions | None = None
-
-    @property
-    def free_pose(self) -> Pose:
-        """Of the motions that carry the bodies."""
-        return self.pose if self.free is None else self.free.pose
-
-    @property
-    def free_twist(self) -> Twist:
-        """Of the motions that carry the bodies."""
-        return self.twist if self.free is None else self.free.twist
 
     @property
     def free_impulse(self) -> Wrench:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import Part, PartOptions
+from rigidfluid.core.model.interfaces import SpatialPart
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray
 
@@ -29,7 +29,7 @@ class Piece:
     coordinates: Callable[[FloatArray], FloatArray] | None = None
 
 
-class Domain(Part):
+class Domain(SpatialPart):
     """A bounded region, its boundary made of named pieces.
 
     Surfaces are numbered through, the n bodies first: piece i is surface n + i. Nodes of the mesh slide along flat
@@ -44,10 +44,6 @@ class Domain(Part):
     dimension : int
         2 or 3.
     """
-
-    def __init__(self, options: PartOptions, dimension: int) -> None:
-        self.options = options
-        self.dimension = dimension
 
     @property
     @abstractmethod

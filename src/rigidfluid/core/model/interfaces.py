@@ -52,7 +52,15 @@ class Part(ABC):
     Options: ClassVar[type[PartOptions]] = PartOptions
 
 
-class Body(Surface, Part):
+class SpatialPart(Part):
+    """A part of so many space dimensions, with the options that its table gives it."""
+
+    def __init__(self, options: PartOptions, dimension: int) -> None:
+        self.options = options
+        self.dimension = dimension
+
+
+class Body(Surface, SpatialPart):
     """A rigid shape in its own frame, its centre of mass at the origin.
 
     Parameters
@@ -62,10 +70,6 @@ class Body(Surface, Part):
     dimension : int
         2 or 3.
     """
-
-    def __init__(self, options: PartOptions, dimension: int) -> None:
-        self.options = options
-        self.dimension = dimension
 
     @property
     @abstractmethod
@@ -116,7 +120,7 @@ class Component:
     density: float
 
 
-class Mechanism(Part):
+class Mechanism(SpatialPart):
     """Several rigid bodies that move as one: freely together, and relatively as a function of time or not at all.
 
     Parameters
@@ -129,10 +133,6 @@ class Mechanism(Part):
 
     driven: ClassVar[bool] = False
     """Whether the placement changes with time; else it is asked for once."""
-
-    def __init__(self, options: PartOptions, dimension: int) -> None:
-        self.options = options
-        self.dimension = dimension
 
     @property
     @abstractmethod

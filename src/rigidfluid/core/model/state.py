@@ -32,6 +32,26 @@ class FreeMotions:
     hydrodynamic: Wrench
 
 
+class CarriedState:
+    """What has the ``pose`` and ``twist`` of bodies, and in ``free`` those of the motions that carry them, None where
+    each moves by itself."""
+
+    __slots__ = ()
+    pose: Pose
+    twist: Twist
+    free: FreeMotions | None
+
+    @property
+    def free_pose(self) -> Pose:
+        """Of the motions that carry the bodies."""
+        return self.pose if self.free is None else self.free.pose
+
+    @property
+    def free_twist(self) -> Twist:
+        """Of the motions that carry the bodies."""
+        return self.twist if self.free is None else self.free.twist
+
+
 @dataclass(frozen=True, slots=True)
 class Past:
     """One step earlier, of the motions: what second order in time needs."""
@@ -42,7 +62,7 @@ class Past:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class State(CarriedState):
     """An accepted state.
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
@@ -71,16 +91,6 @@ class State:
     impact: int | None = None
     remesh_failed: int | None = None
     free: FreeMotions | None = None
-
-    @property
-    def free_pose(self) -> Pose:
-        """Of the motions that carry the bodies."""
-        return self.pose if self.free is None else self.free.pose
-
-    @property
-    def free_twist(self) -> Twist:
-        """Of the motions that carry the bodies."""
-        return self.twist if self.free is None else self.free.twist
 
     @property
     def free_contact(self) -> Wrench:

@@ -124,7 +124,7 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 
 def _power(system: System, advance: Advance, step: Step) -> Power:
     """What enters by the boundary, what drives bodies through the fluid or relatively, what the fluid dissipates."""
-    given, where = (advance.twist, step.controlled) if step.kinematics is None else given_twist(step)
+    given, where = given_twist(step)
     driven = power(advance.hydrodynamic_wrench, given)[where]
     return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
 

@@ -17,7 +17,7 @@ from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.parts import known_parts
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -90,7 +90,7 @@ def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[s
     if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
         return {"reynolds_solid_density": None, "reynolds": None}
     per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
-    solid = np.array([body.density for body in with_components(scene)[0].body])
+    solid = np.array([body.density for body in known_parts(scene).scene.body])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),
         "reynolds": float(np.max(per_density) * scene.fluid.density),

@@ -24,6 +24,18 @@ Angular = Annotated[
         json_schema_input_type=float | tuple[float, ...],
     ),
 ]
+# How bodies and mechanisms start, in their keys alike.
+InitialPosition = Annotated[Vector, Field(description="Initial position of the centre of mass [length]")]
+InitialAngle = Annotated[float | None, Field(description="Initial angle, counter-clockwise; only in 2D [rad]")]
+InitialOrientation = Annotated[
+    tuple[float, float, float, float] | None,
+    Field(description="Initial orientation, a quaternion, scalar first; 3D only; normalised when read [1]"),
+]
+InitialVelocity = Annotated[Vector | None, Field(description="Initial velocity; zero if not given [length/time]")]
+InitialAngularVelocity = Annotated[
+    Angular | None,
+    Field(description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"),
+]
 Condition = Annotated[
     Literal["wall", "velocity", "pressure", "slip", "symmetry"],
     AfterValidator(lambda value: "slip" if value == "symmetry" else value),
@@ -115,15 +127,11 @@ class BodyTable(_OpenTable):
     )
     type: str = Field(description="Name of a body type")
     density: Positive = Field(description="Density of the body [mass/length^d]")
-    position: Vector = Field(description="Initial position of the centre of mass [length]")
-    angle: float | None = Field(default=None, description="Initial angle, counter-clockwise; only in 2D [rad]")
-    orientation: tuple[float, float, float, float] | None = Field(
-        default=None, description="Initial orientation, a quaternion, scalar first; 3D only; normalised when read [1]"
-    )
-    velocity: Vector | None = Field(default=None, description="Initial velocity; zero if not given [length/time]")
-    angular_velocity: Angular | None = Field(
-        default=None, description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"
-    )
+    position: InitialPosition
+    angle: InitialAngle = None
+    orientation: InitialOrientation = None
+    velocity: InitialVelocity = None
+    angular_velocity: InitialAngularVelocity = None
     part_of: str | None = Field(
         default=None, description="Name of the articulated body it is a part of; parts of one body do not repel"
     )
@@ -140,15 +148,11 @@ class MechanismTable(_OpenTable):
         description="Name in the results, before those of its components; `mechanism0`, … if not given",
     )
     type: str = Field(description="Name of a mechanism")
-    position: Vector = Field(description="Initial position of the centre of mass [length]")
-    angle: float | None = Field(default=None, description="Initial angle, counter-clockwise; only in 2D [rad]")
-    orientation: tuple[float, float, float, float] | None = Field(
-        default=None, description="Initial orientation, a quaternion, scalar first; 3D only; normalised when read [1]"
-    )
-    velocity: Vector | None = Field(default=None, description="Initial velocity; zero if not given [length/time]")
-    angular_velocity: Angular | None = Field(
-        default=None, description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"
-    )
+    position: InitialPosition
+    angle: InitialAngle = None
+    orientation: InitialOrientation = None
+    velocity: InitialVelocity = None
+    angular_velocity: InitialAngularVelocity = None
 
 
 class ContactTable(_OpenTable):
