@@ -32,8 +32,9 @@ def transfer(
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
-    projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
+    projected, on the mesh where it belongs. ``forget`` drops what solutions before have left.
     """
+    forget()
     on_nodes = Samples(old, source, target.numbering.node_points(new.points))
     on_vertices = Samples(old, source, new.points)
     moved = dict(fluid)
@@ -43,7 +44,6 @@ def transfer(
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position = fluid["position" + suffix]
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
-        forget()
         moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
     forget()
     return moved
