@@ -10,6 +10,9 @@ from rigidfluid.taylor_hood.numbering import EDGES
 
 _CANDIDATES = (8, 64, 512)
 _INSIDE = -1e-10
+_ITERATIONS, _ENOUGH = 30, 1e-14
+_BEYOND = 0.2
+"""So far outside a curved cell, in its coordinates, its map is trusted."""
 
 
 def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -34,6 +37,24 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
             break
     inside = np.maximum(coordinates, 0.0)
     return cell, inside / inside.sum(axis=1, keepdims=True)
+
+
+def on_curved_cells(nodes: FloatArray, coordinates: FloatArray, targets: FloatArray) -> FloatArray:
+    """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d).
+
+    From ``coordinates`` (N, d+1) in the straight cells on, by Newton's method with the straight cells' matrices; moved
+    inside.
+    """
+    corners = np.swapaxes(nodes[:, 1 : coordinates.shape[1]] - nodes[:, :1], 1, 2)
+    for _ in range(_ITERATIONS):
+        missed = targets - np.einsum("nb,nbd->nd", quadratic_basis(coordinates), nodes)
+        rest = np.linalg.solve(corners, missed[..., None])[..., 0]
+        coordinates = coordinates + np.column_stack([-rest.sum(axis=1), rest])
+        coordinates = np.clip(coordinates, -_BEYOND, 1.0 + _BEYOND)
+        if np.abs(rest).max(initial=0.0) < _ENOUGH:
+            break
+    inside = np.maximum(coordinates, 0.0)
+    return np.asarray(inside / inside.sum(axis=1, keepdims=True))
 
 
 def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) -> FloatArray:

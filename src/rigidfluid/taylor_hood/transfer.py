@@ -34,12 +34,13 @@ def transfer(
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
     projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
     """
-    on_nodes = Samples(old, source, target.numbering.node_points(new.points))
-    on_vertices = Samples(old, source, new.points)
+    numbering = target.numbering
+    on_nodes = Samples(old, source, numbering.node_points(new.geometry))
+    displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
     moved = dict(fluid)
-    moved["points_previous"] = new.points - on_vertices.linear(old.points - fluid["points_previous"])
-    for suffix, points in (("", new.points), ("_previous", moved["points_previous"])):
-        moved["pressure" + suffix] = on_vertices.linear(fluid["pressure" + suffix])
+    moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
+    for suffix, points in (("", new.geometry), ("_previous", moved["points_previous"])):
+        moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position = fluid["position" + suffix]
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
@@ -56,9 +57,9 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
     if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
-        projected = project(target, tolerance, state["velocity"], mesh.points, pose.position)
+        projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
         state["velocity"] = state["velocity_previous"] = projected
-    return state, kinetic_energy(target, mesh.points, state["velocity"])
+    return state, kinetic_energy(target, mesh.geometry, state["velocity"])
 
 
 def project(

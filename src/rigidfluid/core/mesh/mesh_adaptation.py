@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
@@ -49,7 +50,7 @@ class MeshUpdater:
         self._quality = quality
         self._pause = pause
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
-        self._motion: MeshMotion | None = None
+        self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
 
@@ -60,14 +61,14 @@ class MeshUpdater:
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
             args = s.bodies, s.pose, s.domain, s.walls, self._sizes
-            mesh = initial_mesh(*args) if ranks.is_root else None
+            mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
         return distributed(mesh, ranks)
 
     def deform(self, state: State, pose: Pose) -> Mesh | None:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
-        points, worst = self._placed(state.reference, pose)
+        geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
                 "mesh",
@@ -75,7 +76,7 @@ class MeshUpdater:
                 f"at least {TANGLED}",
                 "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
             )
-        return replace(state.reference.mesh, points=points)
+        return state.reference.mesh.at(geometry)
 
     def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
@@ -102,8 +103,17 @@ class MeshUpdater:
         assert self._sizes is not None
         s, ranks, present = self._system, mesh.ranks, whole(mesh)
         with ranks.raise_on_all():
-            made = None if present is None else remesh(present, s.bodies, pose, s.domain, s.walls, self._sizes)
+            args = s.bodies, pose, s.domain, s.walls, self._sizes
+            made = None if present is None else self._curved(remesh(present, *args), pose)
         return distributed(made, ranks)
+
+    def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:
+        """Of the order that is asked for, where the backend takes it."""
+        s = self._system
+        assert self._sizes is not None
+        if self._sizes.order == 1 or not s.backend.curved_cells:
+            return mesh
+        return with_curved_edges(mesh, s.bodies, pose, s.domain)
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
@@ -121,29 +131,31 @@ class MeshUpdater:
         return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
 
     def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
-        """Vertices (N, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of the
-        latest pose are kept, as a step asks for them several times."""
+        """Geometry (N + K, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of
+        the latest pose are kept, as a step asks for them several times."""
         if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
-            points = self._map(reference).move(pose)
-            self._latest = reference, pose, points, worst_quality(reference.mesh, points)
+            motion, curved = self._map(reference)
+            geometry = motion.move(pose)
+            self._latest = reference, pose, geometry, worst_quality(reference.mesh, curved, geometry)
         return self._latest[2:]
 
-    def _map(self, reference: Reference) -> MeshMotion:
+    def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._motion is None or self._reference is not reference:
             s = self._system
-            self._motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
-            self._reference = reference
+            motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
+            self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
         return self._motion
 
 
 def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
     """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
-    return Reference(mesh, pose, gaps, worst_quality(mesh, mesh.points), tick)
+    return Reference(mesh, pose, gaps, worst_quality(mesh, CurvedCells(mesh), mesh.geometry), tick)
 
 
-def worst_quality(mesh: Mesh, points: FloatArray) -> float:
-    """Quality of the worst cell of the whole mesh, with its vertices at ``points`` (N, d) [1]."""
-    return float(mesh.ranks.min(cell_quality(points, mesh.cells).min()))
+def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> float:
+    """Quality of the worst cell of the whole mesh, also of its ``curved`` cells, at a ``geometry`` (N + K, d) [1]."""
+    worst = cell_quality(geometry, mesh.cells).min()
+    return float(mesh.ranks.min(min(worst, curved.quality(geometry).min(initial=1.0))))
 
 
 def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:

@@ -27,6 +27,8 @@ class Sizes:
         How many cells lie across a gap.
     refinements : int
         How often size_body may be halved for that.
+    order : int
+        Of the cells at bodies and curved walls: 1 straight, 2 curved.
     """
 
     size: float
@@ -34,6 +36,7 @@ class Sizes:
     growth: float = 0.2
     cells_per_gap: float = 2.0
     refinements: int = 6
+    order: int = 2
 
     @property
     def smallest(self) -> float:

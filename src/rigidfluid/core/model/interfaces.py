@@ -248,6 +248,8 @@ class FluidBackend(Part):
     """
 
     needs_mesh: ClassVar[bool] = True
+    curved_cells: ClassVar[bool] = False
+    """Whether it takes meshes with curved edges; else it gets straight ones."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 

@@ -361,7 +361,7 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
         return None
     assert scene.mesh is not None
     m = scene.mesh
-    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements)
+    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements, m.order)
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
