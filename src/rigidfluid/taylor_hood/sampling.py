@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
-from rigidfluid.taylor_hood.location import barycentric, locate, on_curved_cells, quadratic_basis
+from rigidfluid.taylor_hood.location import barycentric, locate, locate_on_curves, quadratic_basis
 from rigidfluid.taylor_hood.numbering import Numbering
 
 
@@ -61,9 +61,10 @@ def _located(mesh: Mesh, numbering: Numbering, points: FloatArray) -> tuple[_Ser
     cell, coordinates = locate(mesh.points, mesh.cells, points)
     at_curves = np.flatnonzero(np.isin(cell, numbering.curved_cells))
     if len(at_curves):
-        which = np.searchsorted(numbering.curved_cells, cell[at_curves])
-        nodes = numbering.curved_cell_points(mesh.geometry)[which]
-        coordinates[at_curves] = on_curved_cells(nodes, coordinates[at_curves], points[at_curves])
+        guess = np.searchsorted(numbering.curved_cells, cell[at_curves])
+        nodes = numbering.curved_cell_points(mesh.geometry)
+        found, coordinates[at_curves] = locate_on_curves(nodes, guess, points[at_curves])
+        cell[at_curves] = numbering.curved_cells[found]
     if mesh.part is None:
         return _Served(cell, coordinates), np.zeros(len(points))
     depth = barycentric(mesh.points, mesh.cells[cell], points).min(axis=1)
