@@ -19,7 +19,8 @@ EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3)
 class Numbering:
     """Nodes on ``cells`` (M, d+1) over ``vertices`` vertices: ``cell_nodes`` (M, 6 | 10), ``edges`` (E, 2).
 
-    ``curved`` (K, 2): edges that are not straight, as pairs of vertices; ``curved_cells`` (C,): the cells at them.
+    ``curved`` (K, 2): edges that are not straight, as pairs of vertices; ``on_curves`` (K,): the nodes on them;
+    ``curved_cells`` (C,): the cells at them.
     """
 
     def __init__(self, cells: IntArray, vertices: int, curved: IntArray | None = None) -> None:
@@ -31,9 +32,9 @@ class Numbering:
         self.edges: IntArray = np.stack(np.divmod(self._edge_keys, vertices), axis=1)
         self.nodes = vertices + len(self.edges)
         self.cell_nodes: IntArray = np.concatenate([cells, vertices + place.reshape(len(cells), -1)], axis=1)
-        self._on_curves = np.zeros(0, dtype=np.int64) if curved is None else self.edge_nodes(curved)
+        self.on_curves = np.zeros(0, dtype=np.int64) if curved is None else self.edge_nodes(curved)
         curve = np.full(len(self.edges), -1)
-        curve[self._on_curves - vertices] = np.arange(len(self._on_curves))
+        curve[self.on_curves - vertices] = np.arange(len(self.on_curves))
         curve_of_edge = curve[self.cell_nodes[:, d + 1 :] - vertices]
         self.curved_cells = np.flatnonzero((curve_of_edge >= 0).any(axis=1))
         self._curve_of_edge = curve_of_edge[self.curved_cells]
@@ -51,12 +52,12 @@ class Numbering:
     def node_points(self, points: FloatArray) -> FloatArray:
         """Coordinates of all nodes, (nodes, d), for a mesh's geometry ``points`` (vertices + K, d)."""
         found = self.at_nodes(points[: self.vertices])
-        found[self._on_curves] = points[self.vertices :]
+        found[self.on_curves] = points[self.vertices :]
         return found
 
     def geometry_of(self, field: FloatArray) -> FloatArray:
         """The part of a field on nodes (nodes, …) at those that a mesh's geometry is given by, (vertices + K, …)."""
-        return np.concatenate([field[: self.vertices], field[self._on_curves]])
+        return np.concatenate([field[: self.vertices], field[self.on_curves]])
 
     def curved_cell_points(self, points: FloatArray) -> FloatArray:
         """Coordinates of the nodes of each curved cell, (C, b, d), for a geometry ``points`` (vertices + K, d)."""
