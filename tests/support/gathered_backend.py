@@ -33,6 +33,7 @@ def install_gathered(folder):
 
 class Gathered(FluidBackend):
     name = "gathered"
+    curved_cells = True
     Options = ScikitFem.Options
 
     def __init__(self, options, problem):
@@ -106,8 +107,8 @@ class Gathered(FluidBackend):
         """The step with all points on the root, of use there alone."""
         if step.points is None:
             return step
-        moved = self._whole(replace(mesh, points=step.points))
-        return replace(step, points=moved.points) if self.ranks.is_root else step
+        moved = self._whole(mesh.at(step.points))
+        return replace(step, points=moved.geometry) if self.ranks.is_root else step
 
     def _whole(self, mesh):
         """The whole mesh on the root, with the same arrays of cells as long as the part has them."""
@@ -115,7 +116,7 @@ class Gathered(FluidBackend):
         if made is None:
             return None
         kept = self._meshes.setdefault(id(mesh.cells), (mesh.cells, made))[1]
-        return replace(kept, points=made.points)
+        return kept.at(made.geometry)
 
 
 class OnTheRoot:

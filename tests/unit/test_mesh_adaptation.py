@@ -28,11 +28,11 @@ SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body
 def test_quality(monkeypatch, asked, made, worst, anew):
     """Below what is asked and half of what it was; a quality below that of tangled cells would ask too late."""
     still: Any = SimpleNamespace(move=lambda pose: None)
-    monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda mesh, points: worst)
+    monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda *_: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
     system: Any = None
     mesh_updater = MeshUpdater(system, None, asked, 1)
-    monkeypatch.setattr(mesh_updater, "_map", lambda reference: still)
+    monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mesh_updater.needs_remesh(state, state) is anew
 
