@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid import __version__
-from rigidfluid.core.run.process import Launch
+from rigidfluid.core.run.process import Launch, no_collection
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
@@ -95,10 +95,11 @@ def main(context: typer.Context, version: Version = False) -> None:
 def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None, resume: Resume = False) -> None:
     """Simulate a scene and write the results."""
     with _reported("The same command with --resume goes on from the last checkpoint."):
-        from rigidfluid.core.run.run import run as simulate
-        from rigidfluid.core.setup.load import load_scene
+        with no_collection():
+            from rigidfluid.core.run.run import run as simulate
+            from rigidfluid.core.setup.load import load_scene
 
-        loaded = load_scene(scene, assignments or ())
+            loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
@@ -263,6 +264,10 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
 
 @contextmanager
 def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
+    console = _console(stderr=True)
+    if LAUNCH.rank > 0 or not console.is_terminal:
+        yield lambda _: None
+        return
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -275,8 +280,7 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         TimeRemainingColumn(),
         TextColumn("to go"),
     )
-    console = _console(stderr=True)
-    with Bar(*columns, console=console, disable=LAUNCH.rank > 0 or not console.is_terminal) as bar:
+    with Bar(*columns, console=console) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
         yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
 
