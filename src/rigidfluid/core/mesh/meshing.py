@@ -84,7 +84,7 @@ def _size_to_ask(
         excess = longest_edges(surfaces_of(surfaces, domain.dimension), len(bodies)) / size_body
         if np.all(excess <= 1.0):
             return asked
-        asked = np.where(excess > 1.0, 0.95 * asked / excess, asked)
+        asked = np.where(excess > 1.0, 0.95 * asked / np.maximum(excess, 1.0), asked)
     worst = int(np.argmax(excess))
     found = f"a facet of length {excess[worst] * size_body:.4g}"
     raise MeshError(f"body.{worst}", found, f"at most size_body = {size_body:g}", REMEDY)
