@@ -103,7 +103,7 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
-            with _progress_bar(loaded) as show:
+            with _compilation_told(), _progress_bar(loaded) as show:
                 simulate(loaded, folder, resume=resume, progress=show, processes=LAUNCH.size, finished=ends.append)
         finally:
             for history in ends:
@@ -260,6 +260,26 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
             _console(stderr=True).print(Text(traceback.format_exc()), soft_wrap=True)
             LAUNCH.end()
         raise
+
+
+@contextmanager
+def _compilation_told() -> Iterator[None]:
+    """Say once why nothing seems to happen where loops are compiled; later runs load them from the disk."""
+    from numba.core.event import Event, Listener, install_listener
+
+    class FirstOne(Listener):
+        told = False
+
+        def on_start(self, event: Event) -> None:
+            if not self.told:
+                _print_aside("Compiling loops, once after each installation: some ten seconds.")
+            self.told = True
+
+        def on_end(self, event: Event) -> None:
+            pass
+
+    with install_listener("numba:compile", FirstOne()):
+        yield
 
 
 @contextmanager
@@ -476,8 +496,13 @@ def _print(text: str, style: str = "") -> None:
 
 
 def _complain(text: str) -> None:
+    _print_aside(text, "red")
+
+
+def _print_aside(text: str, style: str = "") -> None:
+    """On stderr, where it is no result."""
     if LAUNCH.rank == 0:
-        _console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
+        _console(stderr=True).print(Text(text, style=style), soft_wrap=True)
 
 
 def _console(stderr: bool = False) -> Console:
