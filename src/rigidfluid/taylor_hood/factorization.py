@@ -6,6 +6,7 @@ import copy
 import ctypes
 import functools
 import importlib.util
+import os
 import weakref
 from typing import Any, Protocol
 
@@ -15,6 +16,7 @@ from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood.mkl import installed_mkl
 
 _ANALYSE_AND_FACTORISE, _FACTORISE, _SOLVE = 12, 22, 33
 _SAME_BITS = 2  # MKL_CBWR_AUTO
@@ -50,8 +52,10 @@ class Factors(Protocol):
 def _library() -> Any:
     """The loaded MKL, told to answer the same question with the same bits (conditional numerical reproducibility).
 
-    Kept, because pypardiso searches the disk for it each time a solver is made, which takes .3 s.
+    pypardiso searches the whole disk for it each time a solver is made, .3 s of work, unless a variable names it.
     """
+    if (path := installed_mkl()) is not None:
+        os.environ.setdefault("PYPARDISO_MKL_RT", str(path))
     from pypardiso.pardiso_wrapper import PyPardisoSolver
 
     solver = PyPardisoSolver()

@@ -9,7 +9,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh, put_back
@@ -244,6 +243,8 @@ def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: BoolArray, gi
     MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
     nearness.
     """
+    from scipy.spatial import cKDTree
+
     old_vertices = np.unique(old.facets[kept])
     found = cKDTree(new.points).query(given[old_vertices])
     distance, place = np.asarray(found[0]), np.asarray(found[1])
