@@ -71,6 +71,15 @@ class Gathered(FluidBackend):
         made = self._whole(new)
         return self._on_root(lambda old, fluid: self._inner.transfer(fluid, old, made), old, fluid)
 
+    def prediction_error(self, before, after, mesh, extrapolation):
+        pieces = self.ranks.gather(after)
+
+        def work(mesh, before):
+            joined = {name: np.concatenate([piece[name] for piece in pieces]) for name in after}
+            return {}, self._inner.prediction_error(before, joined, mesh, extrapolation)
+
+        return self._on_root(work, mesh, before)[1]
+
     def fields(self, fluid, mesh):
         fields = self._on_root(lambda mesh, fluid: ({}, self._inner.fields(fluid, mesh)), mesh, fluid)[1]
         cells = fields.cells if mesh.part is None else fields.cells[mesh.part.cells]

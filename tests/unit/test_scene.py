@@ -191,6 +191,13 @@ BAD = {
     "option without law": ({"contact": {"epsilon": 1.0}}, "contact.epsilon", "law", "Name the law"),
     "rare output": ({"output.every": 1e-4}, "output.every: found 0.0001", "time.step = 0.001", "Write less"),
     "long step": ({"time.step": 2.0, "output.every": 3.0}, "time.step: found 2", "time.end = 1", "Shorten"),
+    "no tolerance": ({"time.tolerance": 0.0}, "time.tolerance: found 0.0", "0.000001", "Correct"),
+    "tolerance without a fluid": (
+        {"time.tolerance": 1e-3, "fluid.backend": "dry"},
+        "time.tolerance: found 0.001",
+        "none with backend 'dry'",
+        "Remove",
+    ),
     "shortest too long": ({"time.shortest": 0.1}, "time.shortest: found 0.1", "time.step = 0.001", "Shorten"),
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
     "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),

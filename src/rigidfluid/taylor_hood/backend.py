@@ -112,6 +112,15 @@ class TaylorHoodBackend(FluidBackend):
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
     @final
+    def prediction_error(
+        self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
+    ) -> float:
+        from rigidfluid.taylor_hood.discretisation import kinetic_energy
+
+        expected = extrapolation[0] * before["velocity"] + extrapolation[1] * before["velocity_previous"]
+        return kinetic_energy(self._any(_given(mesh)), _given(mesh).points, after["velocity"] - expected)
+
+    @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         numbering = self.numbering_of(mesh)
         pressure = numbering.at_nodes(fluid["pressure"])

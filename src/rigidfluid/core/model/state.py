@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
@@ -30,6 +31,30 @@ class FreeMotions:
     twist: Twist
     contact: Wrench
     hydrodynamic: Wrench
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorEstimate:
+    """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
+    infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
+    once. The greatest so far, or expected: ``speed`` of a free body [length/time], kinetic ``energy`` of all
+    [energy]."""
+
+    steps: int
+    error: float
+    with_contacts: float
+    speed: float
+    energy: float
+
+    @property
+    def is_unknown(self) -> bool:
+        """Whether there are too few steps yet."""
+        return math.isinf(self.error)
+
+    @property
+    def restarted(self) -> ErrorEstimate:
+        """After a change of the motion at once: unknown, over the same scales."""
+        return replace(self, steps=0, error=math.inf, with_contacts=math.inf)
 
 
 class CarriedState:
@@ -70,7 +95,8 @@ class State(CarriedState):
     wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
     impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh
     could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
-    ``twist`` are then evaluated; None where each moves by itself.
+    ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
+    the first step, and without a tolerance.
     """
 
     tick: int
@@ -91,6 +117,7 @@ class State(CarriedState):
     impact: int | None = None
     remesh_failed: int | None = None
     free: FreeMotions | None = None
+    estimate: ErrorEstimate | None = None
 
     @property
     def free_contact(self) -> Wrench:

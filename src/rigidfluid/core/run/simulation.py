@@ -100,7 +100,7 @@ class Simulation:
         quality = scene.mesh.quality if scene.mesh else 0.0
         self.mesh_updater = MeshUpdater(system, sizes, quality, self.clock.ticks(0))
         self.watch = Stopwatch()
-        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch)
+        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
@@ -217,7 +217,8 @@ class Simulation:
         motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
         self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
-            self.state = replace(self.state, level=start_level(self.clock))
+            estimate = self.state.estimate and self.state.estimate.restarted
+            self.state = replace(self.state, level=start_level(self.clock), estimate=estimate)
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
@@ -265,7 +266,9 @@ class Simulation:
         self._elapsed_before = 0.0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
-            self.state = initial_state(self.system, self.mesh_updater, self.clock)
+            self.state = initial_state(
+                self.system, self.mesh_updater, self.clock, self.scene.time.tolerance is not None
+            )
         if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)

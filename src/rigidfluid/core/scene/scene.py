@@ -219,6 +219,11 @@ class TimeTable(_Table):
 
     end: Positive = Field(description="Time at which the simulation ends [time]")
     step: Positive = Field(description="Size of a step [time]")
+    tolerance: Annotated[float, Field(ge=1e-6, le=0.1)] | None = Field(
+        default=None,
+        description="Local error that a step may have, relative and per unit time: `step` is then the longest step; "
+        "all steps are as long as they can be if not given [1]",
+    )
     shortest: Positive = Field(
         default_factory=lambda table: table["step"] / 1024,
         description="Size below which a step is not cut further; step/1024 if not given [time]",

@@ -66,9 +66,13 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     Raises
     ------
     SceneError
-        If density, viscosity or the mesh is missing, or if more flows in than out.
+        If density, viscosity or the mesh is missing, or if more flows in than out; without a mesh, if there is a
+        tolerance.
     """
     if not backend.needs_mesh:
+        if scene.time.tolerance is not None:
+            allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"
+            raise SceneError("time.tolerance", scene.time.tolerance, allowed, "Remove it.")
         return
     beside = f"with backend {backend.name!r}"
     for key in ("density", "viscosity"):
