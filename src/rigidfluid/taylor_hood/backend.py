@@ -118,7 +118,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
 
         expected = extrapolation[0] * before["velocity"] + extrapolation[1] * before["velocity_previous"]
-        return kinetic_energy(self._any(_given(mesh)), _given(mesh).points, after["velocity"] - expected)
+        return kinetic_energy(self._any(_given(mesh)), _given(mesh).geometry, after["velocity"] - expected)
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
