@@ -14,6 +14,7 @@ import rigidfluid
 from rigidfluid.core.mesh import mesh_adaptation
 from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepError, StepRejected
@@ -30,8 +31,9 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     still: Any = SimpleNamespace(move=lambda pose: None)
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda *_: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
+    monkeypatch.setattr(mesh_adaptation, "is_due", lambda *arguments: False)
     system: Any = None
-    mesh_updater = MeshUpdater(system, None, asked, 1)
+    mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), asked, 1)
     monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mesh_updater.needs_remesh(state, state) is anew

@@ -106,9 +106,11 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
         from rigidfluid.taylor_hood.transfer import transfer
 
-        source, before = self.numbering_of(old), kinetic_energy(self._any(old), old.geometry, fluid["velocity"])
+        source, present = self.numbering_of(old), self._any(old)
+        before = kinetic_energy(present, old.geometry, fluid["velocity"])
+        earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
         target = self._for_projection(new)
-        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new)
+        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new, (before, earlier))
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
     @final

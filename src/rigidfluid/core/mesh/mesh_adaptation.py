@@ -10,15 +10,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.mesh.coarsening import has_coarsened, is_due
 from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose, Twist
 from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02
@@ -29,7 +31,7 @@ NEARLY_TANGLED = 2.0 * TANGLED
 
 
 class MeshUpdater:
-    """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
+    """Moves the mesh of a run, and re-makes it where its quality, its cells' sizes, a gap or its age asks for that.
 
     Parameters
     ----------
@@ -42,13 +44,27 @@ class MeshUpdater:
         is re-made.
     pause : int
         For so many ticks after a mesh could not be made, none is tried unless a cell is nearly tangled.
+    oldest : int or None
+        A mesh of so many ticks is re-made; None for any age.
+    wake : Wake or None
+        Finer cells behind moving bodies, on each mesh but the first.
     """
 
-    def __init__(self, system: System, sizes: Sizes | None, quality: float, pause: int) -> None:
+    def __init__(
+        self,
+        system: System,
+        sizes: Sizes | None,
+        quality: float,
+        pause: int,
+        oldest: int | None = None,
+        wake: Wake | None = None,
+    ) -> None:
         self._system = system
         self._sizes = sizes
         self._quality = quality
         self._pause = pause
+        self._oldest = oldest
+        self._wake = wake
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
@@ -86,9 +102,10 @@ class MeshUpdater:
             return state
         assert state.mesh is not None
         try:
-            mesh = self._remade(state.mesh, state.pose)
-        except MeshError:  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
-            return replace(state, remesh_failed=state.tick)
+            mesh = self._remade(state.mesh, state.pose, state.twist)
+        except MeshError as error:
+            # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
+            return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
         fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
@@ -99,11 +116,13 @@ class MeshUpdater:
             remesh_failed=None,
         )
 
-    def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
+    def _remade(self, mesh: Mesh, pose: Pose, twist: Twist) -> Mesh:
         assert self._sizes is not None
-        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        s, ranks, present, sizes = self._system, mesh.ranks, whole(mesh), self._sizes
+        if self._wake is not None:
+            sizes = replace(sizes, regions=(*sizes.regions, *self._wake.behind(s.bodies, pose, twist)))
         with ranks.raise_on_all():
-            args = s.bodies, pose, s.domain, s.walls, self._sizes
+            args = s.bodies, pose, s.domain, s.walls, sizes
             made = None if present is None else self._curved(remesh(present, *args), pose)
         return distributed(made, ranks)
 
@@ -118,17 +137,24 @@ class MeshUpdater:
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
         failed = state.remesh_failed
-        if failed is None or state.tick >= failed + self._pause:
+        if failed is None or state.tick >= failed.tick + self._pause:
             return False
-        return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
+        return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
     def is_worn(self, state: State, pose: Pose) -> bool:
-        """Whether a gap has changed since the mesh was made, or a step to ``pose`` spoils a cell."""
-        assert state.reference is not None
-        if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
+        """Whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
+        reference, sizes = state.reference, self._sizes
+        assert reference is not None
+        assert sizes is not None
+        if self._oldest is not None and state.tick >= reference.tick + self._oldest:
             return True
-        _, worst = self._placed(state.reference, pose)
-        return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
+        if _gap_changed(reference.gaps, state.gaps, sizes).any():
+            return True
+        points, worst = self._placed(reference, pose)
+        if worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * reference.quality):
+            return True
+        due = is_due(reference.pose, state.pose, pose, sizes)
+        return due and has_coarsened(reference, points, self._system.bodies, pose, sizes)
 
     def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
         """Geometry (N + K, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of
@@ -158,9 +184,8 @@ def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> floa
     return float(mesh.ranks.min(min(worst, curved.quality(geometry).min(initial=1.0))))
 
 
-def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:
+def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes) -> BoolArray:
     """Where a gap that the mesh must resolve has halved, or has opened to four times, since the mesh was made."""
-    assert sizes is not None
     finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
     ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
     return (ratio < 0.5) | (ratio > 4.0)

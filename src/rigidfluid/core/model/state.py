@@ -23,6 +23,14 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class FailedRemesh:
+    """A new mesh that could not be made at a ``tick``, and the ``reason``."""
+
+    tick: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class FreeMotions:
     """The N motions that carry the bodies: their ``pose``, of the centres of mass, and ``twist``; ``contact``: the
     wrench of their contacts in a state, the impulse at the end of a path; ``hydrodynamic``: the fluid's wrench."""
@@ -93,7 +101,7 @@ class State(CarriedState):
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
     wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
-    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh
+    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that this mesh
     could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
     ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
     the first step, and without a tolerance.
@@ -115,7 +123,7 @@ class State(CarriedState):
     contact_wrench: Wrench
     ledger: Ledger
     impact: int | None = None
-    remesh_failed: int | None = None
+    remesh_failed: FailedRemesh | None = None
     free: FreeMotions | None = None
     estimate: ErrorEstimate | None = None
 

@@ -36,6 +36,7 @@ class Checkpoint:
     unsettled: int
     remeshes: int
     failed_remeshes: int
+    latest_failed_remesh: str | None
     elapsed: float
     extremes: Extremes
     ranks: int

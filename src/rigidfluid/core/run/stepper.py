@@ -30,12 +30,13 @@ MOST_ATTEMPTS = 4
 @dataclass
 class Counts:
     """Of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes made
-    after the first (``remeshes``), and those that could not be made (``failed_remeshes``)."""
+    after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of them."""
 
     rejected: int = 0
     unsettled: int = 0
     remeshes: int = 0
     failed_remeshes: int = 0
+    latest_failed_remesh: str | None = None
 
 
 class Stepper:
@@ -108,7 +109,10 @@ class Stepper:
         with self._watch("mesh"):
             adapted = self._mesh_updater.remesh_if_needed(state, pose)
         self.counts.remeshes += adapted.mesh is not state.mesh
-        self.counts.failed_remeshes += adapted.remesh_failed not in (None, state.remesh_failed)
+        failed = adapted.remesh_failed
+        if failed is not None and failed is not state.remesh_failed:
+            self.counts.failed_remeshes += 1
+            self.counts.latest_failed_remesh = f"at time {self._clock.time(failed.tick):g}: {failed.reason}"
         return adapted
 
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
