@@ -36,7 +36,8 @@ def advance(
     system = _system(discretisation, matrix, on_faces, fluid, step)
     if attempt is not None:
         guess = motion_twist(step.kinematics, attempt["twist"])
-        system = replace(system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=guess)
+        velocity, pressure = attempt["velocity"], attempt["pressure"]
+        system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
     solution, d = discretisation.solve(system, tolerance), problem.dimension
     velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
     state = {

@@ -306,4 +306,16 @@ class FluidBackend(Part):
 
     @abstractmethod
     def forget(self) -> None:
-        """Drop every cache, so that the next step depends on the given state alone (called at each checkpoint)."""
+        """Drop every cache, so that the next step depends on the given state alone."""
+
+    def memory(self) -> FluidState:
+        """What the next step depends on beside the given state, to the last bit: named arrays for a checkpoint.
+
+        A backend that does not say drops its caches.
+        """
+        self.forget()
+        return {}
+
+    def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
+        """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
+        self.forget()

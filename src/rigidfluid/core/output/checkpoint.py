@@ -18,16 +18,19 @@ import numpy as np
 
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What a rank of a run needs to go on: its ``state``, the ``scene`` as JSON, the ``times`` of its outputs, the
-    ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
+    """What a rank of a run needs to go on: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
+    ``times`` of its outputs, the ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how
+    many ``ranks`` have such."""
 
     state: State
+    memory: FluidState
     scene: str
     times: tuple[float, ...]
     lengths: Mapping[str, int]

@@ -17,7 +17,7 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
@@ -63,6 +63,7 @@ class SavedRun:
 
     scene: Scene
     state: State
+    memory: FluidState
     system: System
     counts: Counts
     extremes: Extremes
@@ -230,10 +231,10 @@ class Simulation:
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
-        self.system.backend.forget()
         return SavedRun(
             scene=self.scene,
             state=self.state,
+            memory=self.system.backend.memory(),
             system=self.system,
             counts=replace(self.counts),
             extremes=self.extremes,
@@ -250,7 +251,7 @@ class Simulation:
                 "a run in memory",
                 "Make the Simulation without a folder, or resume the run from its checkpoint.",
             )
-        self.system.backend.forget()
+        self.system.backend.recall(saved.memory, saved.state.mesh)
         self.scene, self.state, self.extremes = saved.scene, saved.state, saved.extremes
         self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
@@ -287,10 +288,12 @@ class Simulation:
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
         self.stepper.after(self.state)
+        self.system.backend.forget()
         self.stepper.counts = Counts()
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
+        self.system.backend.recall(earlier.memory, self.state.mesh)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
         self._elapsed_before, self._times = earlier.elapsed, earlier.times
         self.watch.seconds = dict(earlier.seconds)
@@ -307,19 +310,20 @@ class Simulation:
                 self._writer.extend(now)
 
     def _output(self) -> None:
-        """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
+        """Write fields and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
         self._times = (*self._times, self.time)
-        self.system.backend.forget()
+        memory = self.system.backend.memory()
         if self._writer is None:
             return
         with self.watch("write"):
             if self.state.mesh is not None:
                 self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
-            self._writer.checkpoint(self._checkpoint(self._writer))
+            self._writer.checkpoint(self._checkpoint(self._writer, memory))
 
-    def _checkpoint(self, writer: Writer) -> Checkpoint:
+    def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
         return Checkpoint(
             state=self.state,
+            memory=memory,
             scene=json.dumps(self.scene.to_dict()),
             times=self._times,
             lengths=writer.lengths,
