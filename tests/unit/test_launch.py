@@ -1,11 +1,13 @@
 """What the command line does where several processes were started together."""
 
+import gc
+
 import pytest
 from typer.testing import CliRunner
 
 import rigidfluid.core.run.run
 from rigidfluid import cli
-from rigidfluid.core.run.process import Launch
+from rigidfluid.core.run.process import Launch, no_collection
 from rigidfluid.errors import OutputError
 
 OPEN_MPI = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"}
@@ -38,6 +40,16 @@ def command(monkeypatch, rank, *arguments):
 )
 def test_launchers_say_who_is_who(environment, rank, size):
     assert Launch.of(environment) == Launch(rank, size)
+
+
+def test_what_loading_makes_is_not_searched_for_garbage():
+    before = gc.get_freeze_count()
+    with no_collection():
+        assert not gc.isenabled()
+        made = [[] for _ in range(1000)]
+    assert gc.isenabled()
+    assert gc.get_freeze_count() >= before + len(made)
+    gc.unfreeze()
 
 
 def test_a_backend_of_one_process_is_refused_before_anything_is_written(monkeypatch, tmp_path):

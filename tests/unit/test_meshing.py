@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mesh_tools import assert_valid, ball, body_facets, box, edge_lengths, edges_of, ellipsoid, nobody, upright
 
+from rigidfluid.core.mesh import meshing
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.topology import check_mesh
@@ -66,6 +67,28 @@ def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.cells, second.cells)
     assert body_facets(first, 1) == body_facets(second, 1)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "pose", "domain", "sizes"),
+    [
+        pytest.param([DISK], upright([1, 2]), BOX, (0.2, 0.01, 0.2), id="2D"),
+        pytest.param([ball(0.4, 3)], upright([0, 0, 0.1]), CUBE, (0.6, 0.15, 0.4), id="3D"),
+    ],
+)
+def test_surfaces_show_what_edges_to_ask_for_before_the_mesh_is_made(bodies, pose, domain, sizes, monkeypatch):
+    run, asked = meshing.run_netgen, []
+
+    def seen(*arguments, surfaces_alone=False):
+        asked.append((surfaces_alone, float(arguments[4][0])))
+        return run(*arguments, surfaces_alone=surfaces_alone)
+
+    monkeypatch.setattr(meshing, "run_netgen", seen)
+    mesh = generate_mesh(bodies, pose, domain, *sizes)
+    assert [alone for alone, _ in asked] == [True] * (len(asked) - 1) + [False]
+    assert asked[0][1] == sizes[1] > asked[-1][1]
+    edges = edges_of(mesh.facets[mesh.markers == 0])
+    assert edge_lengths(mesh.points, edges).max() <= sizes[1]
 
 
 @pytest.mark.parametrize(

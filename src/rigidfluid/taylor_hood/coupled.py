@@ -17,8 +17,9 @@ class CoupledMatrix:
 
     for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies.
 
-    ``points`` (vertices, d), ``node_points`` (nodes, d). ``advection`` a and ``flow`` c, (nodes, d), already hold the
-    density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps convection from making energy.
+    ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
+    (nodes, d), already hold the density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps
+    convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
     the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
     """

@@ -6,7 +6,6 @@ import ctypes
 import functools
 import weakref
 from dataclasses import dataclass
-from importlib import metadata
 from typing import Any
 
 import numpy as np
@@ -15,27 +14,17 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.mkl import installed_mkl
 
 _ANALYSE, _FACTORISE, _SOLVE, _FREE = 11, 22, 33, -1
 _UNSYMMETRIC = 11
 _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 # Places in PARDISO's iparm, from 0.
-_GIVEN, _REORDERING, _PERMUTATION, _PIVOTS, _SCALED, _MATCHED, _ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = (
-    0,
-    1,
-    4,
-    9,
-    10,
-    12,
-    17,
-    18,
-    27,
-    34,
-)
+_GIVEN, _REORDERING, _PERMUTATION, _PIVOTS, _SCALED, _MATCHED = 0, 1, 4, 9, 10, 12
+_ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = 17, 18, 27, 34
 _NESTED_DISSECTION = 2
 _TAKEN, _RETURNED = 1, 2
-
 
 _Numbers = NDArray[np.int32]
 
@@ -179,18 +168,10 @@ class Pardiso:
 @functools.cache
 def _library() -> Any:
     """The loaded MKL, told to answer the same question with the same bits (conditional numerical reproducibility)."""
-    library = ctypes.CDLL(_path()) if _path() else _found_by_pypardiso()
+    path = installed_mkl()
+    library = _found_by_pypardiso() if path is None else ctypes.CDLL(str(path))
     library.MKL_CBWR_Set(ctypes.c_int(_SAME_BITS))
     return library
-
-
-def _path() -> str | None:
-    """Where MKL's distribution says that its library is; None where it was not installed as one."""
-    try:
-        files = metadata.files("mkl") or []
-    except metadata.PackageNotFoundError:
-        return None
-    return next((str(file.locate()) for file in files if "mkl_rt" in file.name), None)
 
 
 def _found_by_pypardiso() -> Any:

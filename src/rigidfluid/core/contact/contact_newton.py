@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import spsolve
 
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray
@@ -140,6 +139,8 @@ def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray
     """(1 + slope · compliance)⁻¹ right."""
     if isinstance(compliance, np.ndarray):
         return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+    from scipy.sparse.linalg import spsolve
+
     matrix = sparse.eye(len(slope)) + sparse.diags(slope) @ compliance
     return np.asarray(spsolve(matrix.tocsc(), right))
 

@@ -9,7 +9,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh, put_back
@@ -87,7 +86,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
 
     Their facets are kept too, except that those too long for the gap they face are bisected first. Where that would
     invert a cell, the cells are improved around the unbisected facets before. Of those that still do not fit after
-    ROUNDS of it, the ones within LONGEST_EDGE stay.
+    ROUNDS of it, the ones within LONGEST_EDGE stay. MMG knows the wanted size at the vertices of the mesh that it is
+    given alone: where that is far too coarse, it is given its own mesh again.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     surroundings = bodies, pose, domain, walls, sizes
     new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at)
     for _ in range(ROUNDS):
-        if not len(long_edges(new, *surroundings, LONGEST)[0]):
+        if longest_relative_edge(new, size_at) <= LONGEST_EDGE and not len(long_edges(new, *surroundings, LONGEST)[0]):
             break
         new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at)
     excess = longest_relative_edge(new, size_at)
@@ -244,6 +244,8 @@ def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: BoolArray, gi
     MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
     nearness.
     """
+    from scipy.spatial import cKDTree
+
     old_vertices = np.unique(old.facets[kept])
     found = cKDTree(new.points).query(given[old_vertices])
     distance, place = np.asarray(found[0]), np.asarray(found[1])

@@ -6,7 +6,6 @@ from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from rigidfluid.core.model.types import BoolArray, FloatArray
 
@@ -30,6 +29,8 @@ class FactorisedExtension:
     """
 
     def __init__(self, matrix: csc_array, held: BoolArray) -> None:
+        from scipy.sparse.linalg import splu
+
         self._held, self._free = np.flatnonzero(held), np.flatnonzero(~held)
         rows = matrix.tocsr()[self._free].tocsc()
         self._coupling = rows[:, self._held].tocsr()

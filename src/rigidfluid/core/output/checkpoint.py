@@ -39,6 +39,7 @@ class Checkpoint:
     unsettled: int
     remeshes: int
     failed_remeshes: int
+    latest_failed_remesh: str | None
     elapsed: float
     extremes: Extremes
     ranks: int
@@ -87,7 +88,7 @@ def _with_shared_cells(state: State) -> State:
     """A moved mesh has the very cells of its reference: backends know a topology by its array."""
     if state.mesh is None or state.reference is None:
         return state
-    return replace(state, mesh=replace(state.reference.mesh, points=state.mesh.points))
+    return replace(state, mesh=state.reference.mesh.at(state.mesh.geometry))
 
 
 def _store(group: h5py.Group, record: Any) -> None:

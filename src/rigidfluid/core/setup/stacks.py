@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.model.types import FloatArray, IntArray
 
@@ -52,6 +51,8 @@ def stacked(
 
 def _overlapping(direction: FloatArray, position: FloatArray, radius: FloatArray) -> IntArray:
     """The p pairs of bodies that overlap, seen along ``direction`` (d,), (p, 2)."""
+    from scipy.spatial import cKDTree
+
     shadow = position - np.outer(position @ direction, direction)
     pairs = cKDTree(shadow).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
     distance = np.linalg.norm(shadow[pairs[:, 0]] - shadow[pairs[:, 1]], axis=1)
