@@ -22,6 +22,13 @@ class Rule(NamedTuple):
     linear: FloatArray
 
 
+class Sizes(NamedTuple):
+    """Numbers of the functions of the quadratic basis, and of the axes: as many as there are."""
+
+    basis: tuple[int, ...]
+    axes: tuple[int, ...]
+
+
 class ReferenceTables(NamedTuple):
     """What the integrals over a cell take from scikit-fem.
 
@@ -34,6 +41,7 @@ class ReferenceTables(NamedTuple):
     flat: Rule
     curved: Rule
     mass: FloatArray
+    sizes: Sizes
 
 
 class Cells(NamedTuple):
@@ -65,7 +73,8 @@ def reference_tables(dimension: int) -> ReferenceTables:
     # In tetrahedra scikit-fem's rule of order 5 is exact to degree 4 only, and that of order 6 to degree 5.
     cubic = tabulate(5 if dimension == 2 else 6)
     mass = np.einsum("q,qi,qj->ij", cubic.weight, cubic.value, cubic.value)
-    return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass)
+    sizes = Sizes(tuple(range(count)), tuple(range(dimension)))
+    return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass, sizes)
 
 
 class CompiledAssembly:

@@ -1,7 +1,8 @@
 """Compiled loops over cells: the system matrix, the history's load, energies. Arrays in, arrays out.
 
 ``points`` (N, d) starts with the vertices; fields on nodes are (nodes, d). ``cells`` and ``tables`` are those of
-`assembly`: straight cells are mapped by one matrix each, curved ones at each quadrature point by another.
+`assembly`: straight cells are mapped by one matrix each, curved ones at each quadrature point by another. Loops over
+the basis and over axes go by the lengths of tuples, ``sizes``: known when they are compiled, so that they are unrolled.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -48,12 +49,11 @@ def inverted(jacobian, inverse):
 
 
 @njit(cache=True)
-def straight_jacobian(points, vertices, jacobian):
+def straight_jacobian(points, nodes, jacobian, sizes):
     """Write ∂x/∂X of one straight cell into ``jacobian`` (d, d)."""
-    d = points.shape[1]
-    for i in range(d):
-        for j in range(d):
-            jacobian[i, j] = points[vertices[j + 1], i] - points[vertices[0], i]
+    for i in range(len(sizes.axes)):
+        for j in range(len(sizes.axes)):
+            jacobian[i, j] = points[nodes[j + 1], i] - points[nodes[0], i]
 
 
 @njit(cache=True)
@@ -68,56 +68,69 @@ def curved_jacobian(node_points, reference, jacobian):
 
 
 @njit(cache=True)
-def physical_gradients(reference, inverse, gradient):
-    """Write ∂φ/∂x = J⁻ᵀ ∂φ/∂X at one quadrature point into ``gradient`` (b, d)."""
-    count, d = reference.shape
-    for i in range(count):
-        for a in range(d):
+def physical_gradients(rule, q, inverse, gradient, sizes):
+    """Write ∂φ/∂x = J⁻ᵀ ∂φ/∂X at point ``q`` of a ``rule`` into ``gradient`` (b, d)."""
+    for i in range(len(sizes.basis)):
+        for a in range(len(sizes.axes)):
             total = 0.0
-            for r in range(d):
-                total += reference[i, r] * inverse[r, a]
+            for r in range(len(sizes.axes)):
+                total += rule.gradient[q, i, r] * inverse[r, a]
             gradient[i, a] = total
 
 
 @njit(cache=True)
-def add_convection(scalar, value, gradient, dx, nodes, advection, flow):
-    """Add (a·∇u, v) + ½ ((∇·c) u, v) at one quadrature point to ``scalar`` (b, b)."""
-    b, d = gradient.shape
+def along_reference(field, nodes, inverse, image, sizes):
+    """Write J⁻¹ c into ``image`` (b, d), c being a ``field`` at one cell's ``nodes``: c·∇φ = J⁻¹c · ∂φ/∂X."""
+    for i in range(len(sizes.basis)):
+        for r in range(len(sizes.axes)):
+            total = 0.0
+            for a in range(len(sizes.axes)):
+                total += inverse[r, a] * field[nodes[i], a]
+            image[i, r] = total
+
+
+@njit(cache=True)
+def add_convection(scalar, rule, q, dx, advection, flow, room, sizes):
+    """Add (a·∇u, v) + ½ ((∇·c) u, v) at point ``q`` of a ``rule`` to ``scalar`` (b, b).
+
+    ``advection`` a and ``flow`` c (b, d) by `along_reference`; ``room`` (b,) is overwritten.
+    """
+    value, reference = rule.value, rule.gradient
     spread = 0.0
-    for i in range(b):
-        for a in range(d):
-            spread += gradient[i, a] * flow[nodes[i], a]
-    for j in range(b):
-        along = 0.5 * spread * value[j]
-        for a in range(d):
-            speed = 0.0
-            for i in range(b):
-                speed += value[i] * advection[nodes[i], a]
-            along += speed * gradient[j, a]
-        along *= dx
-        for i in range(b):
-            scalar[i, j] += along * value[i]
+    for i in range(len(sizes.basis)):
+        for r in range(len(sizes.axes)):
+            spread += reference[q, i, r] * flow[i, r]
+    for j in range(len(sizes.basis)):
+        room[j] = 0.5 * dx * spread * value[q, j]
+    for r in range(len(sizes.axes)):
+        speed = 0.0
+        for i in range(len(sizes.basis)):
+            speed += value[q, i] * advection[i, r]
+        for j in range(len(sizes.basis)):
+            room[j] += dx * speed * reference[q, j, r]
+    for i in range(len(sizes.basis)):
+        for j in range(len(sizes.basis)):
+            scalar[i, j] += value[q, i] * room[j]
 
 
 @njit(cache=True)
-def add_stress(stress, divergence, linear, gradient, viscosity, dx):
-    """Add viscosity ∂φᵢ/∂xₐ ∂φⱼ/∂x_c at one quadrature point to ``stress`` (b, b, d, d) and -ψₖ ∂φᵢ/∂xₐ to
+def add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes):
+    """Add viscosity ∂φᵢ/∂xₐ ∂φⱼ/∂x_c at point ``q`` of a ``rule`` to ``stress`` (b, b, d, d) and -ψₖ ∂φᵢ/∂xₐ to
     ``divergence`` (b, d, d+1)."""
-    b, d = gradient.shape
-    for i in range(b):
-        for a in range(d):
+    for i in range(len(sizes.basis)):
+        for a in range(len(sizes.axes)):
             left = viscosity * dx * gradient[i, a]
-            for j in range(b):
-                for c in range(d):
+            for j in range(len(sizes.basis)):
+                for c in range(len(sizes.axes)):
                     stress[i, j, a, c] += left * gradient[j, c]
-            for k in range(d + 1):
-                divergence[i, a, k] -= dx * gradient[i, a] * linear[k]
+            for k in range(len(sizes.axes) + 1):
+                divergence[i, a, k] -= dx * gradient[i, a] * rule.linear[q, k]
 
 
 @njit(cache=True)
-def scatter(data, slots, scalar, stress, divergence):
+def scatter(data, slots, cell, scalar, stress, divergence, sizes):
     """Add one cell's matrix to the entries ``data``: ``scalar`` and the stress of ∇u + ∇uᵀ, and the pressures'."""
-    b, d = divergence.shape[:2]
+    b, d = len(sizes.basis), len(sizes.axes)
     for i in range(b):
         for j in range(b):
             diagonal = scalar[i, j]
@@ -125,11 +138,11 @@ def scatter(data, slots, scalar, stress, divergence):
                 diagonal += stress[i, j, a, a]
             for a in range(d):
                 for c in range(d):
-                    data[slots[i * d + a, j * d + c]] += stress[i, j, c, a] + (diagonal if a == c else 0.0)
+                    data[slots[cell, i * d + a, j * d + c]] += stress[i, j, c, a] + (diagonal if a == c else 0.0)
         for a in range(d):
             for k in range(d + 1):
-                data[slots[i * d + a, b * d + k]] += divergence[i, a, k]
-                data[slots[b * d + k, i * d + a]] += divergence[i, a, k]
+                data[slots[cell, i * d + a, b * d + k]] += divergence[i, a, k]
+                data[slots[cell, b * d + k, i * d + a]] += divergence[i, a, k]
 
 
 @njit(cache=True)
@@ -140,28 +153,34 @@ def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, ta
 
     ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
     """
-    b, d = tables.mass.shape[0], points.shape[1]
+    sizes = tables.sizes
+    b, d = len(sizes.basis), len(sizes.axes)
     data = np.zeros(size)
     jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
+    advected, flowing, room = np.empty((b, d)), np.empty((b, d)), np.empty(b)
     scalar, stress, divergence = np.empty((b, b)), np.empty((b, b, d, d)), np.empty((b, d, d + 1))
     moving = np.any(advection) or np.any(flow)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian)
+        straight_jacobian(points, nodes, jacobian, sizes)
         det = inverted(jacobian, inverse)
-        scalar[:] = inertia * det * tables.mass
+        for i in range(b):
+            for j in range(b):
+                scalar[i, j] = inertia * det * tables.mass[i, j]
         if moving:
             rule = tables.cubic
+            along_reference(advection, nodes, inverse, advected, sizes)
+            along_reference(flow, nodes, inverse, flowing, sizes)
             for q in range(len(rule.weight)):
-                physical_gradients(rule.gradient[q], inverse, gradient)
-                add_convection(scalar, rule.value[q], gradient, rule.weight[q] * det, nodes, advection, flow)
+                dx = rule.weight[q] * det
+                add_convection(scalar, rule, q, dx, advected, flowing, room, sizes)
         stress[:] = 0.0
         divergence[:] = 0.0
         rule = tables.flat
         for q in range(len(rule.weight)):
-            physical_gradients(rule.gradient[q], inverse, gradient)
-            add_stress(stress, divergence, rule.linear[q], gradient, viscosity, rule.weight[q] * det)
-        scatter(data, slots[cell], scalar, stress, divergence)
+            physical_gradients(rule, q, inverse, gradient, sizes)
+            add_stress(stress, divergence, rule, q, gradient, viscosity, rule.weight[q] * det, sizes)
+        scatter(data, slots, cell, scalar, stress, divergence, sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         nodes = cells.nodes[cell]
@@ -171,14 +190,16 @@ def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, ta
         for q in range(len(rule.weight)):
             curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
             dx = rule.weight[q] * inverted(jacobian, inverse)
-            physical_gradients(rule.gradient[q], inverse, gradient)
             for i in range(b):
                 for j in range(b):
                     scalar[i, j] += inertia * dx * rule.value[q, i] * rule.value[q, j]
             if moving:
-                add_convection(scalar, rule.value[q], gradient, dx, nodes, advection, flow)
-            add_stress(stress, divergence, rule.linear[q], gradient, viscosity, dx)
-        scatter(data, slots[cell], scalar, stress, divergence)
+                along_reference(advection, nodes, inverse, advected, sizes)
+                along_reference(flow, nodes, inverse, flowing, sizes)
+                add_convection(scalar, rule, q, dx, advected, flowing, room, sizes)
+            physical_gradients(rule, q, inverse, gradient, sizes)
+            add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes)
+        scatter(data, slots, cell, scalar, stress, divergence, sizes)
     return data
 
 
@@ -190,8 +211,8 @@ def apply_mass(points, cells, tables, field):
     result = np.zeros_like(field)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian)
-        add_product(result, inverted(jacobian, inverse), tables.mass, nodes, field)
+        straight_jacobian(points, nodes, jacobian, tables.sizes)
+        add_product(result, inverted(jacobian, inverse), tables.mass, nodes, field, tables.sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         mass[:] = 0.0
@@ -201,17 +222,19 @@ def apply_mass(points, cells, tables, field):
             for i in range(len(mass)):
                 for j in range(len(mass)):
                     mass[i, j] += dx * rule.value[q, i] * rule.value[q, j]
-        add_product(result, 1.0, mass, cells.nodes[cell], field)
+        add_product(result, 1.0, mass, cells.nodes[cell], field, tables.sizes)
     return result
 
 
 @njit(cache=True)
-def add_product(result, factor, mass, nodes, field):
+def add_product(result, factor, mass, nodes, field, sizes):
     """Add ``factor`` times one cell's ``mass`` (b, b) times the field at its ``nodes``."""
-    for i, row in enumerate(nodes):
-        for j, column in enumerate(nodes):
-            for a in range(field.shape[1]):
-                result[row, a] += factor * mass[i, j] * field[column, a]
+    for a in range(len(sizes.axes)):
+        for i in range(len(sizes.basis)):
+            total = 0.0
+            for j in range(len(sizes.basis)):
+                total += mass[i, j] * field[nodes[j], a]
+            result[nodes[i], a] += factor * total
 
 
 @njit(cache=True)
@@ -224,32 +247,31 @@ def strain_square(points, cells, tables, velocity):
     rule = tables.flat
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian)
+        straight_jacobian(points, nodes, jacobian, tables.sizes)
         det = inverted(jacobian, inverse)
         for q in range(len(rule.weight)):
-            physical_gradients(rule.gradient[q], inverse, gradient)
-            total += det * rule.weight[q] * strain_square_at(velocity, nodes, gradient, slope)
+            physical_gradients(rule, q, inverse, gradient, tables.sizes)
+            total += det * rule.weight[q] * strain_square_at(velocity, nodes, gradient, slope, tables.sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         for q in range(len(rule.weight)):
             curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
             dx = rule.weight[q] * inverted(jacobian, inverse)
-            physical_gradients(rule.gradient[q], inverse, gradient)
-            total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope)
+            physical_gradients(rule, q, inverse, gradient, tables.sizes)
+            total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope, tables.sizes)
     return total
 
 
 @njit(cache=True)
-def strain_square_at(velocity, nodes, gradient, slope):
+def strain_square_at(velocity, nodes, gradient, slope, sizes):
     """½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) at one quadrature point of a cell; ``slope`` (d, d) is room for ∇u."""
-    d = len(slope)
     slope[:] = 0.0
-    for i, node in enumerate(nodes):
-        for a in range(d):
-            for c in range(d):
-                slope[a, c] += velocity[node, a] * gradient[i, c]
+    for i in range(len(sizes.basis)):
+        for a in range(len(sizes.axes)):
+            for c in range(len(sizes.axes)):
+                slope[a, c] += velocity[nodes[i], a] * gradient[i, c]
     total = 0.0
-    for a in range(d):
-        for c in range(d):
+    for a in range(len(sizes.axes)):
+        for c in range(len(sizes.axes)):
             total += 0.5 * (slope[a, c] + slope[c, a]) ** 2
     return total
