@@ -17,7 +17,7 @@ MESHES = {
     150: (0.038, 0.0033, 0.0513),
     600: (0.019, 0.00165, 0.0257),
 }
-OUTPUT_EVERY = 20  # steps: an output drops the factors
+OUTPUT_EVERY = 20  # steps: at an output a backend says what it remembers, or forgets it
 WARM_UP = 6  # steps: the first ones start the time scheme and compile
 
 

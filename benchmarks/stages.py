@@ -79,7 +79,7 @@ def measured(run: Simulation, steps: int) -> dict[str, Any]:
     start = time.perf_counter()
     for step in range(steps):
         if step % OUTPUT_EVERY == 0:
-            run.system.backend.forget()
+            run.system.backend.memory()
         run.step()
     seconds = (time.perf_counter() - start) / steps
     watched = {stage: (run.watch.seconds[key] - before[key]) / steps for key, stage in WATCHED.items()}

@@ -57,11 +57,11 @@ def show(row: dict[str, Any]) -> None:
 
 PREAMBLE = """\
 Made on {date} by `make bench` on {cores} cores. Seconds a step on the same mesh. NGSolve assembles and factorises
-(UMFPACK) at every step; rigidfluid reuses factors, drops them every 20 steps as at an output, and its step includes
-moving the mesh, detection, the bodies and the energy balance. Only the ratios of one run mean something.
+(UMFPACK) at every step; rigidfluid reuses factors, and its step includes moving the mesh, detection, the bodies and the
+energy balance. Only the ratios of one run mean something.
 
-What is left on the table: a third of a step is the iteration with old factors, about two back-substitutions, and
-another third the share of new factors where outputs drop them as often as here. Assembly uses one core.
+What is left on the table: the iteration takes one back-substitution and some products with the matrix. Assembly uses
+one core.
 """
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, motion_twist
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
@@ -131,6 +132,6 @@ def _centred(discretisation: Discretisation, points: FloatArray, pressure: Float
     surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
     if not surfaces.enclosed:
         return pressure
-    volume = np.abs(np.linalg.det(points[cells[:, 1:]] - points[cells[:, :1]]))
+    volume = np.abs(cell_volumes(points, cells))
     integral, whole = surfaces.ranks.sum(np.array([volume @ pressure[cells].mean(axis=1), volume.sum()]))
     return np.asarray(pressure - integral / whole)

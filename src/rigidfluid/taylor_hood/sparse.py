@@ -111,7 +111,8 @@ class SparseDiscretisation:
         assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
         given, load = np.concatenate([s.given.ravel(), zero]), np.concatenate([s.load.ravel(), zero])
-        right_side = constraint.transposed @ (load - assembled.stiffness @ given)
+        known = assembled.stiffness @ given if given.any() else 0.0
+        right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
         scale = max(solver.norm(right_side), s.scale)

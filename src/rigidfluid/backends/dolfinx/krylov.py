@@ -119,11 +119,7 @@ class Krylov(LaggedSolver[Reduced]):
 
 @final
 class LaggedLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `LaggedFactors`, to agree to round-off.
-
-    Each renewal analyses the matrix again and costs about three times their rebuild_cost in 2D, which makes the sum of
-    renewals and of iterations beyond fresh ones' a seventh dearer than it could be.
-    """
+    """LU factors of the whole matrix, by MUMPS; each renewal analyses the matrix again."""
 
     rebuild_cost: ClassVar[Mapping[int, int]] = LaggedFactors.rebuild_cost
     fresh_iterations: ClassVar[int] = LaggedFactors.fresh_iterations
