@@ -13,7 +13,7 @@ from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.pardiso import EXACT, FAST, SAFE, Pardiso, PardisoError
+from rigidfluid.taylor_hood.pardiso import EXACT, FAST, SAFE, Orderings, Pardiso, PardisoError
 
 _WORTHLESS = 1e-3
 """Relative residual of a known solution, from which on factors are not used."""
@@ -57,10 +57,11 @@ def _singular(matrix: sparse.csr_array, error: Exception) -> StepRejected:
     )
 
 
-def factorise(matrix: sparse.csr_array, before: Factors | None = None) -> Factors:
+def factorise(matrix: sparse.csr_array, before: Factors | None = None, orderings: Orderings | None = None) -> Factors:
     """Factorise a regular matrix; raises StepRejected where it is singular.
 
-    The factors ``before`` are used up: where they are of the same pattern, PARDISO does not analyse it again.
+    The factors ``before`` are used up: where they are of the same pattern, PARDISO does not analyse it again. Else the
+    order of elimination is taken from ``orderings``, if it is there.
     """
     matrix.sort_indices()
     if not importlib.util.find_spec("pypardiso"):
@@ -71,14 +72,14 @@ def factorise(matrix: sparse.csr_array, before: Factors | None = None) -> Factor
             analysed = before
         else:
             before.free()
-    return _by_pardiso(matrix, analysed)
+    return _by_pardiso(matrix, analysed, orderings or Orderings())
 
 
-def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None) -> Pardiso:
+def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: Orderings) -> Pardiso:
     """By the first of its settings that serves; the last one need not be tried, since there is no other."""
     for settings in (FAST, EXACT, SAFE):
         try:
-            factors, analysed = analysed or Pardiso(matrix, settings), None
+            factors, analysed = analysed or Pardiso(matrix, settings, orderings), None
             factors.factorise(matrix)
             if settings is SAFE or _residual(factors, matrix) <= _WORTHLESS:
                 return factors

@@ -13,6 +13,7 @@ from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.pardiso import Orderings
 
 _LEAST = float(np.finfo(float).tiny)
 """In place of no tolerance at all, that of a right side of zero."""
@@ -32,13 +33,14 @@ class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     most_sweeps: ClassVar[int] = 6
     """Of all columns together; factors that need more are worth renewing."""
 
-    def __init__(self, dimension: int) -> None:
+    def __init__(self, dimension: int, orderings: Orderings | None = None) -> None:
         super().__init__(ALONE, dimension)
+        self._orderings = orderings or Orderings()
         self._factors: Factors | None = None
 
     def make(self, matrix: sparse.csr_array) -> None:
         before, self._factors = self._factors, None
-        self._factors = factorise(matrix, before)
+        self._factors = factorise(matrix, before, self._orderings)
         self._rebuild_cost = self._factors.rebuild_cost or self._rebuild_cost
 
     def make_room(self) -> None:

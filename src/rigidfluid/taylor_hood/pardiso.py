@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
@@ -20,8 +21,12 @@ _UNSYMMETRIC = 11
 _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 # Places in PARDISO's iparm, from 0.
-_GIVEN, _ORDERING, _PIVOTS, _SCALED, _MATCHED, _ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = 0, 1, 9, 10, 12, 17, 18, 27, 34
+_GIVEN, _REORDERING, _PERMUTATION, _PIVOTS, _SCALED, _MATCHED = 0, 1, 4, 9, 10, 12
+_ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = 17, 18, 27, 34
 _NESTED_DISSECTION = 2
+_TAKEN, _RETURNED = 1, 2
+
+_Numbers = NDArray[np.int32]
 
 
 class PardisoError(Exception):
@@ -46,6 +51,25 @@ EXACT, SAFE = Settings(np.float64, matched=True, pivots=13), Settings(np.float64
 """Where the fast ones are worthless: matched first; and with greater numbers in the place of small pivots."""
 
 
+class Orderings:
+    """The order of elimination of the latest pattern, for all that factorise it: half of an analysis is to find it."""
+
+    def __init__(self) -> None:
+        self._latest: tuple[_Numbers, _Numbers, _Numbers] | None = None
+
+    def of(self, rows: _Numbers, columns: _Numbers) -> _Numbers | None:
+        """That of a pattern, if it is the latest; `keep` gives it."""
+        if self._latest is None or not (
+            np.array_equal(self._latest[0], rows) and np.array_equal(self._latest[1], columns)
+        ):
+            return None
+        return self._latest[2]
+
+    def keep(self, rows: _Numbers, columns: _Numbers, order: _Numbers) -> None:
+        """The order that was found for a pattern."""
+        self._latest = rows, columns, order
+
+
 class Pardiso:
     """LU factors of matrices of one pattern, which is analysed once.
 
@@ -58,6 +82,8 @@ class Pardiso:
         The pattern, with sorted indices; and the numbers that unknowns are matched by.
     settings : Settings
         How.
+    orderings : Orderings
+        Where its order of elimination may be known from, unless that depends on the numbers.
 
     Raises
     ------
@@ -65,19 +91,19 @@ class Pardiso:
         Where it cannot be analysed.
     """
 
-    def __init__(self, matrix: sparse.csr_array, settings: Settings) -> None:
+    def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
         self.settings = settings
         self._rows, self._columns = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
         self._handle = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
-        self._iparm[[_GIVEN, _ORDERING, _PIVOTS, _FROM_ZERO]] = 1, _NESTED_DISSECTION, settings.pivots, 1
+        self._iparm[[_GIVEN, _FROM_ZERO, _REORDERING, _PIVOTS]] = 1, 1, _NESTED_DISSECTION, settings.pivots
         self._iparm[[_SCALED, _MATCHED]] = settings.matched
         self._iparm[_SINGLE] = settings.precision is np.float32
         self._iparm[[_ENTRIES, _MFLOP]] = -1  # to be counted
         self._take(matrix)
         self.free = weakref.finalize(self, _call, self._handle, self._iparm, _FREE, len(self._scale))
         """Gives PARDISO's memory back."""
-        self._run(_ANALYSE)
+        self._analyse(orderings)
 
     @property
     def reusable(self) -> bool:
@@ -117,6 +143,15 @@ class Pardiso:
         solution: FloatArray = (size * scale) * found
         return solution
 
+    def _analyse(self, orderings: Orderings) -> None:
+        known = None if self.settings.matched else orderings.of(self._rows, self._columns)
+        self._order = np.zeros(len(self._scale), dtype=np.int32) if known is None else known
+        if not self.settings.matched:
+            self._iparm[_PERMUTATION] = _RETURNED if known is None else _TAKEN
+        self._run(_ANALYSE)
+        if not self.settings.matched:
+            orderings.keep(self._rows, self._columns, self._order)
+
     def _take(self, matrix: sparse.csr_array) -> None:
         self._scale = np.empty(matrix.shape[0])
         self._data = np.empty(matrix.nnz, dtype=self.settings.precision)
@@ -124,7 +159,7 @@ class Pardiso:
 
     def _run(self, phase: int, *sides: Any) -> None:
         """A phase, with the right sides and where their solutions go."""
-        matrix = self._data, self._rows, self._columns
+        matrix = self._data, self._rows, self._columns, self._order
         error = _call(self._handle, self._iparm, phase, len(self._scale), matrix, sides)
         if error:
             raise PardisoError(f"PARDISO's error {error} in phase {phase}")
@@ -151,11 +186,11 @@ def _call(handle: Any, iparm: Any, phase: int, size: int, matrix: Any = (), side
     columns = sides[0].shape[1] if sides and sides[0].ndim == 2 else 1
     integers = (ctypes.c_int32(each) for each in (1, 1, _UNSYMMETRIC, phase, size, columns, 0))
     copies, number, kind, phases, sizes, right_sides, silent = map(ctypes.byref, integers)
-    data, rows, places = map(_address, matrix or (None,) * 3)
+    data, rows, places, order = map(_address, matrix or (None,) * 4)
     given, found = map(_address, sides or (None,) * 2)
     error = ctypes.c_int32(0)
     _library().pardiso(
-        _address(handle), copies, number, kind, phases, sizes, data, rows, places, None, right_sides,
+        _address(handle), copies, number, kind, phases, sizes, data, rows, places, order, right_sides,
         _address(iparm), silent, given, found, ctypes.byref(error),
     )  # fmt: skip
     return error.value

@@ -28,15 +28,11 @@ class ReducedMatrix:
         P.
     stiffness : sparse array
         A K of the topology; all have its pattern.
-    viscous : bool
-        Whether K couples the components of the velocity, which viscosity alone does. Without, half the entries are
-        zero, and need not fill the factors.
     """
 
-    def __init__(self, constraint: Constraint, stiffness: sparse.csr_array, viscous: bool) -> None:
+    def __init__(self, constraint: Constraint, stiffness: sparse.csr_array) -> None:
         self._constraint = constraint
-        coupled = stiffness if viscous else _uncoupled(constraint, stiffness)
-        pattern = _ones(constraint.transposed) @ _ones(coupled) @ _ones(constraint.operator)
+        pattern = _ones(constraint.transposed) @ _ones(stiffness) @ _ones(constraint.operator)
         pattern = sparse.csr_array(pattern + _blocks(constraint))
         pattern.sort_indices()
         self._indptr, self._indices = pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32)
@@ -47,16 +43,6 @@ class ReducedMatrix:
         factors = _arrays(constraint.transposed), _arrays(stiffness), _arrays(constraint.operator)
         data = _entries(self._indptr, self._indices, *factors, constraint.twist_start, masses)
         return sparse.csr_array((data, self._indices, self._indptr), shape=(constraint.unknowns,) * 2)
-
-
-def _uncoupled(constraint: Constraint, stiffness: sparse.csr_array) -> sparse.csr_array:
-    """K without its entries between different components of the velocity."""
-    entries, numbering = stiffness.tocoo(), constraint.surfaces.numbering
-    row, column = entries.coords
-    velocity = np.tile(np.arange(numbering.dimension), numbering.nodes)
-    component = np.append(velocity, np.full(numbering.vertices, -1))
-    kept = (component[row] == component[column]) | (component[row] < 0) | (component[column] < 0)
-    return sparse.coo_array((entries.data[kept], (row[kept], column[kept])), shape=entries.shape).tocsr()
 
 
 def _arrays(matrix: sparse.csr_array) -> tuple[Any, Any, Any]:

@@ -92,7 +92,7 @@ class SparseDiscretisation:
         self._assembly = assembly
         self._solvers = {True: solver, False: inviscid_solver}
         self._latest: dict[bool, _Assembled] = {}
-        self._reduced: dict[bool, ReducedMatrix] = {}
+        self._reduced: ReducedMatrix | None = None
         self._made_from: dict[bool, CoupledMatrix] = {}
 
     @property
@@ -198,7 +198,7 @@ class SparseDiscretisation:
 
         def build() -> sparse.csr_array:
             self._made_from[m.viscosity != 0.0] = m
-            return self._reduced_matrix(stiffness, m.viscosity != 0.0).filled(stiffness, masses)
+            return self._reduced_matrix(stiffness).filled(stiffness, masses)
 
         return _Assembled(m, stiffness, apply, build, twists)
 
@@ -207,10 +207,10 @@ class SparseDiscretisation:
         origin = self._made_from.get(matrix.viscosity != 0.0)
         return origin is not None and abs(matrix.inertia - origin.inertia) > _OUTDATED * origin.inertia
 
-    def _reduced_matrix(self, stiffness: sparse.csr_array, viscous: bool) -> ReducedMatrix:
-        if viscous not in self._reduced:
-            self._reduced[viscous] = ReducedMatrix(self._constraint, stiffness, viscous)
-        return self._reduced[viscous]
+    def _reduced_matrix(self, stiffness: sparse.csr_array) -> ReducedMatrix:
+        if self._reduced is None:
+            self._reduced = ReducedMatrix(self._constraint, stiffness)
+        return self._reduced
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
         constraint, pressure = self._constraint, system.pressure

@@ -21,9 +21,11 @@ class SparseBackend(TaylorHoodBackend):
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
+        from rigidfluid.taylor_hood.pardiso import Orderings
 
         super().__init__(options, problem)
-        self._solver, self._inviscid_solver = (LaggedFactors(self.problem.dimension) for _ in range(2))
+        dimension, orderings = self.problem.dimension, Orderings()
+        self._solver, self._inviscid_solver = (LaggedFactors(dimension, orderings) for _ in range(2))
         self._assembly: Assembly | None = None
         self._points: FloatArray
 

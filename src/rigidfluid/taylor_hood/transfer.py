@@ -37,8 +37,9 @@ def transfer(
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
     projected, on the mesh where it belongs, and given the kinetic energy that it had, of ``energies`` (now, one step
-    before). ``forget`` drops what the solution before has left.
+    before). ``forget`` drops what solutions before have left.
     """
+    forget()
     numbering = target.numbering
     on_nodes = Samples(old, source, numbering.node_points(new.geometry))
     displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
@@ -50,7 +51,6 @@ def transfer(
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position = fluid["position" + suffix]
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
-        forget()
         projected = project(target, tolerance, velocity, points, position)
         at_boundary = np.where(target.surfaces.velocity_free, 0.0, projected)
         potential = project(target, tolerance, at_boundary, points, position)
