@@ -40,7 +40,8 @@ def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -
     yield f"## `{title}`\n\n{schema['description']}\n\n{_table(schema)}"
     for key, place in schema["properties"].items():
         if target := _target(place):
-            yield from _section(f"[{path}.{key}]", f"{path}.{key}", target, definitions)
+            title = f"[[{path}.{key}]]" if place.get("type") == "array" else f"[{path}.{key}]"
+            yield from _section(title, f"{path}.{key}", target, definitions)
 
 
 def _parts() -> Iterator[str]:

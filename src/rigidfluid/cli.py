@@ -296,13 +296,21 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         BarColumn(),
         TextColumn(
             "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
+            "{task.fields[warning]}"
         ),
         TimeRemainingColumn(),
         TextColumn("to go"),
     )
     with Bar(*columns, console=console) as bar:
-        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"))
-        yield lambda now: bar.update(task, completed=now.time, step=now.step, gap=now.gap)
+        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"), warning="")
+        yield lambda now: bar.update(
+            task, completed=now.time, step=now.step, gap=now.gap, warning=_of_meshes(now.failed_remeshes)
+        )
+
+
+def _of_meshes(failed: int) -> str:
+    """Of new meshes that could not be made, for the line that shows where a run is."""
+    return f", {failed} failed re-meshes" if failed else ""
 
 
 @contextmanager
@@ -362,7 +370,8 @@ def _print_end(history: History, folder: Path) -> None:
     _print(f"rest position: {_figure(summary['rest_position'])}")
     if summary["failed_remeshes"]:
         _print(
-            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on",
+            f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on. "
+            f"The latest failure, {summary['latest_failed_remesh']}",
             "yellow",
         )
     _print_energy(history)

@@ -75,3 +75,18 @@ def test_a_run_taken_up_between_the_impacts_of_a_disk_in_a_fluid(tmp_path):
     rigidfluid.run(whole, tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "contacts.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_run_with_a_tolerance_taken_up_where_its_steps_change(tmp_path):
+    """What the next step may be follows from the errors of those before, and these lie in the checkpoint."""
+    settings = ["output.every=0.002", "time.step=0.002", "time.tolerance=3e-3"]
+    whole, first = (
+        load_scene(SCENES / "bounce_in_fluid.toml", [*settings, f"time.end={end}"]) for end in (0.016, 0.004)
+    )
+    rigidfluid.run(whole, tmp_path / "whole")
+    rigidfluid.run(first, tmp_path / "parts")
+    rigidfluid.run(whole, tmp_path / "parts", resume=True)
+    for name in ("bodies.csv", "energy.csv", "steps.csv"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    sizes = {line.split(",")[2] for line in (tmp_path / "whole" / "steps.csv").read_text().splitlines()[1:]}
+    assert len(sizes) > 3

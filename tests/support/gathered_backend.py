@@ -33,6 +33,7 @@ def install_gathered(folder):
 
 class Gathered(FluidBackend):
     name = "gathered"
+    curved_cells = True
     Options = ScikitFem.Options
 
     def __init__(self, options, problem):
@@ -70,6 +71,15 @@ class Gathered(FluidBackend):
         made = self._whole(new)
         return self._on_root(lambda old, fluid: self._inner.transfer(fluid, old, made), old, fluid)
 
+    def prediction_error(self, before, after, mesh, extrapolation):
+        pieces = self.ranks.gather(after)
+
+        def work(mesh, before):
+            joined = {name: np.concatenate([piece[name] for piece in pieces]) for name in after}
+            return {}, self._inner.prediction_error(before, joined, mesh, extrapolation)
+
+        return self._on_root(work, mesh, before)[1]
+
     def fields(self, fluid, mesh):
         fields = self._on_root(lambda mesh, fluid: ({}, self._inner.fields(fluid, mesh)), mesh, fluid)[1]
         cells = fields.cells if mesh.part is None else fields.cells[mesh.part.cells]
@@ -106,8 +116,8 @@ class Gathered(FluidBackend):
         """The step with all points on the root, of use there alone."""
         if step.points is None:
             return step
-        moved = self._whole(replace(mesh, points=step.points))
-        return replace(step, points=moved.points) if self.ranks.is_root else step
+        moved = self._whole(mesh.at(step.points))
+        return replace(step, points=moved.geometry) if self.ranks.is_root else step
 
     def _whole(self, mesh):
         """The whole mesh on the root, with the same arrays of cells as long as the part has them."""
@@ -115,7 +125,7 @@ class Gathered(FluidBackend):
         if made is None:
             return None
         kept = self._meshes.setdefault(id(mesh.cells), (mesh.cells, made))[1]
-        return replace(kept, points=made.points)
+        return kept.at(made.geometry)
 
 
 class OnTheRoot:

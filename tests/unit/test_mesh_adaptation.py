@@ -14,6 +14,7 @@ import rigidfluid
 from rigidfluid.core.mesh import mesh_adaptation
 from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepError, StepRejected
@@ -28,11 +29,12 @@ SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body
 def test_quality(monkeypatch, asked, made, worst, anew):
     """Below what is asked and half of what it was; a quality below that of tangled cells would ask too late."""
     still: Any = SimpleNamespace(move=lambda pose: None)
-    monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda mesh, points: worst)
+    monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda *_: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
+    monkeypatch.setattr(mesh_adaptation, "is_due", lambda *arguments: False)
     system: Any = None
-    mesh_updater = MeshUpdater(system, None, asked, 1)
-    monkeypatch.setattr(mesh_updater, "_map", lambda reference: still)
+    mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), asked, 1)
+    monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
     state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
     assert mesh_updater.needs_remesh(state, state) is anew
 

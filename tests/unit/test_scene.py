@@ -43,6 +43,7 @@ DISK = {
 }
 SECOND = {"type": "sphere", "radius": 0.125, "density": 1.0, "position": [1.0, 2.0]}
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.2], "density": 1.0, "position": [1.0, 1.0]}
+LOW = {"lower": [0.0, 0.0], "upper": [2.0, 1.0], "size": 0.05}
 DELETE = object()
 
 
@@ -191,8 +192,38 @@ BAD = {
     "option without law": ({"contact": {"epsilon": 1.0}}, "contact.epsilon", "law", "Name the law"),
     "rare output": ({"output.every": 1e-4}, "output.every: found 0.0001", "time.step = 0.001", "Write less"),
     "long step": ({"time.step": 2.0, "output.every": 3.0}, "time.step: found 2", "time.end = 1", "Shorten"),
+    "no tolerance": ({"time.tolerance": 0.0}, "time.tolerance: found 0.0", "0.000001", "Correct"),
+    "tolerance without a fluid": (
+        {"time.tolerance": 1e-3, "fluid.backend": "dry"},
+        "time.tolerance: found 0.001",
+        "none with backend 'dry'",
+        "Remove",
+    ),
     "shortest too long": ({"time.shortest": 0.1}, "time.shortest: found 0.1", "time.step = 0.001", "Shorten"),
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
+    "mesh made anew too often": (
+        {"mesh.remesh_every": 1e-4},
+        "mesh.remesh_every: found 0.0001",
+        "time.step = 0.001",
+        "less often",
+    ),
+    "coarse wake": (
+        {"mesh.wake": {"time": 0.1, "size": 0.2}},
+        "mesh.wake.size: found 0.2",
+        "mesh.size = 0.15",
+        "Refine it",
+    ),
+    "wake of no size": ({"mesh.wake": {"time": 0.1}}, "mesh.wake.size: found nothing", "mesh.wake", "Edge length"),
+    "coarse refined box": ({"mesh.refine": [LOW | {"size": 0.2}]}, "mesh.refine.0.size", "mesh.size = 0.15", "Refine"),
+    "flat refined box": ({"mesh.refine": [LOW | {"upper": [2, 0]}]}, "mesh.refine.0.lower", "below that", "Swap"),
+    "refined box in 3D": ({"mesh.refine": [LOW | {"upper": [2, 1, 1]}]}, "mesh.refine.0.upper", "2 numbers", "2 dim"),
+    "refined box outside": (
+        {"mesh.refine": [LOW, {"lower": [0, -2], "upper": [2, -1], "size": 0.1}]},
+        "mesh.refine.1: found one from [0.0, -2.0] to [2.0, -1.0]",
+        "meets the domain, which reaches from [0.0, 0.0] to [2.0, 6.0]",
+        "Move",
+    ),
+    "refined box of too many cells": ({"mesh.refine": [LOW | {"size": 1e-6}]}, "mesh.refine.0.size", "4.47", "Coarsen"),
     "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),
     "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
     "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "match pattern", "Name in"),

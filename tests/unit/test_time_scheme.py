@@ -2,7 +2,13 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.rigid import lab_inertia, rotation_matrices
-from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
+from rigidfluid.core.mechanics.time_scheme import (
+    derivative_weights,
+    extrapolation_weights,
+    newton_euler,
+    path_error_weight,
+    predict_pose,
+)
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])
@@ -31,6 +37,29 @@ def test_extrapolation_is_exact_for_lines(previous: float) -> None:
     weights = extrapolation_weights(0.1, previous)
     assert weights @ [1.0, 1.0] == pytest.approx(1.0)
     assert weights @ [0.0, -previous] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("previous", [0.1, 0.05, 0.2, 0.03])
+def test_the_path_error_is_exact_for_parabolic_twists(previous: float) -> None:
+    """Of a pose by Adams–Bashforth 2, from the three velocities alone."""
+    step = 0.1
+
+    def velocity(time: float) -> float:
+        return 1.0 + 4.0 * time - 7.0 * time**2
+
+    def twist(time: float) -> Twist:
+        return Twist(np.full((1, 2), velocity(time)), np.zeros((1, 1)))
+
+    start = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
+    pose = predict_pose(start, twist(0.0), twist(-previous), step, previous)
+    way = step + 2.0 * step**2 - 7.0 / 3.0 * step**3
+    differs = velocity(step) - extrapolation_weights(step, previous) @ [velocity(0.0), velocity(-previous)]
+    found = path_error_weight(step, previous) * differs
+    np.testing.assert_allclose((way - pose.position) / step, found, rtol=1e-12)
+
+
+def test_the_path_error_of_equal_steps_is_that_of_adams_and_bashforth() -> None:
+    assert path_error_weight(0.1, 0.1) == pytest.approx(5 / 12)
 
 
 @pytest.mark.parametrize("previous", [0.1, 0.03])

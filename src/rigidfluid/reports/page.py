@@ -87,8 +87,10 @@ def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:
 
 def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
     yield "time reached [time]", summary["time"]
-    for key in ("steps", "rejected_steps", "remeshes", "cells", "unknowns"):
+    for key in ("steps", "rejected_steps", "remeshes", "failed_remeshes", "cells", "unknowns"):
         yield key.replace("_", " "), summary[key]
+    if summary["failed_remeshes"]:
+        yield "latest failed remesh", summary["latest_failed_remesh"]
     yield "wall time [s]", summary["wall_time"]
     for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
         yield f"of it: {stage} [s]", seconds

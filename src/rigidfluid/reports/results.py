@@ -26,6 +26,7 @@ from rigidfluid.errors import OutputError
 
 NEEDED = (
     *("scene", "status", "versions", "time", "steps", "rejected_steps", "remeshes", "cells", "unknowns"),
+    *("failed_remeshes", "latest_failed_remesh"),
     *("wall_time", "wall_time_per_stage", "reynolds_solid_density", "reynolds", "smallest_gap"),
     *("rest_position", "energy"),
 )

@@ -31,11 +31,13 @@ def advance(
     Where an earlier ``attempt`` has led is the first guess, and else what is extrapolated.
     """
     problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
+    before = mesh.geometry
     on_faces = pressure_load(surfaces, matrix.node_points, step.time)
     system = _system(discretisation, matrix, on_faces, fluid, step)
     if attempt is not None:
         guess = motion_twist(step.kinematics, attempt["twist"])
-        system = replace(system, velocity=attempt["velocity"], pressure=attempt["pressure"], twist=guess)
+        velocity, pressure = attempt["velocity"], attempt["pressure"]
+        system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
     solution, d = discretisation.solve(system, tolerance), problem.dimension
     velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
     state = {
@@ -43,7 +45,7 @@ def advance(
         "velocity_previous": fluid["velocity"],
         "pressure": _centred(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
-        "points_previous": mesh.points,
+        "points_previous": before,
         "twist": flat(component_twist(step.kinematics, twist)),
         "twist_previous": fluid["twist"],
         "position": step.pose.position,
@@ -57,9 +59,7 @@ def advance(
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
         kinetic_energy=kinetic_energy(discretisation, points, velocity),
         dissipation=dissipation(discretisation, points, velocity),
-        dissipation_midway=dissipation(
-            discretisation, 0.5 * (mesh.points + points), 0.5 * (fluid["velocity"] + velocity)
-        ),
+        dissipation_midway=dissipation(discretisation, 0.5 * (before + points), 0.5 * (fluid["velocity"] + velocity)),
         boundary_power=face_power(surfaces, problem.inert_density, at, velocity, on_faces, solution.reaction),
     )
 
@@ -71,11 +71,11 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     """
     problem, numbering, density = discretisation.problem, discretisation.numbering, discretisation.problem.inert_density
     (d0, d1, d2), (e0, e1) = step.derivative, step.extrapolation
-    before = fluid["points_previous"]
-    points = mesh.points if step.points is None else step.points
-    expected = e0 * mesh.points + e1 * before if step.points is None else points
+    present, before = mesh.geometry, fluid["points_previous"]
+    points = present if step.points is None else step.points
+    expected = e0 * present + e1 * before if step.points is None else points
     node_points, flow = numbering.node_points(points), density * _extrapolated(fluid, step)
-    mesh_velocity = numbering.node_points(d0 * expected + d1 * mesh.points + d2 * before)
+    mesh_velocity = numbering.node_points(d0 * expected + d1 * present + d2 * before)
     matrix = CoupledMatrix(
         points=points,
         node_points=node_points,

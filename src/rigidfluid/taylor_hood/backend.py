@@ -50,6 +50,7 @@ class TaylorHoodBackend(FluidBackend):
     """
 
     Options: ClassVar[type[PartOptions]] = TaylorHoodOptions
+    curved_cells: ClassVar[bool] = True
 
     options: TaylorHoodOptions
     problem: FluidProblem
@@ -105,16 +106,27 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
         from rigidfluid.taylor_hood.transfer import transfer
 
-        source, before = self.numbering_of(old), kinetic_energy(self._any(old), old.points, fluid["velocity"])
+        source, present = self.numbering_of(old), self._any(old)
+        before = kinetic_energy(present, old.geometry, fluid["velocity"])
+        earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
         target = self._for_projection(new)
-        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new)
-        return moved, before - kinetic_energy(target, new.points, moved["velocity"])
+        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new, (before, earlier))
+        return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
+
+    @final
+    def prediction_error(
+        self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
+    ) -> float:
+        from rigidfluid.taylor_hood.discretisation import kinetic_energy
+
+        expected = extrapolation[0] * before["velocity"] + extrapolation[1] * before["velocity_previous"]
+        return kinetic_energy(self._any(_given(mesh)), _given(mesh).geometry, after["velocity"] - expected)
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         numbering = self.numbering_of(mesh)
-        pressure = numbering.node_points(fluid["pressure"])
-        return Fields(numbering.node_points(mesh.points), numbering.cell_nodes, fluid["velocity"], pressure)
+        pressure = numbering.at_nodes(fluid["pressure"])
+        return Fields(numbering.node_points(mesh.geometry), numbering.cell_nodes, fluid["velocity"], pressure)
 
     @final
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -137,7 +149,7 @@ class TaylorHoodBackend(FluidBackend):
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
         if self._numbering is None or self._numbering.cells is not mesh.cells:
-            self._numbering = Numbering(mesh.cells, len(mesh.points))
+            self._numbering = Numbering.of(mesh)
             self._latest = None
         return self._numbering
 

@@ -17,8 +17,9 @@ class CoupledMatrix:
 
     for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies.
 
-    ``points`` (vertices, d), ``node_points`` (nodes, d). ``advection`` a and ``flow`` c, (nodes, d), already hold the
-    density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps convection from making energy.
+    ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
+    (nodes, d), already hold the density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps
+    convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
     the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
     """
@@ -56,7 +57,7 @@ class CoupledSystem:
     ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``body_load`` is of
     all bodies. ``given`` (nodes, d): velocities where they are prescribed, zero elsewhere. ``velocity``, ``pressure``,
     ``twist`` are the guess. ``scale``: the size of the largest parts that the right side is a sum of; where they
-    cancel, the residual is held against it.
+    cancel, the residual is held against it. ``again``: the guess is a solution of nearly the same system.
     """
 
     matrix: CoupledMatrix
@@ -67,6 +68,7 @@ class CoupledSystem:
     pressure: FloatArray
     twist: FloatArray
     scale: float = 0.0
+    again: bool = False
 
 
 @dataclass(frozen=True)

@@ -22,12 +22,11 @@ _LEAST = float(np.finfo(float).tiny)
 class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     """LU by `factorise`.
 
-    The rebuild_cost is that of PARDISO's factors for a pattern that it has analysed: 8 to 12 iterations in 2D (5,000 to
-    100,000 unknowns), 64 in 3D (24,000). With the analysis it is 30 and 100.
+    PARDISO's factors know their rebuild_cost; that of others is what SuperLU and MUMPS, which analyse each time, took.
     """
 
-    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 10, 3: 60}
-    fresh_iterations: ClassVar[int] = 3
+    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 30, 3: 100}
+    fresh_iterations: ClassVar[int] = 1
     most: ClassVar[int] = 40
 
     most_sweeps: ClassVar[int] = 6
@@ -40,6 +39,7 @@ class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     def make(self, matrix: sparse.csr_array) -> None:
         before, self._factors = self._factors, None
         self._factors = factorise(matrix, before)
+        self._rebuild_cost = self._factors.rebuild_cost or self._rebuild_cost
 
     def make_room(self) -> None:
         if self._factors is not None and not self._factors.reusable:

@@ -14,6 +14,13 @@ from rigidfluid.errors import StepRejected
 
 Matrix = TypeVar("Matrix")
 
+_RECYCLED = 2
+"""Corrections of so many steps are kept. What a linear extrapolation in time misses changes little from step to step: a
+combination of them leaves a hundredth of it, as an extrapolation of two orders more would, whatever the steps are."""
+
+_PARALLEL = 1e-10
+"""Relative size of what is new in a vector, below which it is rounding."""
+
 
 class LaggedSolver(ABC, Generic[Matrix]):
     """Solves A x = b for a matrix that changes little from step to step.
@@ -34,12 +41,30 @@ class LaggedSolver(ABC, Generic[Matrix]):
         self._rebuild_cost = self.rebuild_cost[dimension]
         self._wasted = 0
         self._is_made = False
+        self._corrections: tuple[FloatArray, ...] = ()
+
+    @property
+    def is_made(self) -> bool:
+        """Whether there is a preconditioner."""
+        return self._is_made
 
     @final
     def forget(self) -> None:
-        """Drop the preconditioner."""
+        """Drop the preconditioner and what earlier solutions have left."""
         self._is_made = False
+        self._corrections = ()
         self.drop()
+
+    @final
+    def memory(self) -> dict[str, FloatArray]:
+        """What the next solution depends on, beside the matrix that the preconditioner was made from."""
+        return {"wasted": np.array(float(self._wasted)), "corrections": np.array(self._corrections)}
+
+    @final
+    def recall(self, memory: Mapping[str, FloatArray], matrix: Callable[[], Matrix]) -> None:
+        """Go on from what `memory` gave, with a preconditioner made from that matrix."""
+        self._renew(matrix)
+        self._wasted, self._corrections = int(memory["wasted"]), tuple(memory["corrections"])
 
     @final
     def solve(
@@ -48,17 +73,39 @@ class LaggedSolver(ABC, Generic[Matrix]):
         matrix: Callable[[], Matrix],
         residual: FloatArray,
         tolerance: float,
+        outdated: bool = False,
+        again: bool = False,
     ) -> tuple[FloatArray, int]:
         """The correction x with ‖residual - A x‖ ≤ tolerance, and the iterations spent; raises StepRejected.
 
-        ``apply(x)`` is A x; ``matrix()`` builds A where a new preconditioner is needed. Vectors are this process' part.
+        ``apply(x)`` is A x; ``matrix()`` builds A where a new preconditioner is needed, as it is at once where the old
+        one is ``outdated``. ``again``: the guess is a solution of nearly the same system, and what corrects it has
+        nothing to do with the corrections of steps. Vectors are this process' part.
         """
         start = self.norm(residual)
         if not np.isfinite(start):
             raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
         if start <= tolerance:
             return np.zeros_like(residual), 0
-        fresh = not self._is_made or self._wasted > self._rebuild_cost
+        recycled, left = (np.zeros_like(residual), residual) if again else self._recycle(apply, residual)
+        correction, iterations = self._iterate(apply, matrix, left, tolerance, outdated)
+        correction = recycled + correction
+        if not again:
+            self._corrections = (correction, *self._corrections)[:_RECYCLED]
+        self._wasted += max(0, iterations - self.fresh_iterations)
+        return correction, iterations
+
+    def _iterate(
+        self,
+        apply: Callable[[FloatArray], FloatArray],
+        matrix: Callable[[], Matrix],
+        residual: FloatArray,
+        tolerance: float,
+        outdated: bool,
+    ) -> tuple[FloatArray, int]:
+        if self.norm(residual) <= tolerance:
+            return np.zeros_like(residual), 0
+        fresh = not self._is_made or outdated or self._wasted > self._rebuild_cost
         if fresh:
             self._renew(matrix)
         most = self.most if fresh else min(self.most, self.fresh_iterations + 2 * self._rebuild_cost)
@@ -74,8 +121,27 @@ class LaggedSolver(ABC, Generic[Matrix]):
                 "a converging one",
                 "Shorten time.step or loosen fluid.tolerance.",
             )
-        self._wasted += max(0, iterations - self.fresh_iterations)
         return correction, iterations
+
+    def _recycle(
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """The combination x of earlier corrections with the least ‖residual - A x‖, and that residual."""
+        found, left = np.zeros_like(residual), residual
+        basis: list[tuple[FloatArray, FloatArray]] = []
+        for vector in self._corrections:
+            image = apply(vector)
+            whole = self.norm(image)
+            for other, image_of_other in basis:
+                share = self._ranks.sum(image_of_other @ image)
+                vector, image = vector - share * other, image - share * image_of_other
+            size = self.norm(image)
+            if not size > _PARALLEL * whole:
+                continue
+            basis.append((vector / size, image / size))
+            share = self._ranks.sum(basis[-1][1] @ left)
+            found, left = found + share * basis[-1][0], left - share * basis[-1][1]
+        return found, left
 
     @final
     def solve_columns(

@@ -10,6 +10,10 @@ from rigidfluid.taylor_hood.numbering import EDGES
 
 _CANDIDATES = (8, 64, 512)
 _INSIDE = -1e-10
+_ITERATIONS, _ENOUGH = 30, 1e-14
+_BEYOND = 0.2
+"""So far outside a curved cell, in its coordinates, its map is trusted."""
+_NEIGHBOURS = 32
 
 
 def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -32,8 +36,51 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
         missing = missing[coordinates[missing].min(axis=1) < _INSIDE]
         if len(missing) == 0:
             break
+    return cell, _moved_inside(coordinates)
+
+
+def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The curved cell of each target (N,) and its coordinates in the cell's quadratic map (N, d+1), moved inside.
+
+    ``nodes`` (C, b, d) of all curved cells; ``guess`` (N,): the one whose straight cell holds the target. In 3D the
+    faces between two curved cells are curved too, so that a target near one may be the neighbour's.
+    """
+    cell, found = guess.copy(), _by_newton(nodes[guess], targets)
+    astray = np.flatnonzero(found.min(axis=1) < _INSIDE)
+    if len(astray):
+        corners = targets.shape[1] + 1
+        count = min(_NEIGHBOURS, len(nodes))
+        _, near = cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
+        near = near.reshape(len(astray), count)
+        tried = _by_newton(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0)).reshape(*near.shape, corners)
+        best = np.argmax(tried.min(axis=2), axis=1)
+        rows = np.arange(len(astray))
+        better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
+        cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
+    return cell, _moved_inside(found)
+
+
+def _by_newton(nodes: FloatArray, targets: FloatArray) -> FloatArray:
+    """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d).
+
+    By Newton's method with the straight cells' matrices.
+    """
+    d = targets.shape[1]
+    edges = np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2)
+    coordinates = np.full((len(targets), d + 1), 1.0 / (d + 1))
+    for _ in range(_ITERATIONS):
+        missed = targets - np.einsum("nb,nbd->nd", quadratic_basis(coordinates), nodes)
+        rest = np.linalg.solve(edges, missed[..., None])[..., 0]
+        coordinates = coordinates + np.column_stack([-rest.sum(axis=1), rest])
+        coordinates = np.clip(coordinates, -_BEYOND, 1.0 + _BEYOND)
+        if np.abs(rest).max(initial=0.0) < _ENOUGH:
+            break
+    return coordinates
+
+
+def _moved_inside(coordinates: FloatArray) -> FloatArray:
     inside = np.maximum(coordinates, 0.0)
-    return cell, inside / inside.sum(axis=1, keepdims=True)
+    return np.asarray(inside / inside.sum(axis=1, keepdims=True))
 
 
 def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) -> FloatArray:

@@ -2,6 +2,8 @@
 
 Nodes carry the velocity: the vertices first, then the edges' midpoints. Unknown ``node * d + component`` is a velocity,
 unknown ``nodes * d + vertex`` a pressure. Nothing here depends on where the vertices are.
+
+The same nodes say where a mesh with curved edges is (isoparametric elements): those on straight edges are half-way.
 """
 
 from __future__ import annotations
@@ -15,9 +17,13 @@ EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3)
 
 
 class Numbering:
-    """Nodes on ``cells`` (M, d+1) over ``vertices`` vertices: ``cell_nodes`` (M, 6 | 10), ``edges`` (E, 2)."""
+    """Nodes on ``cells`` (M, d+1) over ``vertices`` vertices: ``cell_nodes`` (M, 6 | 10), ``edges`` (E, 2).
 
-    def __init__(self, cells: IntArray, vertices: int) -> None:
+    ``curved`` (K, 2): edges that are not straight, as pairs of vertices; ``on_curves`` (K,): the nodes on them;
+    ``curved_cells`` (C,): the cells at them.
+    """
+
+    def __init__(self, cells: IntArray, vertices: int, curved: IntArray | None = None) -> None:
         self.cells = cells
         self.dimension = d = cells.shape[1] - 1
         self.vertices = vertices
@@ -26,6 +32,17 @@ class Numbering:
         self.edges: IntArray = np.stack(np.divmod(self._edge_keys, vertices), axis=1)
         self.nodes = vertices + len(self.edges)
         self.cell_nodes: IntArray = np.concatenate([cells, vertices + place.reshape(len(cells), -1)], axis=1)
+        self.on_curves = np.zeros(0, dtype=np.int64) if curved is None else self.edge_nodes(curved)
+        curve = np.full(len(self.edges), -1)
+        curve[self.on_curves - vertices] = np.arange(len(self.on_curves))
+        curve_of_edge = curve[self.cell_nodes[:, d + 1 :] - vertices]
+        self.curved_cells = np.flatnonzero((curve_of_edge >= 0).any(axis=1))
+        self._curve_of_edge = curve_of_edge[self.curved_cells]
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> Numbering:
+        """The nodes of a mesh."""
+        return cls(mesh.cells, len(mesh.points), None if mesh.curved is None else mesh.curved.vertices)
 
     @property
     def unknowns(self) -> int:
@@ -33,8 +50,27 @@ class Numbering:
         return int(self.nodes * self.dimension + self.vertices)
 
     def node_points(self, points: FloatArray) -> FloatArray:
-        """Coordinates of all nodes, (nodes, d), for vertices at ``points`` (vertices, d); also extends any P1 field."""
-        return np.concatenate([points, 0.5 * (points[self.edges[:, 0]] + points[self.edges[:, 1]])])
+        """Coordinates of all nodes, (nodes, d), for a mesh's geometry ``points`` (vertices + K, d)."""
+        found = self.at_nodes(points[: self.vertices])
+        found[self.on_curves] = points[self.vertices :]
+        return found
+
+    def geometry_of(self, field: FloatArray) -> FloatArray:
+        """The part of a field on nodes (nodes, …) at those that a mesh's geometry is given by, (vertices + K, …)."""
+        return np.concatenate([field[: self.vertices], field[self.on_curves]])
+
+    def curved_cell_points(self, points: FloatArray) -> FloatArray:
+        """Coordinates of the nodes of each curved cell, (C, b, d), for a geometry ``points`` (vertices + K, d)."""
+        cells, d = self.cells[self.curved_cells], self.dimension
+        corners = points[cells]
+        middles = 0.5 * corners[:, EDGES[d]].sum(axis=2)
+        bent = self._curve_of_edge >= 0
+        middles[bent] = points[self.vertices + self._curve_of_edge[bent]]
+        return np.concatenate([corners, middles], axis=1)
+
+    def at_nodes(self, field: FloatArray) -> FloatArray:
+        """A P1 field (vertices, …) at all nodes."""
+        return np.concatenate([field, 0.5 * (field[self.edges[:, 0]] + field[self.edges[:, 1]])])
 
     def facet_nodes(self, facets: IntArray) -> IntArray:
         """Nodes of boundary ``facets`` (F, d): their vertices, then their edges' midpoints; (F, 3 | 6)."""

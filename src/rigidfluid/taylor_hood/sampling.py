@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
-from rigidfluid.taylor_hood.location import barycentric, locate, quadratic_basis
+from rigidfluid.taylor_hood.location import barycentric, locate, locate_on_curves, quadratic_basis
 from rigidfluid.taylor_hood.numbering import Numbering
 
 
@@ -25,7 +25,7 @@ class Samples:
     def __init__(self, mesh: Mesh, numbering: Numbering, targets: FloatArray) -> None:
         self._numbering, self._ranks, self._count = numbering, mesh.ranks, len(targets)
         asked = _candidates(mesh, targets)
-        answers = [_located(mesh, points) for points in self._ranks.alltoall([targets[to] for to in asked])]
+        answers = [_located(mesh, numbering, points) for points in self._ranks.alltoall([targets[to] for to in asked])]
         depths = self._ranks.alltoall([depth for _, depth in answers])
         chosen = _deepest(asked, depths, len(targets))
         self._places = [np.flatnonzero(chosen == rank) for rank in range(self._ranks.size)]
@@ -56,9 +56,15 @@ class Samples:
         return result
 
 
-def _located(mesh: Mesh, points: FloatArray) -> tuple[_Served, FloatArray]:
+def _located(mesh: Mesh, numbering: Numbering, points: FloatArray) -> tuple[_Served, FloatArray]:
     """Each point's cell of this part, and how deep in it it is: the least barycentric coordinate (N,)."""
     cell, coordinates = locate(mesh.points, mesh.cells, points)
+    at_curves = np.flatnonzero(np.isin(cell, numbering.curved_cells))
+    if len(at_curves):
+        guess = np.searchsorted(numbering.curved_cells, cell[at_curves])
+        nodes = numbering.curved_cell_points(mesh.geometry)
+        found, coordinates[at_curves] = locate_on_curves(nodes, guess, points[at_curves])
+        cell[at_curves] = numbering.curved_cells[found]
     if mesh.part is None:
         return _Served(cell, coordinates), np.zeros(len(points))
     depth = barycentric(mesh.points, mesh.cells[cell], points).min(axis=1)

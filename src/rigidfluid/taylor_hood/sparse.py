@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,6 +16,15 @@ from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
 from rigidfluid.taylor_hood.surfaces import Surfaces
+
+_OUTDATED = 0.1
+"""Relative difference of the BDF weights of two steps, from which on the factors of one serve the other badly: with
+those of BDF1 a step of BDF2 takes 5 to 7 iterations."""
+
+_ORIGIN = ("points", "inertia", "viscosity", "advection", "flow", "position", "mass_matrix")
+"""Fields of a `CoupledMatrix` that the others follow from."""
+
+_NAMES = {True: "step", False: "masses"}
 
 
 class Assembly(Protocol):
@@ -59,8 +68,8 @@ class SparseDiscretisation:
     assembly : Assembly
         The integrals.
     solver, inviscid_solver : LaggedFactors
-        Of the matrices of steps, and of those without viscosity. Kept from topology to topology; they must have been
-        told to forget the last one.
+        Of the matrices of steps, and of those without viscosity, as projections have. Kept from topology to topology;
+        they must have been told to forget the last one.
     mesh : Mesh
         The topology.
     controlled : (N,) bool
@@ -81,10 +90,10 @@ class SparseDiscretisation:
         self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.bodies, problem.carrier)
         self._constraint = Constraint(self.surfaces, mesh, controlled)
         self._assembly = assembly
-        self._solver = solver
-        self._inviscid_solver = inviscid_solver
+        self._solvers = {True: solver, False: inviscid_solver}
         self._latest: dict[bool, _Assembled] = {}
         self._reduced: dict[bool, ReducedMatrix] = {}
+        self._made_from: dict[bool, CoupledMatrix] = {}
 
     @property
     def unknowns(self) -> int:
@@ -99,15 +108,16 @@ class SparseDiscretisation:
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
-        assembled = self._assembled(s.matrix)
+        assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
         given, load = np.concatenate([s.given.ravel(), zero]), np.concatenate([s.load.ravel(), zero])
         right_side = constraint.transposed @ (load - assembled.stiffness @ given)
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
-        scale = max(self._solver.norm(right_side), s.scale)
+        scale = max(solver.norm(right_side), s.scale)
         residual = right_side - assembled.apply(guess)
-        correction, _ = self._solver.solve(assembled.apply, assembled.build, residual, tolerance * scale)
+        enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
+        correction, _ = solver.solve(assembled.apply, assembled.build, residual, enough, outdated, s.again)
         reduced = guess + correction
         everything = constraint.operator @ reduced + given
         twist = s.twist.copy()
@@ -128,9 +138,40 @@ class SparseDiscretisation:
         size = self.numbering.nodes * self.numbering.dimension
         return np.asarray((self._constraint.operator @ answer)[:size].reshape(self.numbering.nodes, -1))
 
+    def memory(self) -> dict[str, FloatArray]:
+        """What the next step depends on beside the state: what factors were made from, and what solvers remember."""
+        found: dict[str, FloatArray] = {}
+        for viscous, solver in self._solvers.items():
+            if solver.is_made:
+                origin = self._made_from[viscous]
+                arrays = {name: np.asarray(getattr(origin, name)) for name in _ORIGIN}
+                found |= {f"{_NAMES[viscous]}_{name}": each for name, each in (arrays | solver.memory()).items()}
+        return found
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Make the factors of a `memory` again, to the last bit."""
+        for viscous, solver in self._solvers.items():
+            prefix = f"{_NAMES[viscous]}_"
+            found = {name.removeprefix(prefix): each for name, each in memory.items() if name.startswith(prefix)}
+            if found:
+                solver.recall(found, self._assembled(self._origin(found)).build)
+
+    def _origin(self, memory: Mapping[str, FloatArray]) -> CoupledMatrix:
+        return CoupledMatrix(
+            points=memory["points"],
+            node_points=self.numbering.node_points(memory["points"]),
+            inertia=float(memory["inertia"]),
+            viscosity=float(memory["viscosity"]),
+            advection=memory["advection"],
+            flow=memory["flow"],
+            position=memory["position"],
+            mass_matrix=memory["mass_matrix"],
+            controlled=self._constraint.controlled,
+        )
+
     def _answers(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
-        solver = self._inviscid_solver if assembled.of.viscosity == 0.0 else self._solver
+        solver = self._solvers[assembled.of.viscosity != 0.0]
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
         right_sides[assembled.twists] = wrenches[~assembled.of.controlled].reshape(-1, wrenches.shape[2])
         return solver.solve_columns(assembled.apply, assembled.build, right_sides, tolerance)
@@ -156,9 +197,15 @@ class SparseDiscretisation:
             return result
 
         def build() -> sparse.csr_array:
+            self._made_from[m.viscosity != 0.0] = m
             return self._reduced_matrix(stiffness, m.viscosity != 0.0).filled(stiffness, masses)
 
         return _Assembled(m, stiffness, apply, build, twists)
+
+    def _is_outdated(self, matrix: CoupledMatrix) -> bool:
+        """Whether its factors are of a step of another length or order, which serve badly."""
+        origin = self._made_from.get(matrix.viscosity != 0.0)
+        return origin is not None and abs(matrix.inertia - origin.inertia) > _OUTDATED * origin.inertia
 
     def _reduced_matrix(self, stiffness: sparse.csr_array, viscous: bool) -> ReducedMatrix:
         if viscous not in self._reduced:

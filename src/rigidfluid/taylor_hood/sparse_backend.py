@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import replace
 from typing import TYPE_CHECKING, final
 
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, FluidState, Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -24,6 +25,7 @@ class SparseBackend(TaylorHoodBackend):
         super().__init__(options, problem)
         self._solver, self._inviscid_solver = (LaggedFactors(self.problem.dimension) for _ in range(2))
         self._assembly: Assembly | None = None
+        self._points: FloatArray
 
     @abstractmethod
     def assembly(self, numbering: Numbering) -> Assembly:
@@ -35,8 +37,30 @@ class SparseBackend(TaylorHoodBackend):
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
+        self._points = mesh.points  # they say which pressure is fixed
         solvers = self._solver, self._inviscid_solver
         return SparseDiscretisation(self.problem, self._assembly, *solvers, mesh, controlled)
+
+    @final
+    def memory(self) -> FluidState:
+        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+
+        self._latest_attempt = None
+        if self._latest is None:
+            return {}
+        controlled, discretisation = self._latest
+        assert isinstance(discretisation, SparseDiscretisation)
+        return {"controlled": controlled.astype(float), "points": self._points} | discretisation.memory()
+
+    @final
+    def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
+        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+
+        self.forget()
+        if memory and mesh is not None:
+            discretisation = self._on(replace(mesh, points=memory["points"]), memory["controlled"].astype(bool))
+            assert isinstance(discretisation, SparseDiscretisation)
+            discretisation.recall(memory)
 
     @final
     def drop_factors(self) -> None:

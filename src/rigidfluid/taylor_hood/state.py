@@ -1,7 +1,7 @@
 """The backend's memory between steps: two time levels of velocity, pressure, mesh and bodies.
 
 ``velocity`` (nodes, d), ``pressure`` (vertices,), ``twist`` (n, d+k), ``position`` (n, d) at the accepted time, the
-same names with ``_previous`` one step earlier, and ``points_previous`` (vertices, d), where the mesh was then.
+same names with ``_previous`` one step earlier, and ``points_previous`` (vertices + K, d), the mesh's geometry then.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
 
 def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
     """Fluid at rest, but for the nodes that move with a body."""
-    node_points = surfaces.numbering.node_points(mesh.points)
+    node_points = surfaces.numbering.node_points(mesh.geometry)
     velocity = np.zeros_like(node_points)
     twists = np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
     for body, nodes in enumerate(surfaces.body_nodes):
@@ -25,7 +25,7 @@ def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidSt
         "velocity_previous": velocity,
         "pressure": pressure,
         "pressure_previous": pressure,
-        "points_previous": mesh.points,
+        "points_previous": mesh.geometry,
         "twist": twists,
         "twist_previous": twists,
         "position": pose.position,

@@ -17,6 +17,9 @@ from rigidfluid.taylor_hood.surfaces import rigid_velocity
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
 """What divergence is left shows, over the step, as a burst of pressure: projections are solved so much better."""
 
+_MOST_SCALED = 1.25
+"""Flow beside potential flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
+
 
 def transfer(
     source: Numbering,
@@ -26,25 +29,32 @@ def transfer(
     fluid: FluidState,
     old: Mesh,
     new: Mesh,
+    energies: tuple[float, float],
 ) -> FluidState:
     """The state on ``new``.
 
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
-    projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
+    projected, on the mesh where it belongs, and given the kinetic energy that it had, of ``energies`` (now, one step
+    before). ``forget`` drops what the solution before has left.
     """
-    on_nodes = Samples(old, source, target.numbering.node_points(new.points))
-    on_vertices = Samples(old, source, new.points)
+    numbering = target.numbering
+    on_nodes = Samples(old, source, numbering.node_points(new.geometry))
+    displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
     moved = dict(fluid)
-    moved["points_previous"] = new.points - on_vertices.linear(old.points - fluid["points_previous"])
-    for suffix, points in (("", new.points), ("_previous", moved["points_previous"])):
-        moved["pressure" + suffix] = on_vertices.linear(fluid["pressure" + suffix])
+    moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
+    levels = ("", new.geometry, energies[0]), ("_previous", moved["points_previous"], energies[1])
+    for suffix, points, energy in levels:
+        moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position = fluid["position" + suffix]
         _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
         forget()
-        moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
+        projected = project(target, tolerance, velocity, points, position)
+        at_boundary = np.where(target.surfaces.velocity_free, 0.0, projected)
+        potential = project(target, tolerance, at_boundary, points, position)
+        moved["velocity" + suffix] = _with_energy(target, points, projected, potential, energy)
     forget()
     return moved
 
@@ -56,9 +66,9 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
     if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
-        projected = project(target, tolerance, state["velocity"], mesh.points, pose.position)
+        projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
         state["velocity"] = state["velocity_previous"] = projected
-    return state, kinetic_energy(target, mesh.points, state["velocity"])
+    return state, kinetic_energy(target, mesh.geometry, state["velocity"])
 
 
 def project(
@@ -91,6 +101,24 @@ def project(
         twist=np.zeros((bodies, width)),
     )
     return target.solve(system, max(_TIGHTER * tolerance, _TIGHTEST)).velocity
+
+
+def _with_energy(
+    target: Discretisation, points: FloatArray, velocity: FloatArray, potential: FloatArray, energy: float
+) -> FloatArray:
+    """``potential`` + s · (``velocity`` - ``potential``) with s such that its kinetic energy is ``energy``.
+
+    Both velocities are free of divergence and equal on the boundary, so that all combinations are too. Near a gap the
+    new mesh knows another added mass than the squeezed one before, and the projection changes the kinetic energy.
+    """
+    beside = velocity - potential
+    square, rest = kinetic_energy(target, points, beside), kinetic_energy(target, points, potential)
+    if square == 0.0:
+        return velocity
+    product = kinetic_energy(target, points, velocity) - square - rest
+    root = np.sqrt(max(product**2 - 4.0 * square * (rest - energy), 0.0))
+    scale = np.clip((root - product) / (2.0 * square), 1.0 / _MOST_SCALED, _MOST_SCALED)
+    return np.asarray(potential + scale * beside)
 
 
 def _move_with_bodies(

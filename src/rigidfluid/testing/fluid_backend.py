@@ -5,6 +5,7 @@ from __future__ import annotations
 from rigidfluid.testing.fluid.accuracy import AccuracyContract
 from rigidfluid.testing.fluid.balances import BalancesContract
 from rigidfluid.testing.fluid.carried import CarriedContract
+from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.output import OutputContract
@@ -16,6 +17,7 @@ class FluidBackendContract(
     AccuracyContract,
     BalancesContract,
     CarriedContract,
+    CurvedContract,
     CylinderContract,
     ResponsesContract,
     TransferContract,

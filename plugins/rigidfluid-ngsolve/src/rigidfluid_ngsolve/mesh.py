@@ -16,7 +16,7 @@ _NETGEN_EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((0, 1), (0, 2), (0, 3), (1, 2)
 class NodeMesh:
     """Netgen's quadratic cells over all nodes of ``numbering``, so that nodal spaces on them have its numbers.
 
-    The cells are declared straight, so NGSolve maps them from their vertices alone, and only those are moved.
+    The cells at curved edges are declared curved; NGSolve maps the others from their vertices alone.
     """
 
     def __init__(self, numbering: Numbering) -> None:
@@ -30,10 +30,12 @@ class NodeMesh:
         made.AddPoints(np.zeros((numbering.nodes, 3)))
         order = [*range(d + 1), *(d + 1 + EDGES[d].index(edge) for edge in _NETGEN_EDGES[d])]
         made.AddElements(dim=d, index=1, data=numbering.cell_nodes[:, order].astype(np.int32))
-        (made.Elements2D() if d == 2 else made.Elements3D()).NumPy()["curved"] = False
+        curved = np.isin(np.arange(len(numbering.cells)), numbering.curved_cells)
+        (made.Elements2D() if d == 2 else made.Elements3D()).NumPy()["curved"] = curved
         self.ngsolve: Any = Mesh(made)
-        self._coordinates: FloatArray = made.Coordinates()[: numbering.vertices]
+        self._numbering = numbering
+        self._coordinates: FloatArray = made.Coordinates()
 
     def move(self, points: FloatArray) -> None:
-        """Put the vertices at ``points`` (vertices, d)."""
-        self._coordinates[:] = points
+        """Put the mesh where its geometry is ``points`` (vertices + K, d)."""
+        self._coordinates[:] = self._numbering.node_points(points)

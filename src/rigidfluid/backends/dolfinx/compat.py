@@ -26,8 +26,8 @@ def assemble_block_matrix(matrix: Any, blocks: Any) -> None:
     matrix.assemble()
 
 
-def cell_vertices(mesh: Any) -> Any:
-    """DOLFINx' numbers of the geometry's points of each cell (M, d+1)."""
+def cell_nodes(mesh: Any) -> Any:
+    """DOLFINx' numbers of the geometry's points of each cell: its vertices, then in quadratic ones its edges'."""
     geometry = mesh.geometry
     return geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap  # the second until 0.10
 

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
+from dolfinx.mesh import meshtags
 
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import FloatArray
 
+_STRAIGHT, _CURVED = 1, 2
+_DEGREE_IN_CURVED_CELLS = {2: 6, 3: 7}
+"""Of convection: 2 + 1 + 2 and d - 1 of the map's adjugate."""
+
 _COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
 
 
 class Forms:
-    """Integrals over the cells of one space, evaluated where its mesh is now; all exact for straight simplices."""
+    """Integrals over the cells of one space, evaluated where its mesh is now; all exact for straight simplices.
+
+    On curved ones they are exact for convection and divergence, and so for the balance of energy.
+    """
 
     def __init__(self, space: Space) -> None:
         self._space = space
@@ -23,19 +33,19 @@ class Forms:
         p, q = ufl.TrialFunction(space.pressure), ufl.TestFunction(space.pressure)
         self._field, self._flow = fem.Function(space.velocity), fem.Function(space.velocity)
         self._inertia, self._viscosity = (fem.Constant(space.mesh, default_scalar_type(0.0)) for _ in range(2))
-        dx = ufl.dx
+        over = _over_cells(space)
         convected = ufl.dot(ufl.grad(u), self._field) + 0.5 * ufl.div(self._flow) * u
-        convection = ufl.inner(convected, v) * dx(degree=5)
-        inertia = self._inertia * ufl.inner(u, v) * dx(degree=4)
-        stress = self._viscosity * ufl.inner(ufl.grad(u) + ufl.grad(u).T, ufl.grad(v)) * dx(degree=2)
-        pressure, divergence = -p * ufl.div(v) * dx(degree=2), -q * ufl.div(u) * dx(degree=2)
+        convection = over(ufl.inner(convected, v), 5)
+        inertia = over(self._inertia * ufl.inner(u, v), 4)
+        stress = over(self._viscosity * ufl.inner(ufl.grad(u) + ufl.grad(u).T, ufl.grad(v)), 2)
+        pressure, divergence = over(-p * ufl.div(v), 2), over(-q * ufl.div(u), 2)
         self._matrix = _compiled([[inertia + convection + stress, pressure], [divergence, None]])
         self._without_convection = _compiled([[inertia + stress, pressure], [divergence, None]])
-        self._mass = _compiled(ufl.inner(self._field, v) * dx(degree=4))
+        self._mass = _compiled(over(ufl.inner(self._field, v), 4))
         strain = ufl.sym(ufl.grad(self._field))
-        self._strain_square = _compiled(2 * ufl.inner(strain, strain) * dx(degree=2))
-        self.pressure_mass = _compiled(p * q * dx(degree=2))
-        self.pressure_laplacian = _compiled(ufl.inner(ufl.grad(p), ufl.grad(q)) * dx(degree=0))
+        self._strain_square = _compiled(over(2 * ufl.inner(strain, strain), 2))
+        self.pressure_mass = _compiled(over(p * q, 2))
+        self.pressure_laplacian = _compiled(over(ufl.inner(ufl.grad(p), ufl.grad(q)), 0))
 
     def new_matrix(self) -> Any:
         """A PETSc matrix for `assemble`: the rows of each process' velocities, then of its pressures."""
@@ -61,6 +71,21 @@ class Forms:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
         self._space.set(self._field, velocity)
         return float(fem.assemble_scalar(self._strain_square))
+
+
+def _over_cells(space: Space) -> Callable[[Any, int], Any]:
+    """Makes integrals of integrands that have so high a degree in straight cells."""
+    if space.curved is None:
+        return lambda integrand, degree: integrand * ufl.dx(degree=degree)
+    d, cells = space.numbering.dimension, np.arange(len(space.curved), dtype=np.int32)
+    tags = meshtags(space.mesh, d, cells, np.where(space.curved, _CURVED, _STRAIGHT).astype(np.int32))
+    dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=tags)
+
+    def over(integrand: Any, degree: int) -> Any:
+        on_curved = integrand * dx(_CURVED, degree=_DEGREE_IN_CURVED_CELLS[d])
+        return integrand * dx(_STRAIGHT, degree=degree) + on_curved
+
+    return over
 
 
 def _compiled(form: Any) -> Any:

@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.core.model.ranks import MpiRanks
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
 
 # Edges of Basix' reference simplices, in the order of its P2 nodes.
@@ -21,7 +21,10 @@ _EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((2, 3), (1, 3), (1, 2), (0, 3), (0, 2
 
 
 class Space:
-    """The mesh with its spaces ``velocity`` (P2, vectors) and ``pressure`` (P1); `move` says where its vertices are.
+    """The mesh with its spaces ``velocity`` (P2, vectors) and ``pressure`` (P1); `move` says where it is.
+
+    With curved edges anywhere, its geometry is quadratic on all processes; ``curved`` then says which of this process'
+    cells, in DOLFINx' order, have some (M,), and is None where all are straight.
 
     Its degrees of freedom that this process owns come first, then those of its borders that others own. Fields on
     nodes (nodes, d) and vertices (vertices,) are in the order of ``numbering``.
@@ -30,14 +33,17 @@ class Space:
     def __init__(self, numbering: Numbering, mesh: Mesh) -> None:
         self.numbering = numbering
         self.communicator = mesh.ranks.communicator if isinstance(mesh.ranks, MpiRanks) else MPI.COMM_SELF
-        self.mesh = _as_dolfinx(mesh, self.communicator)
-        d = numbering.dimension
+        d, curved = numbering.dimension, bool(mesh.ranks.greatest(len(numbering.curved_cells)))
+        self.mesh = _as_dolfinx(numbering, mesh, self.communicator, 2 if curved else 1)
         self.velocity = fem.functionspace(self.mesh, ("Lagrange", 2, (d,)))
         self.pressure = fem.functionspace(self.mesh, ("Lagrange", 1))
         corners = _corners(mesh, self.mesh)
-        self._vertex_of_geometry = _inverse(compat.cell_vertices(self.mesh), corners, numbering.vertices)
-        middles = [numbering.edge_nodes(corners[:, pair]) for pair in map(list, _EDGES[d])]
-        self.node_of_dof = _inverse(self.velocity.dofmap.list, np.column_stack([corners, *middles]), numbering.nodes)
+        cell_nodes = np.column_stack([corners, *_middles(numbering, corners)])
+        held = compat.cell_nodes(self.mesh)
+        count = numbering.nodes if curved else numbering.vertices
+        self._node_of_geometry = _inverse(held, cell_nodes[:, : held.shape[1]], count)
+        self.curved: BoolArray | None = np.isin(cell_nodes, numbering.on_curves).max(axis=1) if curved else None
+        self.node_of_dof = _inverse(self.velocity.dofmap.list, cell_nodes, numbering.nodes)
         self.vertex_of_dof = _inverse(self.pressure.dofmap.list, corners, numbering.vertices)
         self._nodal = la.vector(self.velocity.dofmap.index_map, d)
         self._scalar = la.vector(self.pressure.dofmap.index_map, 1)
@@ -53,8 +59,9 @@ class Space:
         return np.asarray(self.vertex_of_dof[: self.pressure.dofmap.index_map.size_local])
 
     def move(self, points: FloatArray) -> None:
-        """Put the vertices at ``points`` (vertices, d)."""
-        self.mesh.geometry.x[:, : self.numbering.dimension] = points[self._vertex_of_geometry]
+        """Put the mesh where its geometry is ``points`` (vertices + K, d)."""
+        at = self.numbering.node_points(points)[self._node_of_geometry]
+        self.mesh.geometry.x[:, : self.numbering.dimension] = at
 
     def set(self, function: fem.Function, field: FloatArray) -> None:
         """Give a function of the velocity space the values of a nodal field."""
@@ -87,17 +94,36 @@ class Space:
         return field
 
 
-def _as_dolfinx(mesh: Mesh, communicator: Any) -> Any:
-    d = mesh.points.shape[1]
-    cells, count = mesh.cells, len(mesh.points)
-    if mesh.part is not None:
-        cells, count = mesh.part.vertices[cells], int(mesh.part.counts[0])
+def _as_dolfinx(numbering: Numbering, mesh: Mesh, communicator: Any, order: int) -> Any:
+    d = numbering.dimension
+    count = len(mesh.points) if mesh.part is None else int(mesh.part.counts[0])
+    cells = mesh.cells if mesh.part is None else mesh.part.vertices[mesh.cells]
+    if order == 2:
+        number, edges = _edges_of_all(numbering, mesh)
+        middles = _middles(numbering, mesh.cells)
+        cells = np.column_stack([cells, *(count + number[nodes - numbering.vertices] for nodes in middles)])
+        count += edges
     # Each process hands in a block of the whole's points; where they are is told by `move`.
     first, end = (count * rank // communicator.size for rank in (communicator.rank, communicator.rank + 1))
     nowhere = np.zeros((end - first, d))
-    element = basix.ufl.element("Lagrange", ("triangle", "tetrahedron")[d - 2], 1, shape=(d,))
+    element = basix.ufl.element("Lagrange", ("triangle", "tetrahedron")[d - 2], order, shape=(d,))
     # By name: the order of `x` and `e` depends on DOLFINx' version.
     return create_mesh(communicator, cells, x=nowhere, e=element, partitioner=partial(_stay, width=d + 1))
+
+
+def _middles(numbering: Numbering, corners: IntArray) -> list[IntArray]:
+    """The nodes half-way along the edges of cells with these ``corners`` (M, d+1), in Basix' order."""
+    return [numbering.edge_nodes(corners[:, pair]) for pair in map(list, _EDGES[numbering.dimension])]
+
+
+def _edges_of_all(numbering: Numbering, mesh: Mesh) -> tuple[IntArray, int]:
+    """The number of each of this process' edges among those of the whole mesh (E,), and how many there are."""
+    if mesh.part is None:
+        return np.arange(len(numbering.edges)), len(numbering.edges)
+    pairs = np.sort(mesh.part.vertices[numbering.edges], axis=1)
+    keys = pairs[:, 0] * int(mesh.part.counts[0]) + pairs[:, 1]
+    whole = np.unique(np.concatenate(mesh.ranks.allgather(keys)))
+    return np.searchsorted(whole, keys), len(whole)
 
 
 def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -> Any:
@@ -107,7 +133,8 @@ def _stay(communicator: Any, _parts: int, _types: Any, cells: Any, width: int) -
 
 def _corners(mesh: Mesh, made: Any) -> IntArray:
     """Our numbers of the vertices of DOLFINx' cells, in its order of both (M, d+1)."""
-    number = made.geometry.input_global_indices[compat.cell_vertices(made)]
+    d = mesh.points.shape[1]
+    number = made.geometry.input_global_indices[compat.cell_nodes(made)[:, : d + 1]]
     if mesh.part is None:
         return np.asarray(number, dtype=np.int64)
     order = np.argsort(mesh.part.vertices)

@@ -2,32 +2,48 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import Numbering
 
 
-@dataclass(frozen=True)
-class ReferenceTables:
-    """Basis values and gradients on the reference simplex at quadrature points, and its exact mass matrix.
+class Rule(NamedTuple):
+    """Quadrature on the reference simplex: ``weight`` (Q,), and at its points the quadratic basis' ``value`` (Q, b) and
+    ``gradient`` (Q, b, d), and the ``linear`` one's value (Q, d+1)."""
 
-    ``value`` (Q, b), ``gradient`` (Q, b, d), ``weight`` (Q,): exact to degree 5, for the convection.
-    ``flat_gradient`` (S, b, d), ``flat_linear`` (S, d+1), ``flat_weight`` (S,): degree 2, for stress and divergence.
-    ``mass`` (b, b).
-    """
-
+    weight: FloatArray
     value: FloatArray
     gradient: FloatArray
-    weight: FloatArray
-    flat_gradient: FloatArray
-    flat_linear: FloatArray
-    flat_weight: FloatArray
+    linear: FloatArray
+
+
+class ReferenceTables(NamedTuple):
+    """What the integrals over a cell take from scikit-fem.
+
+    On straight cells ``cubic`` is exact for convection (degree 5), ``flat`` for stress and divergence (2), ``mass``
+    (b, b) is the exact mass matrix. On curved ones ``curved`` is exact for all of convection and divergence
+    (2 + 1 + 2 + (d - 1) of the map's adjugate), and so for the balance of energy.
+    """
+
+    cubic: Rule
+    flat: Rule
+    curved: Rule
     mass: FloatArray
+
+
+class Cells(NamedTuple):
+    """All cells' ``nodes`` (M, b), which of them are ``straight`` and ``curved`` (C,), and the coordinates of the nodes
+    of the curved ones, ``curved_points`` (C, b, d)."""
+
+    nodes: IntArray
+    straight: IntArray
+    curved: IntArray
+    curved_points: FloatArray
 
 
 def reference_tables(dimension: int) -> ReferenceTables:
@@ -38,20 +54,18 @@ def reference_tables(dimension: int) -> ReferenceTables:
     element = (ElementTriP2 if dimension == 2 else ElementTetP2)()
     count = len(element.doflocs)
 
-    def tabulate(order: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def tabulate(order: int) -> Rule:
         points, weight = get_quadrature(element.refdom, order)
         basis = [element.lbasis(points, i) for i in range(count)]
         value = np.array([phi for phi, _ in basis]).T.copy()
         gradient = np.moveaxis(np.array([grad for _, grad in basis]), 2, 0).copy()
-        return points, weight, value, gradient
+        linear = np.column_stack([1.0 - points.sum(axis=0), points.T])
+        return Rule(weight, value, gradient, linear)
 
     # In tetrahedra scikit-fem's rule of order 5 is exact to degree 4 only, and that of order 6 to degree 5.
-    _, weight, value, gradient = tabulate(5 if dimension == 2 else 6)
-    points, flat_weight, _, flat_gradient = tabulate(2)
-    linear = np.column_stack([1.0 - points.sum(axis=0), points.T])
-    return ReferenceTables(
-        value, gradient, weight, flat_gradient, linear, flat_weight, np.einsum("q,qi,qj->ij", weight, value, value)
-    )
+    cubic = tabulate(5 if dimension == 2 else 6)
+    mass = np.einsum("q,qi,qj->ij", cubic.weight, cubic.value, cubic.value)
+    return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass)
 
 
 class CompiledAssembly:
@@ -60,26 +74,27 @@ class CompiledAssembly:
     def __init__(self, numbering: Numbering) -> None:
         self.numbering = numbering
         self._tables = reference_tables(numbering.dimension)
+        self._straight = np.setdiff1d(np.arange(len(numbering.cells)), numbering.curved_cells)
         self._build_sparsity()
 
     def matrix(
         self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
     ) -> sparse.csr_array:
-        n, t = self.numbering, self._tables
-        data = kernels.assemble(
-            points, n.cells, n.cell_nodes, self._slots, len(self._indices), inertia, viscosity, advection, flow,
-            t.value, t.gradient, t.weight, t.flat_gradient, t.flat_linear, t.flat_weight, t.mass,
-        )  # fmt: skip
+        n, size = self.numbering, len(self._indices)
+        cells = self._cells(points)
+        data = kernels.assemble(points, cells, self._slots, size, inertia, viscosity, advection, flow, self._tables)
         return sparse.csr_array((data, self._indices, self._indptr), shape=(n.unknowns,) * 2)
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
-        n = self.numbering
-        load: FloatArray = kernels.apply_mass(points, n.cells, n.cell_nodes, self._tables.mass, field)
+        load: FloatArray = kernels.apply_mass(points, self._cells(points), self._tables, field)
         return load
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
-        n, t = self.numbering, self._tables
-        return float(kernels.strain_square(points, n.cells, n.cell_nodes, t.flat_gradient, t.flat_weight, velocity))
+        return float(kernels.strain_square(points, self._cells(points), self._tables, velocity))
+
+    def _cells(self, points: FloatArray) -> Cells:
+        n = self.numbering
+        return Cells(n.cell_nodes, self._straight, n.curved_cells, n.curved_cell_points(points))
 
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension

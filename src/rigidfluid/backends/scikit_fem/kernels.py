@@ -1,6 +1,7 @@
 """Compiled loops over cells: the system matrix, the history's load, energies. Arrays in, arrays out.
 
-``points`` (N, d) vertices, ``cell_vertices`` (M, d+1), ``cell_nodes`` (M, b); fields on nodes are (nodes, d).
+``points`` (N, d) starts with the vertices; fields on nodes are (nodes, d). ``cells`` and ``tables`` are those of
+`assembly`: straight cells are mapped by one matrix each, curved ones at each quadrature point by another.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -27,14 +28,10 @@ def slots(indptr, indices, unknowns):
 
 
 @njit(cache=True)
-def inverse_jacobian(points, vertices, inverse):
-    """Write the inverse of ∂x/∂X of one cell into ``inverse`` (d, d) and return |det ∂x/∂X|."""
-    d = points.shape[1]
-    a = np.empty((d, d))
-    for i in range(d):
-        for j in range(d):
-            a[i, j] = points[vertices[j + 1], i] - points[vertices[0], i]
-    if d == 2:
+def inverted(jacobian, inverse):
+    """Write the inverse of ∂x/∂X (d, d) into ``inverse`` and return |det ∂x/∂X|."""
+    a = jacobian
+    if len(a) == 2:
         det = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
         inverse[0, 0], inverse[0, 1] = a[1, 1] / det, -a[0, 1] / det
         inverse[1, 0], inverse[1, 1] = -a[1, 0] / det, a[0, 0] / det
@@ -51,6 +48,26 @@ def inverse_jacobian(points, vertices, inverse):
 
 
 @njit(cache=True)
+def straight_jacobian(points, vertices, jacobian):
+    """Write ∂x/∂X of one straight cell into ``jacobian`` (d, d)."""
+    d = points.shape[1]
+    for i in range(d):
+        for j in range(d):
+            jacobian[i, j] = points[vertices[j + 1], i] - points[vertices[0], i]
+
+
+@njit(cache=True)
+def curved_jacobian(node_points, reference, jacobian):
+    """Write ∂x/∂X of one cell with nodes at ``node_points`` (b, d) into ``jacobian`` (d, d), where the basis has the
+    gradients ``reference`` (b, d)."""
+    jacobian[:] = 0.0
+    for node in range(len(reference)):
+        for i in range(node_points.shape[1]):
+            for j in range(reference.shape[1]):
+                jacobian[i, j] += node_points[node, i] * reference[node, j]
+
+
+@njit(cache=True)
 def physical_gradients(reference, inverse, gradient):
     """Write ∂φ/∂x = J⁻ᵀ ∂φ/∂X at one quadrature point into ``gradient`` (b, d)."""
     count, d = reference.shape
@@ -63,105 +80,176 @@ def physical_gradients(reference, inverse, gradient):
 
 
 @njit(cache=True)
-def assemble(points, cell_vertices, cell_nodes, slots, size, inertia, viscosity, advection, flow,
-             value, reference_gradient, weight, flat_gradient, flat_linear, flat_weight, mass):  # fmt: skip
+def add_convection(scalar, value, gradient, dx, nodes, advection, flow):
+    """Add (a·∇u, v) + ½ ((∇·c) u, v) at one quadrature point to ``scalar`` (b, b)."""
+    b, d = gradient.shape
+    spread = 0.0
+    for i in range(b):
+        for a in range(d):
+            spread += gradient[i, a] * flow[nodes[i], a]
+    for j in range(b):
+        along = 0.5 * spread * value[j]
+        for a in range(d):
+            speed = 0.0
+            for i in range(b):
+                speed += value[i] * advection[nodes[i], a]
+            along += speed * gradient[j, a]
+        along *= dx
+        for i in range(b):
+            scalar[i, j] += along * value[i]
+
+
+@njit(cache=True)
+def add_stress(stress, divergence, linear, gradient, viscosity, dx):
+    """Add viscosity ∂φᵢ/∂xₐ ∂φⱼ/∂x_c at one quadrature point to ``stress`` (b, b, d, d) and -ψₖ ∂φᵢ/∂xₐ to
+    ``divergence`` (b, d, d+1)."""
+    b, d = gradient.shape
+    for i in range(b):
+        for a in range(d):
+            left = viscosity * dx * gradient[i, a]
+            for j in range(b):
+                for c in range(d):
+                    stress[i, j, a, c] += left * gradient[j, c]
+            for k in range(d + 1):
+                divergence[i, a, k] -= dx * gradient[i, a] * linear[k]
+
+
+@njit(cache=True)
+def scatter(data, slots, scalar, stress, divergence):
+    """Add one cell's matrix to the entries ``data``: ``scalar`` and the stress of ∇u + ∇uᵀ, and the pressures'."""
+    b, d = divergence.shape[:2]
+    for i in range(b):
+        for j in range(b):
+            diagonal = scalar[i, j]
+            for a in range(d):
+                diagonal += stress[i, j, a, a]
+            for a in range(d):
+                for c in range(d):
+                    data[slots[i * d + a, j * d + c]] += stress[i, j, c, a] + (diagonal if a == c else 0.0)
+        for a in range(d):
+            for k in range(d + 1):
+                data[slots[i * d + a, b * d + k]] += divergence[i, a, k]
+                data[slots[b * d + k, i * d + a]] += divergence[i, a, k]
+
+
+@njit(cache=True)
+def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, tables):
     """Entries (size,) of the matrix of
 
     inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
 
     ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
     """
-    cells, b = cell_nodes.shape
-    d = points.shape[1]
+    b, d = tables.mass.shape[0], points.shape[1]
     data = np.zeros(size)
-    inverse = np.empty((d, d))
-    gradient = np.empty((b, d))
-    scalar = np.empty((b, b))
-    stress = np.empty((b, b, d, d))
-    divergence = np.empty((b, d, d + 1))
+    jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
+    scalar, stress, divergence = np.empty((b, b)), np.empty((b, b, d, d)), np.empty((b, d, d + 1))
     moving = np.any(advection) or np.any(flow)
-    for cell in range(cells):
-        det = inverse_jacobian(points, cell_vertices[cell], inverse)
-        scalar[:] = inertia * det * mass
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian)
+        det = inverted(jacobian, inverse)
+        scalar[:] = inertia * det * tables.mass
         if moving:
-            for q in range(len(weight)):
-                physical_gradients(reference_gradient[q], inverse, gradient)
-                spread = 0.0
-                for i in range(b):
-                    for a in range(d):
-                        spread += gradient[i, a] * flow[cell_nodes[cell, i], a]
-                for j in range(b):
-                    along = 0.5 * spread * value[q, j]
-                    for a in range(d):
-                        speed = 0.0
-                        for i in range(b):
-                            speed += value[q, i] * advection[cell_nodes[cell, i], a]
-                        along += speed * gradient[j, a]
-                    along *= weight[q] * det
-                    for i in range(b):
-                        scalar[i, j] += along * value[q, i]
+            rule = tables.cubic
+            for q in range(len(rule.weight)):
+                physical_gradients(rule.gradient[q], inverse, gradient)
+                add_convection(scalar, rule.value[q], gradient, rule.weight[q] * det, nodes, advection, flow)
         stress[:] = 0.0
         divergence[:] = 0.0
-        for q in range(len(flat_weight)):
-            physical_gradients(flat_gradient[q], inverse, gradient)
-            dx = flat_weight[q] * det
+        rule = tables.flat
+        for q in range(len(rule.weight)):
+            physical_gradients(rule.gradient[q], inverse, gradient)
+            add_stress(stress, divergence, rule.linear[q], gradient, viscosity, rule.weight[q] * det)
+        scatter(data, slots[cell], scalar, stress, divergence)
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        nodes = cells.nodes[cell]
+        scalar[:] = 0.0
+        stress[:] = 0.0
+        divergence[:] = 0.0
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            dx = rule.weight[q] * inverted(jacobian, inverse)
+            physical_gradients(rule.gradient[q], inverse, gradient)
             for i in range(b):
-                for a in range(d):
-                    left = viscosity * dx * gradient[i, a]
-                    for j in range(b):
-                        for c in range(d):
-                            stress[i, j, a, c] += left * gradient[j, c]
-                    for k in range(d + 1):
-                        divergence[i, a, k] -= dx * gradient[i, a] * flat_linear[q, k]
-        for i in range(b):
-            for j in range(b):
-                diagonal = scalar[i, j]
-                for a in range(d):
-                    diagonal += stress[i, j, a, a]
-                for a in range(d):
-                    for c in range(d):
-                        data[slots[cell, i * d + a, j * d + c]] += stress[i, j, c, a] + (diagonal if a == c else 0.0)
-            for a in range(d):
-                for k in range(d + 1):
-                    data[slots[cell, i * d + a, b * d + k]] += divergence[i, a, k]
-                    data[slots[cell, b * d + k, i * d + a]] += divergence[i, a, k]
+                for j in range(b):
+                    scalar[i, j] += inertia * dx * rule.value[q, i] * rule.value[q, j]
+            if moving:
+                add_convection(scalar, rule.value[q], gradient, dx, nodes, advection, flow)
+            add_stress(stress, divergence, rule.linear[q], gradient, viscosity, dx)
+        scatter(data, slots[cell], scalar, stress, divergence)
     return data
 
 
 @njit(cache=True)
-def apply_mass(points, cell_vertices, cell_nodes, mass, field):
+def apply_mass(points, cells, tables, field):
     """(field, v) for every nodal test function v, (nodes, d)."""
     d = points.shape[1]
-    inverse = np.empty((d, d))
+    jacobian, inverse, mass = np.empty((d, d)), np.empty((d, d)), np.empty_like(tables.mass)
     result = np.zeros_like(field)
-    for cell in range(len(cell_nodes)):
-        det = inverse_jacobian(points, cell_vertices[cell], inverse)
-        for i, row in enumerate(cell_nodes[cell]):
-            for j, column in enumerate(cell_nodes[cell]):
-                for a in range(d):
-                    result[row, a] += det * mass[i, j] * field[column, a]
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian)
+        add_product(result, inverted(jacobian, inverse), tables.mass, nodes, field)
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        mass[:] = 0.0
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            dx = rule.weight[q] * inverted(jacobian, inverse)
+            for i in range(len(mass)):
+                for j in range(len(mass)):
+                    mass[i, j] += dx * rule.value[q, i] * rule.value[q, j]
+        add_product(result, 1.0, mass, cells.nodes[cell], field)
     return result
 
 
 @njit(cache=True)
-def strain_square(points, cell_vertices, cell_nodes, flat_gradient, flat_weight, velocity):
+def add_product(result, factor, mass, nodes, field):
+    """Add ``factor`` times one cell's ``mass`` (b, b) times the field at its ``nodes``."""
+    for i, row in enumerate(nodes):
+        for j, column in enumerate(nodes):
+            for a in range(field.shape[1]):
+                result[row, a] += factor * mass[i, j] * field[column, a]
+
+
+@njit(cache=True)
+def strain_square(points, cells, tables, velocity):
     """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over the mesh; times the viscosity it is the dissipation."""
     d = points.shape[1]
-    b = cell_nodes.shape[1]
-    inverse = np.empty((d, d))
-    gradient = np.empty((b, d))
-    slope = np.empty((d, d))
+    jacobian, inverse, slope = np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
+    gradient = np.empty((cells.nodes.shape[1], d))
     total = 0.0
-    for cell in range(len(cell_nodes)):
-        det = inverse_jacobian(points, cell_vertices[cell], inverse)
-        for q in range(len(flat_weight)):
-            physical_gradients(flat_gradient[q], inverse, gradient)
-            slope[:] = 0.0
-            for i, node in enumerate(cell_nodes[cell]):
-                for a in range(d):
-                    for c in range(d):
-                        slope[a, c] += velocity[node, a] * gradient[i, c]
-            for a in range(d):
-                for c in range(d):
-                    total += 0.5 * det * flat_weight[q] * (slope[a, c] + slope[c, a]) ** 2
+    rule = tables.flat
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian)
+        det = inverted(jacobian, inverse)
+        for q in range(len(rule.weight)):
+            physical_gradients(rule.gradient[q], inverse, gradient)
+            total += det * rule.weight[q] * strain_square_at(velocity, nodes, gradient, slope)
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            dx = rule.weight[q] * inverted(jacobian, inverse)
+            physical_gradients(rule.gradient[q], inverse, gradient)
+            total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope)
+    return total
+
+
+@njit(cache=True)
+def strain_square_at(velocity, nodes, gradient, slope):
+    """½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) at one quadrature point of a cell; ``slope`` (d, d) is room for ∇u."""
+    d = len(slope)
+    slope[:] = 0.0
+    for i, node in enumerate(nodes):
+        for a in range(d):
+            for c in range(d):
+                slope[a, c] += velocity[node, a] * gradient[i, c]
+    total = 0.0
+    for a in range(d):
+        for c in range(d):
+            total += 0.5 * (slope[a, c] + slope[c, a]) ** 2
     return total

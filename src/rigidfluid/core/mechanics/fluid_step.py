@@ -29,7 +29,7 @@ def step_to(
         derivative=derivative,
         extrapolation=extrapolation_weights(size, state.past_step),
         pose=pose if mechanisms is None else mechanisms.poses(pose, time),
-        points=None if mesh is None else mesh.points,
+        points=None if mesh is None else mesh.geometry,
         mass_matrix=mass_matrix,
         load=load,
         controlled=system.controlled_motions,

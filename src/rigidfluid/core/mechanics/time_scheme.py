@@ -57,6 +57,29 @@ def extrapolation_weights(step: float, previous_step: float | None) -> FloatArra
     return np.array([1 + ratio, -ratio])
 
 
+def path_error_weight(step: float, previous_step: float) -> float:
+    """Local error of `predict_pose` per unit time over what the twist differs from its linear extrapolation.
+
+    Milne's device: Adams–Bashforth 2 integrates the extrapolation u*. The parabola through the three velocities exceeds
+    it in the mean over the step by c (uⁿ⁺¹ - u*), c = (3 + 2r) / (6 (1 + r)) with r = step / previous_step: 5/12 for
+    equal steps. For a smooth u that is (2r + 3)/(12 r) Δt² ü to leading order.
+
+    Parameters
+    ----------
+    step : float
+        Δt from tⁿ to tⁿ⁺¹ [time].
+    previous_step : float
+        Step from tⁿ⁻¹ to tⁿ [time].
+
+    Returns
+    -------
+    float
+        c [1].
+    """
+    ratio = step / previous_step
+    return (3 + 2 * ratio) / (6 * (1 + ratio))
+
+
 def predict_pose(
     pose: Pose, twist: Twist, previous_twist: Twist | None, step: float, previous_step: float | None
 ) -> Pose:
@@ -152,7 +175,7 @@ def newton_euler(
     load = np.concatenate([wrench.force, wrench.torque], axis=1)
     for weight, old_pose, old_twist in zip(weights[1:], poses, twists, strict=False):
         load = load - weight * momentum(mass, inertia, old_pose, old_twist)
-    return weights[0] * _generalised_mass(mass, inertia, pose), load
+    return weights[0] * generalised_mass(mass, inertia, pose), load
 
 
 def momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
@@ -184,7 +207,23 @@ def _mean(twist: Twist, previous: Twist, ratio: float) -> Twist:
     )
 
 
-def _generalised_mass(mass: FloatArray, inertia: FloatArray, pose: Pose) -> FloatArray:
+def generalised_mass(mass: FloatArray, inertia: FloatArray, pose: Pose) -> FloatArray:
+    """Of each body, diag(m, R I Rᵀ).
+
+    Parameters
+    ----------
+    mass : (n,) array
+        Masses [mass].
+    inertia : (n, k, k) array
+        Inertia in each body's frame [mass·length²].
+    pose : Pose
+        Of the bodies.
+
+    Returns
+    -------
+    (n, d+k, d+k) array
+        Block-diagonal [mass | mass·length²].
+    """
     count, dimension = pose.position.shape
     size = dimension + inertia.shape[-1]
     matrix = np.zeros((count, size, size))

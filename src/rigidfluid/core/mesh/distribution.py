@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from rigidfluid.core.model.ranks import ALONE, Ranks
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, MeshPart
+from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, MeshPart
 
 
 def partition(mesh: Mesh, parts: int) -> IntArray:
@@ -66,11 +67,26 @@ def whole(mesh: Mesh) -> Mesh | None:
     own = part.owned
     sent = (part.vertices[own], mesh.points[own], part.cells, part.vertices[mesh.cells])
     pieces = part.ranks.gather((*sent, part.facets, part.vertices[mesh.facets], mesh.markers))
+    curved = _whole_curves(mesh)
     if pieces is None:
         return None
     vertices, points, cells, corners, facets, facet_corners, markers = map(np.concatenate, zip(*pieces, strict=True))
     vertex, cell, facet = np.argsort(vertices), np.argsort(cells), np.argsort(facets)
-    return Mesh(points[vertex], corners[cell], facet_corners[facet], markers[facet])
+    return Mesh(points[vertex], corners[cell], facet_corners[facet], markers[facet], curved=curved)
+
+
+def _whole_curves(mesh: Mesh) -> CurvedEdges | None:
+    """All parts' curved edges, each once, on the root."""
+    assert mesh.part is not None
+    own = None if mesh.curved is None else replace(mesh.curved, vertices=mesh.part.vertices[mesh.curved.vertices])
+    pieces = [piece for piece in mesh.ranks.gather(own) or [] if piece is not None]
+    if not pieces:
+        return None
+    vertices, surface, middles = (
+        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("vertices", "surface", "middles")
+    )
+    _, first = np.unique(vertices, axis=0, return_index=True)
+    return CurvedEdges(vertices[first], surface[first], middles[first])
 
 
 def surface_vertices(mesh: Mesh, surface: int) -> IntArray:
@@ -109,13 +125,29 @@ def _parts(mesh: Mesh, count: int) -> list[Mesh]:
 
 def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, owned: BoolArray) -> Mesh:
     counts = np.array([len(mesh.points), len(mesh.cells), len(mesh.facets)])
+    own_cells = np.searchsorted(vertices, mesh.cells[cells])
     return Mesh(
         points=mesh.points[vertices],
-        cells=np.searchsorted(vertices, mesh.cells[cells]),
+        cells=own_cells,
         facets=np.searchsorted(vertices, mesh.facets[facets]),
         markers=mesh.markers[facets],
         part=MeshPart(ALONE, vertices, cells, facets, owned[vertices], counts),
+        curved=_part_of_curves(mesh.curved, vertices, own_cells),
     )
+
+
+def _part_of_curves(curved: CurvedEdges | None, vertices: IntArray, cells: IntArray) -> CurvedEdges | None:
+    """Those at a part's ``cells``, by the part's own numbers of its ``vertices``; None where there are none."""
+    if curved is None:
+        return None
+    inside = np.isin(curved.vertices, vertices).all(axis=1)
+    edges = np.searchsorted(vertices, curved.vertices[inside])
+    pairs = np.sort(cells[:, list(combinations(range(cells.shape[1]), 2))].reshape(-1, 2), axis=1)
+    count = len(vertices)
+    held = np.isin(edges[:, 0] * count + edges[:, 1], pairs[:, 0] * count + pairs[:, 1])
+    if not held.any():
+        return None
+    return CurvedEdges(edges[held], curved.surface[inside][held], curved.middles[inside][held])
 
 
 def _cells_of_facets(mesh: Mesh) -> IntArray:

@@ -10,14 +10,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.mesh.coarsening import has_coarsened, is_due
+from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose, Twist
 from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02
@@ -28,7 +31,7 @@ NEARLY_TANGLED = 2.0 * TANGLED
 
 
 class MeshUpdater:
-    """Moves the mesh of a run, and re-makes it where its quality or a gap asks for that.
+    """Moves the mesh of a run, and re-makes it where its quality, its cells' sizes, a gap or its age asks for that.
 
     Parameters
     ----------
@@ -41,15 +44,29 @@ class MeshUpdater:
         is re-made.
     pause : int
         For so many ticks after a mesh could not be made, none is tried unless a cell is nearly tangled.
+    oldest : int or None
+        A mesh of so many ticks is re-made; None for any age.
+    wake : Wake or None
+        Finer cells behind moving bodies, on each mesh but the first.
     """
 
-    def __init__(self, system: System, sizes: Sizes | None, quality: float, pause: int) -> None:
+    def __init__(
+        self,
+        system: System,
+        sizes: Sizes | None,
+        quality: float,
+        pause: int,
+        oldest: int | None = None,
+        wake: Wake | None = None,
+    ) -> None:
         self._system = system
         self._sizes = sizes
         self._quality = quality
         self._pause = pause
+        self._oldest = oldest
+        self._wake = wake
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
-        self._motion: MeshMotion | None = None
+        self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
 
@@ -60,14 +77,14 @@ class MeshUpdater:
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
             args = s.bodies, s.pose, s.domain, s.walls, self._sizes
-            mesh = initial_mesh(*args) if ranks.is_root else None
+            mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
         return distributed(mesh, ranks)
 
     def deform(self, state: State, pose: Pose) -> Mesh | None:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
-        points, worst = self._placed(state.reference, pose)
+        geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
                 "mesh",
@@ -75,7 +92,7 @@ class MeshUpdater:
                 f"at least {TANGLED}",
                 "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
             )
-        return replace(state.reference.mesh, points=points)
+        return state.reference.mesh.at(geometry)
 
     def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
@@ -85,9 +102,10 @@ class MeshUpdater:
             return state
         assert state.mesh is not None
         try:
-            mesh = self._remade(state.mesh, state.pose)
-        except MeshError:  # the present mesh serves until a cell tangles, and most often a later pose can be meshed
-            return replace(state, remesh_failed=state.tick)
+            mesh = self._remade(state.mesh, state.pose, state.twist)
+        except MeshError as error:
+            # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
+            return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
         fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
@@ -98,57 +116,76 @@ class MeshUpdater:
             remesh_failed=None,
         )
 
-    def _remade(self, mesh: Mesh, pose: Pose) -> Mesh:
+    def _remade(self, mesh: Mesh, pose: Pose, twist: Twist) -> Mesh:
         assert self._sizes is not None
-        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        s, ranks, present, sizes = self._system, mesh.ranks, whole(mesh), self._sizes
+        if self._wake is not None:
+            sizes = replace(sizes, regions=(*sizes.regions, *self._wake.behind(s.bodies, pose, twist)))
         with ranks.raise_on_all():
-            made = None if present is None else remesh(present, s.bodies, pose, s.domain, s.walls, self._sizes)
+            args = s.bodies, pose, s.domain, s.walls, sizes
+            made = None if present is None else self._curved(remesh(present, *args), pose)
         return distributed(made, ranks)
+
+    def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:
+        """Of the order that is asked for, where the backend takes it."""
+        s = self._system
+        assert self._sizes is not None
+        if self._sizes.order == 1 or not s.backend.curved_cells:
+            return mesh
+        return with_curved_edges(mesh, s.bodies, pose, s.domain)
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
         failed = state.remesh_failed
-        if failed is None or state.tick >= failed + self._pause:
+        if failed is None or state.tick >= failed.tick + self._pause:
             return False
-        return state.tick == failed or self._placed(reference, pose)[1] >= NEARLY_TANGLED
+        return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
     def is_worn(self, state: State, pose: Pose) -> bool:
-        """Whether a gap has changed since the mesh was made, or a step to ``pose`` spoils a cell."""
-        assert state.reference is not None
-        if _gap_changed(state.reference.gaps, state.gaps, self._sizes).any():
+        """Whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
+        reference, sizes = state.reference, self._sizes
+        assert reference is not None
+        assert sizes is not None
+        if self._oldest is not None and state.tick >= reference.tick + self._oldest:
             return True
-        _, worst = self._placed(state.reference, pose)
-        return worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * state.reference.quality)
+        if _gap_changed(reference.gaps, state.gaps, sizes).any():
+            return True
+        points, worst = self._placed(reference, pose)
+        if worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * reference.quality):
+            return True
+        due = is_due(reference.pose, state.pose, pose, sizes)
+        return due and has_coarsened(reference, points, self._system.bodies, pose, sizes)
 
     def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
-        """Vertices (N, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of the
-        latest pose are kept, as a step asks for them several times."""
+        """Geometry (N + K, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of
+        the latest pose are kept, as a step asks for them several times."""
         if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
-            points = self._map(reference).move(pose)
-            self._latest = reference, pose, points, worst_quality(reference.mesh, points)
+            motion, curved = self._map(reference)
+            geometry = motion.move(pose)
+            self._latest = reference, pose, geometry, worst_quality(reference.mesh, curved, geometry)
         return self._latest[2:]
 
-    def _map(self, reference: Reference) -> MeshMotion:
+    def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._motion is None or self._reference is not reference:
             s = self._system
-            self._motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
-            self._reference = reference
+            motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
+            self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
         return self._motion
 
 
 def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
     """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
-    return Reference(mesh, pose, gaps, worst_quality(mesh, mesh.points), tick)
+    return Reference(mesh, pose, gaps, worst_quality(mesh, CurvedCells(mesh), mesh.geometry), tick)
 
 
-def worst_quality(mesh: Mesh, points: FloatArray) -> float:
-    """Quality of the worst cell of the whole mesh, with its vertices at ``points`` (N, d) [1]."""
-    return float(mesh.ranks.min(cell_quality(points, mesh.cells).min()))
+def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> float:
+    """Quality of the worst cell of the whole mesh, also of its ``curved`` cells, at a ``geometry`` (N + K, d) [1]."""
+    worst = cell_quality(geometry, mesh.cells).min()
+    return float(mesh.ranks.min(min(worst, curved.quality(geometry).min(initial=1.0))))
 
 
-def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes | None) -> BoolArray:
+def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes) -> BoolArray:
     """Where a gap that the mesh must resolve has halved, or has opened to four times, since the mesh was made."""
-    assert sizes is not None
     finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
     ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
     return (ratio < 0.5) | (ratio > 4.0)

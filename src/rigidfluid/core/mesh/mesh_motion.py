@@ -13,7 +13,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, Mesh, Pose
 
 MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
 
@@ -57,6 +57,7 @@ class MeshMotion:
         extension: MakeExtension = factorised,
     ) -> None:
         self._points = mesh.points
+        self._curved = mesh.curved
         self._bodies = tuple(bodies)
         self._pose = reference_pose
         self._surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
@@ -65,7 +66,7 @@ class MeshMotion:
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
 
     def move(self, pose: Pose) -> FloatArray:
-        """Vertices of the mesh when the bodies are at ``pose``.
+        """Geometry of the mesh when the bodies are at ``pose``.
 
         Parameters
         ----------
@@ -74,22 +75,30 @@ class MeshMotion:
 
         Returns
         -------
-        (N, d) array
-            Vertices; those of a body lie on its surface [length].
+        (N + K, d) array
+            Vertices, and middles of curved edges; those of a body lie on its surface [length].
         """
         displacement = np.zeros_like(self._points)
         for i, body in enumerate(self._bodies):
-            displacement[self._surfaces[i]] = self._rigid_displacement(i, body, pose)
+            on_body = self._surfaces[i]
+            displacement[on_body] = self._rigid_displacement(i, body, pose, self._points[on_body])
         for k, extension in enumerate(self._solves):
             extension.fill(displacement[:, k])
-        return self._points + displacement
+        moved: FloatArray = self._points + displacement
+        return moved if self._curved is None else np.concatenate([moved, self._moved_middles(self._curved, pose)])
 
-    def _rigid_displacement(self, i: int, body: Body, pose: Pose) -> FloatArray:
-        """x - X on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
+    def _moved_middles(self, curved: CurvedEdges, pose: Pose) -> FloatArray:
+        """Of curved edges: those on a body move with it, those on walls stay (K, d)."""
+        middles = curved.middles.copy()
+        for i, body in enumerate(self._bodies):
+            mine = curved.surface == i
+            middles[mine] += self._rigid_displacement(i, body, pose, middles[mine])
+        return middles
+
+    def _rigid_displacement(self, i: int, body: Body, pose: Pose, reference: FloatArray) -> FloatArray:
+        """x - X of points X (N, d) on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
         if body.radius is not None:
-            shift = pose.position[i] - self._pose.position[i]
-            return np.broadcast_to(shift, (len(self._surfaces[i]), len(shift)))
-        reference = self._points[self._surfaces[i]]
+            return np.broadcast_to(pose.position[i] - self._pose.position[i], reference.shape)
         turned: FloatArray = to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
         return turned
 

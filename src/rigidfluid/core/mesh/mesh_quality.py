@@ -1,4 +1,4 @@
-"""Signed volume and shape quality of simplices, vectorised: called on the whole mesh at every step."""
+"""Signed volume, size and shape quality of simplices, vectorised: called on the whole mesh at every step."""
 
 from __future__ import annotations
 
@@ -49,12 +49,17 @@ def cell_quality(points: FloatArray, cells: IntArray) -> FloatArray:
     The mean-ratio measure of Liu and Joe (1994), DOI 10.1007/BF01955874.
     """
     corners = _corners(points, cells)
-    d = points.shape[1]
-    regular = sqrt(d + 1) / (factorial(d) * 2 ** (d / 2))
-    relative = np.maximum(_signed_volumes(corners), 0.0) / regular
-    power = relative if d == 2 else np.cbrt(relative) ** 2
+    relative = _relative_volumes(corners)
+    power = relative if points.shape[1] == 2 else np.cbrt(relative) ** 2
     quality: FloatArray = power / _mean_square_edge(corners)
     return quality
+
+
+def cell_sizes(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Edge of the regular simplex of the same volume, (V / V_d)^(1/d), zero for an inverted one, (M,) [length]."""
+    relative = _relative_volumes(_corners(points, cells))
+    size: FloatArray = np.sqrt(relative) if points.shape[1] == 2 else np.cbrt(relative)
+    return size
 
 
 def _corners(points: FloatArray, cells: IntArray) -> FloatArray:
@@ -71,6 +76,13 @@ def _signed_volumes(corners: FloatArray) -> FloatArray:
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = edges
     volume: FloatArray = (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0
     return volume
+
+
+def _relative_volumes(corners: FloatArray) -> FloatArray:
+    """max(V, 0) / V_d, the volumes over that of the regular simplex of unit edges."""
+    d = len(corners) - 1
+    regular = sqrt(d + 1) / (factorial(d) * 2 ** (d / 2))
+    return np.maximum(_signed_volumes(corners), 0.0) / regular
 
 
 def _mean_square_edge(corners: FloatArray) -> FloatArray:

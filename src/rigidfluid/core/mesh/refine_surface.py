@@ -86,7 +86,7 @@ def long_edges(
     long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
     edges, owner, middles = edges[long], owner[long], middles[long]
     for i in np.unique(owner):
-        middles[owner == i] = _on_surface(i, middles[owner == i], bodies, pose, domain)
+        middles[owner == i] = on_surface(i, middles[owner == i], bodies, pose, domain)
     return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
 
 
@@ -106,8 +106,8 @@ def edges_of_facets(mesh: Mesh, chosen: BoolArray) -> tuple[IntArray, IntArray]:
     return edges, np.tile(markers, len(pairs))[index]
 
 
-def _on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
-    """The closest points (N, d) of a surface, by its number."""
+def on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
+    """The closest points (N, d) of a surface, by its number, to ``points`` (N, d)."""
     if surface < len(bodies):
         return to_world(pose, surface, bodies[surface].closest_point(to_body_frame(pose, surface, points)))
     return domain.pieces[surface - len(bodies)].shape.closest_point(points)

@@ -86,7 +86,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
 
     Their facets are kept too, except that those too long for the gap they face are bisected first. Where that would
     invert a cell, the cells are improved around the unbisected facets before. Of those that still do not fit after
-    ROUNDS of it, the ones within LONGEST_EDGE stay.
+    ROUNDS of it, the ones within LONGEST_EDGE stay. MMG knows the wanted size at the vertices of the mesh that it is
+    given alone: where that is far too coarse, it is given its own mesh again.
 
     Parameters
     ----------
@@ -119,7 +120,7 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     surroundings = bodies, pose, domain, walls, sizes
     new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at)
     for _ in range(ROUNDS):
-        if not len(long_edges(new, *surroundings, LONGEST)[0]):
+        if longest_relative_edge(new, size_at) <= LONGEST_EDGE and not len(long_edges(new, *surroundings, LONGEST)[0]):
             break
         new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at)
     excess = longest_relative_edge(new, size_at)

@@ -1,4 +1,5 @@
-"""The cell size wanted at a point: fine near bodies, finer still inside a narrow gap, coarse elsewhere."""
+"""The cell size wanted at a point: fine near bodies and in chosen regions, finer still in a narrow gap, coarse
+elsewhere."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.regions import Region
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.model.wall import Wall
@@ -27,6 +29,10 @@ class Sizes:
         How many cells lie across a gap.
     refinements : int
         How often size_body may be halved for that.
+    order : int
+        Of the cells at bodies and curved walls: 1 straight, 2 curved.
+    regions : tuple of Region
+        Where cells have a size of their own, unless they are finer anyway.
     """
 
     size: float
@@ -34,20 +40,22 @@ class Sizes:
     growth: float = 0.2
     cells_per_gap: float = 2.0
     refinements: int = 6
+    order: int = 2
+    regions: tuple[Region, ...] = ()
 
     @property
     def smallest(self) -> float:
-        """Cells are never wanted smaller than size_body / 2^refinements [length]."""
+        """For a gap, cells are never wanted smaller than size_body / 2^refinements [length]."""
         return self.size_body / 2.0**self.refinements
 
 
 def wanted_size(
     points: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
 ) -> FloatArray:
-    """Cell size at points, h = max(h_min, min(size, size_body + growth·d₁, (d₁ + d₂)/cells_per_gap)).
+    """Cell size at points, h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)).
 
-    d₁ is the distance to the nearest body, d₂ that to the next body or the nearest wall, so that d₁ + d₂ equals the gap
-    on the segment that joins two surfaces and is larger off it. Two walls make no gap.
+    h_open is `size_away_from_gaps`, d₁ the distance to the nearest body, d₂ that to the next body or the nearest wall,
+    so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off it. Two walls make no gap.
 
     Parameters
     ----------
@@ -67,11 +75,31 @@ def wanted_size(
     (N,) array
         Wanted edge length [length].
     """
-    reach = max((sizes.size - sizes.size_body) / sizes.growth, sizes.cells_per_gap * sizes.size)
-    first, second = two_nearest_bodies(points, bodies, pose, reach)
+    first, second = two_nearest_bodies(points, bodies, pose, _reach(sizes))
     gap = first + np.minimum(second, nearest_wall(points, walls))
-    wanted = np.minimum(sizes.size_body + sizes.growth * first, gap / sizes.cells_per_gap)
-    return np.clip(wanted, sizes.smallest, sizes.size)
+    return np.minimum(_size_at(first, points, sizes), np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
+
+
+def size_away_from_gaps(points: FloatArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:
+    """What `wanted_size` would be if no gap had to be resolved, (N,) [length].
+
+    h = min(size, size_body + growth·d₁, size_r + growth·d_r for each region r at the distance d_r).
+    """
+    first, _ = two_nearest_bodies(points, bodies, pose, _reach(sizes))
+    return _size_at(first, points, sizes)
+
+
+def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
+    """h of points at distances ``first`` (N,) from the nearest body."""
+    wanted = np.minimum(sizes.size_body + sizes.growth * first, sizes.size)
+    for region in sizes.regions:
+        np.minimum(wanted, region.size + sizes.growth * region.distance(points), out=wanted)
+    return wanted
+
+
+def _reach(sizes: Sizes) -> float:
+    """The distance beyond which bodies decide no size [length]."""
+    return max((sizes.size - sizes.size_body) / sizes.growth, sizes.cells_per_gap * sizes.size)
 
 
 def two_nearest_bodies(

@@ -248,6 +248,8 @@ class FluidBackend(Part):
     """
 
     needs_mesh: ClassVar[bool] = True
+    curved_cells: ClassVar[bool] = False
+    """Whether it takes meshes with curved edges; else it gets straight ones."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 
@@ -279,6 +281,17 @@ class FluidBackend(Part):
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
 
+    def prediction_error(
+        self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
+    ) -> float:
+        """Kinetic energy of the difference between a velocity and its extrapolation, ½ρ∫|uⁿ⁺¹ - e₀uⁿ - e₁uⁿ⁻¹|².
+
+        uⁿ⁺¹ is of ``after``, on its ``mesh``, the others are of ``before``; ``extrapolation`` (2,): e. Zero where
+        the fluid has no inertia. It is asked for in scenes with ``time.tolerance`` alone; a backend that does not
+        measure it leaves the step to the bodies.
+        """
+        return 0.0
+
     @abstractmethod
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         """Velocity and pressure for output."""
@@ -293,4 +306,16 @@ class FluidBackend(Part):
 
     @abstractmethod
     def forget(self) -> None:
-        """Drop every cache, so that the next step depends on the given state alone (called at each checkpoint)."""
+        """Drop every cache, so that the next step depends on the given state alone."""
+
+    def memory(self) -> FluidState:
+        """What the next step depends on beside the given state, to the last bit: named arrays for a checkpoint.
+
+        A backend that does not say drops its caches.
+        """
+        self.forget()
+        return {}
+
+    def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
+        """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
+        self.forget()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
@@ -22,6 +23,14 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class FailedRemesh:
+    """A new mesh that could not be made at a ``tick``, and the ``reason``."""
+
+    tick: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class FreeMotions:
     """The N motions that carry the bodies: their ``pose``, of the centres of mass, and ``twist``; ``contact``: the
     wrench of their contacts in a state, the impulse at the end of a path; ``hydrodynamic``: the fluid's wrench."""
@@ -30,6 +39,30 @@ class FreeMotions:
     twist: Twist
     contact: Wrench
     hydrodynamic: Wrench
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorEstimate:
+    """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
+    infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
+    once. The greatest so far, or expected: ``speed`` of a free body [length/time], kinetic ``energy`` of all
+    [energy]."""
+
+    steps: int
+    error: float
+    with_contacts: float
+    speed: float
+    energy: float
+
+    @property
+    def is_unknown(self) -> bool:
+        """Whether there are too few steps yet."""
+        return math.isinf(self.error)
+
+    @property
+    def restarted(self) -> ErrorEstimate:
+        """After a change of the motion at once: unknown, over the same scales."""
+        return replace(self, steps=0, error=math.inf, with_contacts=math.inf)
 
 
 class CarriedState:
@@ -68,9 +101,10 @@ class State(CarriedState):
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
     wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
-    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the tick at which this mesh
+    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that this mesh
     could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
-    ``twist`` are then evaluated; None where each moves by itself.
+    ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
+    the first step, and without a tolerance.
     """
 
     tick: int
@@ -89,8 +123,9 @@ class State(CarriedState):
     contact_wrench: Wrench
     ledger: Ledger
     impact: int | None = None
-    remesh_failed: int | None = None
+    remesh_failed: FailedRemesh | None = None
     free: FreeMotions | None = None
+    estimate: ErrorEstimate | None = None
 
     @property
     def free_contact(self) -> Wrench:

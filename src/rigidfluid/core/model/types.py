@@ -8,7 +8,7 @@ Surfaces are numbered through: bodies 0 … n-1, then the pieces of the domain's
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -120,20 +120,44 @@ class MeshPart:
 
 
 @dataclass(frozen=True, slots=True)
+class CurvedEdges:
+    """The edges of quadratic cells that are not straight: their ``vertices`` (K, 2), the ``surface`` (K,) that each
+    lies on, and the ``middles`` (K, d) that they pass through half-way [length]."""
+
+    vertices: IntArray
+    surface: IntArray
+    middles: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class Mesh:
-    """Straight simplices: ``points`` (N, d) [length], ``cells`` (M, d+1), boundary ``facets`` (F, d) and
-    ``markers`` (F,), the number of the surface that each facet lies on. ``part`` is None where it is the whole mesh."""
+    """Simplices: ``points`` (N, d) [length], ``cells`` (M, d+1), boundary ``facets`` (F, d) and ``markers`` (F,), the
+    number of the surface that each facet lies on. All edges are straight but those ``curved``. ``part`` is None where
+    it is the whole mesh."""
 
     points: FloatArray
     cells: IntArray
     facets: IntArray
     markers: IntArray
     part: MeshPart | None = None
+    curved: CurvedEdges | None = None
 
     @property
     def ranks(self) -> Ranks:
         """The processes that hold the whole mesh together."""
         return ALONE if self.part is None else self.part.ranks
+
+    @property
+    def geometry(self) -> FloatArray:
+        """All that says where the mesh is: the vertices, then the middles of curved edges, (N + K, d) [length]."""
+        return self.points if self.curved is None else np.concatenate([self.points, self.curved.middles])
+
+    def at(self, geometry: FloatArray) -> Mesh:
+        """The same cells elsewhere, at a ``geometry`` (N + K, d) [length]."""
+        if self.curved is None:
+            return replace(self, points=geometry)
+        points, middles = geometry[: len(self.points)], geometry[len(self.points) :]
+        return replace(self, points=points, curved=replace(self.curved, middles=middles))
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,8 +227,8 @@ class Step:
 
     ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
     uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
-    ``pose``: of the bodies, there. ``points`` (N, d): the mesh at the new time; None without a mesh, and for responses
-    on the present one.
+    ``pose``: of the bodies, there. ``points`` (N + K, d): the mesh's geometry at the new time; None without a mesh,
+    and for responses on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
     With ``kinematics`` all these are of the N motions that carry the bodies, and the fluid's wrench on them is Gᵀ of

@@ -18,16 +18,19 @@ import numpy as np
 
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What a rank of a run needs to go on: its ``state``, the ``scene`` as JSON, the ``times`` of its outputs, the
-    ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
+    """What a rank of a run needs to go on: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
+    ``times`` of its outputs, the ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how
+    many ``ranks`` have such."""
 
     state: State
+    memory: FluidState
     scene: str
     times: tuple[float, ...]
     lengths: Mapping[str, int]
@@ -36,6 +39,7 @@ class Checkpoint:
     unsettled: int
     remeshes: int
     failed_remeshes: int
+    latest_failed_remesh: str | None
     elapsed: float
     extremes: Extremes
     ranks: int
@@ -84,7 +88,7 @@ def _with_shared_cells(state: State) -> State:
     """A moved mesh has the very cells of its reference: backends know a topology by its array."""
     if state.mesh is None or state.reference is None:
         return state
-    return replace(state, mesh=replace(state.reference.mesh, points=state.mesh.points))
+    return replace(state, mesh=state.reference.mesh.at(state.mesh.geometry))
 
 
 def _store(group: h5py.Group, record: Any) -> None:

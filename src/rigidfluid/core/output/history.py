@@ -16,7 +16,7 @@ from rigidfluid.errors import OutputError
 
 
 class History:
-    """Tables ``bodies``, ``contacts``, ``energy`` and ``probes``, and the ``summary`` of summary.json.
+    """Tables ``bodies``, ``contacts``, ``energy``, ``steps`` and ``probes``, and the ``summary`` of summary.json.
 
     Parameters
     ----------
@@ -88,6 +88,11 @@ class History:
     def energy(self) -> dict[str, NDArray[Any]]:
         """The table of energy.csv: a row per accepted step."""
         return self.table("energy")
+
+    @property
+    def steps(self) -> dict[str, NDArray[Any]]:
+        """The table of steps.csv: a row per accepted step whose error is estimated."""
+        return self.table("steps")
 
     @property
     def probes(self) -> dict[str, NDArray[Any]]:

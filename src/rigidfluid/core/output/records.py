@@ -38,6 +38,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
         ),
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
         "energy": ("time", "step", *LEDGER_COLUMNS),
+        "steps": ("time", "step", "size", "error"),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
     }
 
@@ -49,6 +50,7 @@ def records(system: System, probes: FloatArray, state: State, time: float) -> Re
         "bodies": list(_body_rows(system, state, stamp)),
         "contacts": list(_contact_rows(system, state, stamp)),
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
+        "steps": list(_step_rows(state, stamp)),
         "probes": list(_probe_rows(system, probes, state, stamp)),
     }
 
@@ -93,6 +95,11 @@ def _contact_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
         names = (system.surfaces[near.body_a[i]], system.surfaces[near.body_b[i]])
         vectors = np.concatenate([near.point_a[i], near.point_b[i], near.normal[i]]).tolist()
         yield (*stamp, *names, *vectors, float(near.gap[i]))
+
+
+def _step_rows(state: State, stamp: Row) -> Iterator[Row]:
+    if state.past is not None and state.estimate is not None and not state.estimate.is_unknown:
+        yield (*stamp, state.past.step, state.estimate.error)
 
 
 def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) -> Iterator[Row]:

@@ -15,7 +15,7 @@ START_LEVEL = 6
 """In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
 
 
-def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> State:
+def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, starts_short: bool = False) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none."""
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
@@ -26,7 +26,7 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock) -> St
     return State(
         tick=0,
         count=0,
-        level=_level(system, clock, stored),
+        level=start_level(clock) if starts_short else _level(system, clock, stored),
         pose=system.pose,
         twist=system.twist,
         past=None,

@@ -83,18 +83,20 @@ def run(
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds."""
+    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds, and
+    how many new meshes could not be made."""
 
     time: float
     end: float
     step: float
     gap: float
     elapsed: float
+    failed_remeshes: int
 
 
 def _progress(now: Simulation) -> Progress:
     step, gap = now.clock.size(now.state.level or 0), float(now.state.gaps.min())
-    return Progress(now.time, now.clock.end, step, gap, now.elapsed)
+    return Progress(now.time, now.clock.end, step, gap, now.elapsed, now.counts.failed_remeshes)
 
 
 def _status(error: BaseException) -> str:

@@ -5,18 +5,19 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
+from rigidfluid.core.mesh.regions import RefinedBox, Wake
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
@@ -62,6 +63,7 @@ class SavedRun:
 
     scene: Scene
     state: State
+    memory: FluidState
     system: System
     counts: Counts
     extremes: Extremes
@@ -97,10 +99,17 @@ class Simulation:
         earlier = _earlier(scene, out, self._ranks) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, system)
-        quality = scene.mesh.quality if scene.mesh else 0.0
-        self.mesh_updater = MeshUpdater(system, sizes, quality, self.clock.ticks(0))
+        every, wake = (scene.mesh.remesh_every, scene.mesh.wake) if scene.mesh else (None, None)
+        self.mesh_updater = MeshUpdater(
+            system,
+            sizes,
+            scene.mesh.quality if scene.mesh else 0.0,
+            pause=self.clock.ticks(0),
+            oldest=None if every is None else self.clock.tick_from(every),
+            wake=None if wake is None else Wake(wake.time, wake.size),
+        )
         self.watch = Stopwatch()
-        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch)
+        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
@@ -217,14 +226,15 @@ class Simulation:
         motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
         self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
-            self.state = replace(self.state, level=start_level(self.clock))
+            estimate = self.state.estimate and self.state.estimate.restarted
+            self.state = replace(self.state, level=start_level(self.clock), estimate=estimate)
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
-        self.system.backend.forget()
         return SavedRun(
             scene=self.scene,
             state=self.state,
+            memory=self.system.backend.memory(),
             system=self.system,
             counts=replace(self.counts),
             extremes=self.extremes,
@@ -241,7 +251,7 @@ class Simulation:
                 "a run in memory",
                 "Make the Simulation without a folder, or resume the run from its checkpoint.",
             )
-        self.system.backend.forget()
+        self.system.backend.recall(saved.memory, saved.state.mesh)
         self.scene, self.state, self.extremes = saved.scene, saved.state, saved.extremes
         self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
@@ -265,7 +275,9 @@ class Simulation:
         self._elapsed_before = 0.0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
-            self.state = initial_state(self.system, self.mesh_updater, self.clock)
+            self.state = initial_state(
+                self.system, self.mesh_updater, self.clock, self.scene.time.tolerance is not None
+            )
         if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
@@ -276,11 +288,13 @@ class Simulation:
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
         self.stepper.after(self.state)
+        self.system.backend.forget()
         self.stepper.counts = Counts()
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self.stepper.counts = Counts(earlier.rejected, earlier.unsettled, earlier.remeshes, earlier.failed_remeshes)
+        self.system.backend.recall(earlier.memory, self.state.mesh)
+        self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
         self._elapsed_before, self._times = earlier.elapsed, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
@@ -296,19 +310,20 @@ class Simulation:
                 self._writer.extend(now)
 
     def _output(self) -> None:
-        """Write fields and a checkpoint; the backend's caches go in any case, so that no result depends on writing."""
+        """Write fields and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
         self._times = (*self._times, self.time)
-        self.system.backend.forget()
+        memory = self.system.backend.memory()
         if self._writer is None:
             return
         with self.watch("write"):
             if self.state.mesh is not None:
                 self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
-            self._writer.checkpoint(self._checkpoint(self._writer))
+            self._writer.checkpoint(self._checkpoint(self._writer, memory))
 
-    def _checkpoint(self, writer: Writer) -> Checkpoint:
+    def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
         return Checkpoint(
             state=self.state,
+            memory=memory,
             scene=json.dumps(self.scene.to_dict()),
             times=self._times,
             lengths=writer.lengths,
@@ -361,7 +376,8 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
         return None
     assert scene.mesh is not None
     m = scene.mesh
-    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements)
+    boxes = tuple(RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in m.refine)
+    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements, m.order, boxes)
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:

@@ -16,8 +16,10 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
+from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.errors import StepError, StepRejected
 
@@ -28,12 +30,13 @@ MOST_ATTEMPTS = 4
 @dataclass
 class Counts:
     """Of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes made
-    after the first (``remeshes``), and those that could not be made (``failed_remeshes``)."""
+    after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of them."""
 
     rejected: int = 0
     unsettled: int = 0
     remeshes: int = 0
     failed_remeshes: int = 0
+    latest_failed_remesh: str | None = None
 
 
 class Stepper:
@@ -49,15 +52,25 @@ class Stepper:
         Of the mesh.
     watch : Stopwatch
         Of the stages of a step.
+    tolerance : float, optional
+        Of a step's local error [1]; None for steps as long as the clock allows.
 
     ``propose`` gives the level of the next step after a state, before gaps and rejections shorten it: the step
-    controller. Another may be put in the place of `longest`.
+    controller. Another may be put in the place of `longest`, or of `StepController.propose` with a tolerance.
     """
 
-    def __init__(self, system: System, clock: Clock, mesh_updater: MeshUpdater, watch: Stopwatch) -> None:
+    def __init__(
+        self,
+        system: System,
+        clock: Clock,
+        mesh_updater: MeshUpdater,
+        watch: Stopwatch,
+        tolerance: float | None = None,
+    ) -> None:
         self.system, self._clock, self._mesh_updater, self._watch = system, clock, mesh_updater, watch
         self.counts = Counts()
-        self.propose: Callable[[State], int] = self.longest
+        self._controller = None if tolerance is None else StepController(clock, tolerance)
+        self.propose: Callable[[State], int] = self._controller.propose if self._controller else self.longest
 
     def longest(self, state: State) -> int:
         """The level of the longest step on the clock's grid, at most twice the last."""
@@ -71,6 +84,7 @@ class Stepper:
                 path = path or self._path(state, level)
                 state = self._on_its_mesh(state, path.pose)
                 new, agreed = self._tried(state, level, path)
+                new = self._judged(state, new)
             except StepRejected as rejection:
                 self.counts.rejected += 1
                 level, path = level + 1, None
@@ -80,12 +94,25 @@ class Stepper:
                 self.counts.unsettled += not agreed
                 return new
 
+    def _judged(self, state: State, candidate: State) -> State:
+        """The candidate with an estimate of its error, where that is tolerated."""
+        if self._controller is None:
+            return candidate
+        with self._watch("estimate"):
+            estimate = estimate_error(self.system, self._clock.time(candidate.tick), state, candidate)
+        candidate = replace(candidate, estimate=estimate)
+        self._controller.judge(candidate)
+        return candidate
+
     def _on_its_mesh(self, state: State, pose: Pose) -> State:
         """The state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
         with self._watch("mesh"):
             adapted = self._mesh_updater.remesh_if_needed(state, pose)
         self.counts.remeshes += adapted.mesh is not state.mesh
-        self.counts.failed_remeshes += adapted.remesh_failed not in (None, state.remesh_failed)
+        failed = adapted.remesh_failed
+        if failed is not None and failed is not state.remesh_failed:
+            self.counts.failed_remeshes += 1
+            self.counts.latest_failed_remesh = f"at time {self._clock.time(failed.tick):g}: {failed.reason}"
         return adapted
 
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:

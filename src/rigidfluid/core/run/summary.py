@@ -54,6 +54,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "unsettled_steps": simulation.counts.unsettled,
         "remeshes": simulation.counts.remeshes,
         "failed_remeshes": simulation.counts.failed_remeshes,
+        "latest_failed_remesh": simulation.counts.latest_failed_remesh,
         "wall_time": simulation.elapsed,
         "wall_time_per_stage": simulation.watch.seconds,
         "peak_memory": _of_all(system.backend.ranks, peak_memory()),

@@ -198,8 +198,26 @@ class InteractionTable(_OpenTable):
     )
 
 
+class WakeTable(_Table):
+    """Finer cells behind free and driven bodies, from x - time·velocity to x and as wide as the body.
+
+    They are there from the second mesh on; a fluid that flows past a fixed body wants `[[mesh.refine]]`.
+    """
+
+    time: Positive = Field(description="How long a wake stays fine after its body, at the present velocity [time]")
+    size: Positive = Field(description="Edge length in the wake [length]")
+
+
+class RefineTable(_Table):
+    """A box with finer cells, from which they grow as they do from a body."""
+
+    lower: Vector = Field(description="Corner of the box with the smallest coordinates [length]")
+    upper: Vector = Field(description="Corner of the box with the largest coordinates [length]")
+    size: Positive = Field(description="Edge length in the box [length]")
+
+
 class MeshTable(_Table):
-    """How fine the mesh is."""
+    """How fine the mesh is, and when it is made anew."""
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: Positive = Field(description="Edge length on the bodies [length]")
@@ -209,6 +227,14 @@ class MeshTable(_Table):
     )
     quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is made anew [1]")
     refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
+    order: Literal[1, 2] = Field(
+        default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
+    )
+    remesh_every: Positive | None = Field(
+        default=None, description="Age at which a mesh is made anew in any case; never if not given [time]"
+    )
+    wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
+    refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")
 
 
 class TimeTable(_Table):
@@ -216,6 +242,11 @@ class TimeTable(_Table):
 
     end: Positive = Field(description="Time at which the simulation ends [time]")
     step: Positive = Field(description="Size of a step [time]")
+    tolerance: Annotated[float, Field(ge=1e-6, le=0.1)] | None = Field(
+        default=None,
+        description="Local error that a step may have, relative and per unit time: `step` is then the longest step; "
+        "all steps are as long as they can be if not given [1]",
+    )
     shortest: Positive = Field(
         default_factory=lambda table: table["step"] / 1024,
         description="Size below which a step is not cut further; step/1024 if not given [time]",
@@ -268,7 +299,9 @@ class Scene(_Table):
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
         # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
-        left_out = {name for name in ("interaction", "mechanism") if not getattr(self, name)}
+        left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
+        if self.mesh is not None and not self.mesh.refine:
+            left_out["mesh"] = {"refine"}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 
 

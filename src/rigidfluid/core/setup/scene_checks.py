@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.setup.boundary_checks import check_inflow
+from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
-    from rigidfluid.core.scene.scene import BodyTable, MechanismTable, MeshTable, Scene
+    from rigidfluid.core.scene.scene import BodyTable, MechanismTable, Scene
 
     Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
-
-MOST_CELLS = 10**9
-"""More of them, a cube or square of the edge length each, are a slip of units, and a mesher would never end."""
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -48,7 +46,8 @@ def check_tables(scene: Scene) -> None:
         _check_control(body, f"body.{number}")
     _check_assemblies(scene)
     _check_contact(scene)
-    _check_sizes(scene)
+    _check_times(scene)
+    check_mesh_table(scene)
 
 
 def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
@@ -66,9 +65,13 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     Raises
     ------
     SceneError
-        If density, viscosity or the mesh is missing, or if more flows in than out.
+        If density, viscosity or the mesh is missing, or if more flows in than out; without a mesh, if there is a
+        tolerance.
     """
     if not backend.needs_mesh:
+        if scene.time.tolerance is not None:
+            allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"
+            raise SceneError("time.tolerance", scene.time.tolerance, allowed, "Remove it.")
         return
     beside = f"with backend {backend.name!r}"
     for key in ("density", "viscosity"):
@@ -76,7 +79,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
             raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
     if scene.mesh is None:
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
-    _check_cells(scene.mesh, domain)
+    check_cells(scene.mesh, domain)
     check_inflow(scene, domain)
 
 
@@ -107,6 +110,9 @@ def _vectors(scene: Scene) -> Vectors:
         yield f"mechanism.{i}.position", mechanism.position, d
         yield f"mechanism.{i}.velocity", mechanism.velocity, d
         yield f"mechanism.{i}.angular_velocity", mechanism.angular_velocity, k
+    for i, box in enumerate(scene.mesh.refine if scene.mesh else ()):
+        yield f"mesh.refine.{i}.lower", box.lower, d
+        yield f"mesh.refine.{i}.upper", box.upper, d
     for i, probe in enumerate(scene.output.probes):
         yield f"output.probes.{i}", probe, d
 
@@ -161,8 +167,8 @@ def _check_contact(scene: Scene) -> None:
         raise SceneError("contact.substeps", scene.contact.substeps, allowed, "Remove one of them.")
 
 
-def _check_sizes(scene: Scene) -> None:
-    time, mesh = scene.time, scene.mesh
+def _check_times(scene: Scene) -> None:
+    time = scene.time
     if time.step > time.end:
         raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten it, or end later.")
     if time.end / time.step > MOST_STEPS:
@@ -171,11 +177,3 @@ def _check_sizes(scene: Scene) -> None:
         raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
     if time.shortest > time.step:
         raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
-    if mesh and mesh.size_body > mesh.size:
-        raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
-
-
-def _check_cells(mesh: MeshTable, domain: Domain) -> None:
-    least = (domain.volume / MOST_CELLS) ** (1.0 / domain.dimension)
-    if mesh.size < least:
-        raise SceneError("mesh.size", mesh.size, f"at least {least:.3g} for this domain", "Coarsen it.")

@@ -74,7 +74,7 @@ class Flow:
         past = None if length is None else (self.pose, self.twist, length)
         return replace(
             self,
-            mesh=replace(self.mesh, points=step.points),
+            mesh=self.mesh.at(step.points),
             fluid=advance.fluid,
             pose=step.pose,
             twist=advance.twist,
@@ -146,7 +146,7 @@ class Flow:
             derivative=weights,
             extrapolation=extrapolation,
             pose=pose,
-            points=self.mesh.points if points is None else points,
+            points=self.mesh.geometry if points is None else points,
             mass_matrix=mass_matrix,
             load=load + weights[0] * given,
             controlled=self.bodies.controlled,

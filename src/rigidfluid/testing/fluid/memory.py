@@ -88,6 +88,17 @@ class MemoryContract(FluidContract):
             flow, resumed = self.stir(flow), self.stir(resumed)
             _assert_same([resumed.fluid, figures(resumed.advance)], [flow.fluid, figures(flow.advance)])
 
+    def test_going_on_from_a_checkpoint_with_a_memory_is_bit_identical(self, dimension: int) -> None:
+        """A new backend with state and ``memory`` from files takes the same steps as the old one."""
+        flow = self.stirred(dimension, steps=3)
+        memory = _through_a_file(flow.backend.memory())
+        backend, mesh = self.make_backend(problem(dimension, bodies=2)), copied(flow.mesh)
+        backend.recall(memory, mesh)
+        resumed = replace(flow, backend=backend, mesh=mesh, fluid=_through_a_file(flow.fluid))
+        for _ in range(4):
+            flow, resumed = self.stir(flow), self.stir(resumed)
+            _assert_same([resumed.fluid, figures(resumed.advance)], [flow.fluid, figures(flow.advance)])
+
     def _assert_close_figures(self, found: Advance, expected: Advance) -> None:
         for name, wanted in figures(expected).items():
             self.assert_close(figures(found)[name], wanted, scale=float(np.abs(wanted).max()))

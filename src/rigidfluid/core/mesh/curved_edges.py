@@ -1,0 +1,131 @@
+"""Bends the edges on bodies and curved walls onto the exact surface, so that cells there are quadratic (isoparametric).
+
+A straight facet cuts off L²/(8R) of a surface of radius R, and drag, lift and volume are as wrong as that; through the
+surface's point at its middle it follows the surface to order 4 in L.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces, on_surface
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
+
+SQUEEZED = 0.3
+"""An edge stays straight where bending it would leave less than this of a cell's volume anywhere in the cell."""
+
+FLAT = 1e-9
+"""An edge is straight when the surface is nearer to its middle than this many of its lengths."""
+
+
+def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
+    """The mesh with its edges on bodies and curved walls bent through the nearest points of the surface.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Whole, straight, its vertices on their surfaces, the bodies at ``pose``.
+    bodies : sequence of Body
+        The shapes.
+    pose : Pose
+        Where they are.
+    domain : Domain
+        What they are in.
+
+    Returns
+    -------
+    Mesh
+        The same vertices and cells. Edges in which surfaces meet stay straight, and those of cells too thin to bend.
+    """
+    edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
+    apart = ~_on_others(mesh, edges, surface)
+    edges, surface = edges[apart], surface[apart]
+    straight = mesh.points[edges].mean(axis=1)
+    middles = straight.copy()
+    for i in np.unique(surface):
+        middles[surface == i] = on_surface(i, straight[surface == i], bodies, pose, domain)
+    length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+    bends = np.linalg.norm(middles - straight, axis=1) > FLAT * length
+    curved = replace(mesh, curved=CurvedEdges(edges[bends], surface[bends], middles[bends]))
+    while curved.curved is not None:
+        cells = CurvedCells(curved)
+        thin = cells.least_jacobian(curved.geometry) < SQUEEZED
+        if not thin.any():
+            return curved
+        kept = np.setdiff1d(np.arange(len(curved.curved.surface)), cells.bent[thin])
+        curved = replace(mesh, curved=_chosen(curved.curved, kept))
+    return mesh
+
+
+def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:
+    if not len(kept):
+        return None
+    return CurvedEdges(curved.vertices[kept], curved.surface[kept], curved.middles[kept])
+
+
+def _on_others(mesh: Mesh, edges: IntArray, surface: IntArray) -> BoolArray:
+    """Which edges (E, 2) are on facets of other surfaces than the ``surface`` (E,) they are listed for."""
+    shared = np.zeros(len(edges), dtype=bool)
+    if mesh.points.shape[1] == 2:
+        return shared  # an edge is a facet
+    for other in np.unique(mesh.markers):
+        theirs, _ = edges_of_facets(mesh, mesh.markers == other)
+        shared |= (surface != other) & (edge_numbers(edges, (0, 1), theirs, len(mesh.points)) >= 0)
+    return shared
+
+
+class CurvedCells:
+    """The cells at a mesh's curved edges, and how well they stand being bent.
+
+    ``cells`` (C, d+1); ``bent`` (C, edges of a cell): which of the mesh's curved edges each edge is, -1 where it is
+    straight.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._vertices, d = len(mesh.points), mesh.points.shape[1]
+        self._pairs = list(combinations(range(d + 1), 2))
+        if mesh.curved is None:
+            self.cells, self.bent = mesh.cells[:0], np.zeros((0, len(self._pairs)), dtype=np.int64)
+            return
+        edges = mesh.curved.vertices
+        order = np.lexsort(edges.T[::-1])
+        found = np.stack([edge_numbers(mesh.cells, pair, edges[order], self._vertices) for pair in self._pairs], axis=1)
+        at_curves = (found >= 0).any(axis=1)
+        self.cells = mesh.cells[at_curves]
+        self.bent = np.where(found >= 0, order[found], -1)[at_curves]
+
+    def least_jacobian(self, geometry: FloatArray) -> FloatArray:
+        """Least det ∂x/∂X of each cell's quadratic map over that of its straight one, at its nodes (C,).
+
+        Parameters
+        ----------
+        geometry : (N + K, d) array
+            Of the mesh [length].
+
+        Notes
+        -----
+        x = Σ λᵢ xᵢ + Σ 4 λₐ λ_b δₐ_b with the shift δ of each edge's middle, so that
+        ∂x/∂X = E + Σ 4 δ (λₐ ∇λ_b + λ_b ∇λₐ)ᵀ. Exact for one bent edge, whose determinant is linear.
+        """
+        corners = geometry[self.cells]
+        edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
+        slopes = np.vstack([-np.ones(edges.shape[1]), np.eye(edges.shape[1])])  # ∇λ
+        at = np.vstack([np.eye(len(slopes)), [(np.eye(len(slopes))[[a, b]]).mean(axis=0) for a, b in self._pairs]])
+        jacobian = np.repeat(edges[:, None], len(at), axis=1)
+        for column, (a, b) in enumerate(self._pairs):
+            shift = geometry[self._vertices + self.bent[:, column]] - 0.5 * (corners[:, a] + corners[:, b])
+            shift[self.bent[:, column] < 0] = 0.0
+            slope = at[:, a, None] * slopes[b] + at[:, b, None] * slopes[a]
+            jacobian += 4.0 * shift[:, None, :, None] * slope[None, :, None, :]
+        return np.asarray((np.linalg.det(jacobian) / np.linalg.det(edges)[:, None]).min(axis=1))
+
+    def quality(self, geometry: FloatArray) -> FloatArray:
+        """That of the straight cells times what bending leaves of them, (C,) [1]."""
+        return cell_quality(geometry[: self._vertices], self.cells) * np.maximum(self.least_jacobian(geometry), 0.0)

@@ -1,0 +1,75 @@
+"""Regions of finer cells away from the bodies' surfaces: boxes that stay, and the wakes of moving bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
+
+
+class Region(Protocol):
+    """Part of the domain with cells of one ``size`` [length]; from there cells grow as they do from a body."""
+
+    @property
+    def size(self) -> float:
+        """Longest edge wanted inside [length]."""
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Distance of points (N, d) to the region, (N,), zero inside [length]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RefinedBox:
+    """A box along the axes, from ``lower`` to ``upper``, each (d,) [length]."""
+
+    lower: FloatArray
+    upper: FloatArray
+    size: float
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """|max(lower - x, x - upper, 0)|."""
+        outside = np.maximum(np.maximum(self.lower - points, points - self.upper), 0.0)
+        return np.asarray(np.linalg.norm(outside, axis=1))
+
+
+@dataclass(frozen=True, slots=True)
+class RefinedCapsule:
+    """All within ``radius`` of the segment from ``start`` to ``end``, each (d,) [length]."""
+
+    start: FloatArray
+    end: FloatArray
+    radius: float
+    size: float
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """max(|x - nearest point of the segment| - radius, 0)."""
+        along, from_start = self.end - self.start, points - self.start
+        share = np.clip(from_start @ along / (along @ along), 0.0, 1.0)
+        from_axis: FloatArray = np.linalg.norm(from_start - share[:, None] * along, axis=1)
+        return np.maximum(from_axis - self.radius, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Wake:
+    """Where a body has been for ``time`` [time], if its velocity was the present one; cells there have one ``size``.
+
+    A length would need a direction, which a body at rest does not have: x - time·U shrinks to the body with U.
+    """
+
+    time: float
+    size: float
+
+    def behind(self, bodies: Sequence[Body], pose: Pose, twist: Twist) -> tuple[RefinedCapsule, ...]:
+        """The wakes of all bodies that move, each as wide as the ball around its body."""
+        ends = pose.position - self.time * twist.velocity
+        found = zip(bodies, pose.position, ends, strict=True)
+        return tuple(
+            RefinedCapsule(start, end, body.bounding_radius, self.size)
+            for body, start, end in found
+            if np.linalg.norm(end - start) > self.size
+        )

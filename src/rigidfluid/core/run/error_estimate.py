@@ -1,0 +1,102 @@
+"""The local error of a step, from three velocities; what the impulses of contacts explain is left out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mechanics.time_scheme import extrapolation_weights, generalised_mass, path_error_weight
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.state import ErrorEstimate, State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray
+
+UNSEEN = 2
+"""In so many steps after a start there are no three velocities of one smooth motion: the first step may be a jump."""
+
+
+def estimate_error(system: System, time: float, state: State, candidate: State) -> ErrorEstimate:
+    """The estimate for the step from ``state``, on the mesh that it was taken on, to the ``candidate`` at ``time``.
+
+    Local error of the paths of bodies and fluid particles per unit time, c (uⁿ⁺¹ - u*) with u* extrapolated and c by
+    `path_error_weight`, relative: of each free motion over the greatest speed, of the fluid in the norm of kinetic
+    energy over the greatest energy. The larger one counts. An angular velocity counts by its energy, as √(ω·Iω/m).
+
+    An impact changes velocities at once, whatever the step. So what the change of the contacts' force could do to the
+    bodies' own masses is subtracted. It is an upper bound, since the fluid adds to the masses.
+
+    On a new mesh velocities also differ by what the transfer has changed, which no shorter step makes smaller: the
+    estimate of the step before stands.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and backend.
+    time : float
+        At the end of the step [time].
+    state, candidate : State
+        Before and after it.
+
+    Returns
+    -------
+    ErrorEstimate
+        Unknown in the first two steps.
+    """
+    before, masses = state.estimate or _expected(system), _Masses(system, time, candidate)
+    speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))
+    after = replace(before, steps=before.steps + 1, speed=speed, energy=max(before.energy, candidate.ledger.kinetic))
+    if after.steps <= UNSEEN or _is_on_new_mesh(state) or state.past is None or candidate.past is None:
+        return after
+    size, previous = candidate.past.step, state.past.step
+    weight, (e0, e1) = path_error_weight(size, previous), extrapolation_weights(size, previous)
+    otherwise = flat(candidate.free_twist) - e0 * flat(state.free_twist) - e1 * flat(state.past.twist)
+    impulse = size * (flat(candidate.free_contact) - flat(state.free_contact))
+    bodies, contacts = masses.energies(otherwise), masses.energies_by(impulse)
+    fluid = system.backend.prediction_error(state.fluid, candidate.fluid, candidate.mesh, np.array([e0, e1]))
+    whole = max(_ratio(masses.fastest(bodies), speed), _ratio(fluid**0.5, after.energy**0.5))
+    smooth_fluid = max(fluid**0.5 - contacts.sum() ** 0.5, 0.0)
+    smooth_bodies = np.maximum(np.sqrt(bodies) - np.sqrt(contacts), 0.0) ** 2
+    smooth = max(_ratio(masses.fastest(smooth_bodies), speed), _ratio(smooth_fluid, after.energy**0.5))
+    return replace(after, error=weight * smooth, with_contacts=weight * whole)
+
+
+def _is_on_new_mesh(state: State) -> bool:
+    return state.reference is not None and state.reference.tick == state.tick
+
+
+class _Masses:
+    """Kinetic energies of the free motions at a ``time``, where the ``state`` has them."""
+
+    def __init__(self, system: System, time: float, state: State) -> None:
+        self._free, mechanisms = ~system.controlled_motions, system.mechanisms
+        mass = system.mass if mechanisms is None else mechanisms.mass
+        inertia = system.inertia if mechanisms is None else mechanisms.inertia(time)
+        self._mass, self._matrix = mass[self._free], generalised_mass(mass, inertia, state.free_pose)[self._free]
+
+    def energies(self, twist: FloatArray) -> FloatArray:
+        """½ u·Mu of each of the ``twist`` (N, d+k) [energy]."""
+        free = twist[self._free]
+        return np.asarray(0.5 * np.einsum("ni,nij,nj->n", free, self._matrix, free))
+
+    def energies_by(self, impulse: FloatArray) -> FloatArray:
+        """Of what each ``impulse`` (N, d+k) makes of a motion at rest [energy]."""
+        free = impulse[self._free]
+        return np.asarray(0.5 * np.sum(free * np.linalg.solve(self._matrix, free[..., None])[..., 0], axis=1))
+
+    def fastest(self, energies: FloatArray) -> float:
+        """The greatest of the speeds √(2E/m) of these kinetic energies [length/time]."""
+        return float(np.sqrt(2.0 * energies / self._mass).max(initial=0.0))
+
+
+def _expected(system: System) -> ErrorEstimate:
+    """Before the first step: the speeds of impact that the scene leads to expect, and the bodies' energy with them."""
+    free = ~system.controlled
+    speed, added = system.loads.speed[free], np.trace(system.added_mass[free], axis1=1, axis2=2) / system.dimension
+    energy = 0.5 * float((system.mass[free] + added) @ speed**2)
+    return ErrorEstimate(0, math.inf, math.inf, float(speed.max(initial=0.0)), energy)
+
+
+def _ratio(value: float, scale: float) -> float:
+    return value / scale if scale > 0.0 else 0.0

@@ -1,0 +1,61 @@
+"""Refuses a mesh whose keys contradict each other, the steps, or the domain."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
+    from rigidfluid.core.scene.scene import MeshTable, Scene
+
+MOST_CELLS = 10**9
+"""More of them, a cube or square of the edge length each, are a slip of units, and a mesher would never end."""
+
+
+def check_mesh_table(scene: Scene) -> None:
+    """Refuse what contradicts itself in the tables alone; raises SceneError at the first contradiction."""
+    mesh = scene.mesh
+    if mesh is None:
+        return
+    if mesh.size_body > mesh.size:
+        raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
+    if mesh.remesh_every is not None and mesh.remesh_every < scene.time.step:
+        allowed = f"at least time.step = {scene.time.step}"
+        raise SceneError("mesh.remesh_every", mesh.remesh_every, allowed, "Re-mesh less often.")
+    if mesh.wake is not None:
+        _check_size("mesh.wake.size", mesh.wake.size, mesh)
+    for number, box in enumerate(mesh.refine):
+        at = f"mesh.refine.{number}"
+        _check_size(f"{at}.size", box.size, mesh)
+        if np.any(np.array(box.lower) >= np.array(box.upper)):
+            allowed = f"each number below that of `upper` = {list(box.upper)}"
+            raise SceneError(f"{at}.lower", list(box.lower), allowed, "Swap or correct them.")
+
+
+def check_cells(mesh: MeshTable, domain: Domain) -> None:
+    """Refuse cells too many to be meant, and boxes that refine nothing; raises SceneError."""
+    _check_count("mesh.size", mesh.size, domain.volume, "this domain", domain.dimension)
+    lower, upper = domain.extent
+    for number, box in enumerate(mesh.refine):
+        inside = np.minimum(box.upper, upper) - np.maximum(box.lower, lower)
+        if np.any(inside <= 0.0):
+            allowed = f"a box that meets the domain, which reaches from {lower.tolist()} to {upper.tolist()}"
+            found = f"one from {list(box.lower)} to {list(box.upper)}"
+            raise SceneError(f"mesh.refine.{number}", found, allowed, "Move the box into it.")
+        _check_count(f"mesh.refine.{number}.size", box.size, float(np.prod(inside)), "this box", domain.dimension)
+
+
+def _check_size(field: str, size: float, mesh: MeshTable) -> None:
+    """A region coarser than all else would refine nothing."""
+    if size > mesh.size:
+        raise SceneError(field, size, f"at most mesh.size = {mesh.size}", "Refine it, or leave the table out.")
+
+
+def _check_count(field: str, size: float, volume: float, where: str, dimension: int) -> None:
+    least = (volume / MOST_CELLS) ** (1.0 / dimension)
+    if size < least:
+        raise SceneError(field, size, f"at least {least:.3g} for {where}", "Coarsen it.")
