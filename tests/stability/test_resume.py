@@ -75,3 +75,14 @@ def test_a_run_taken_up_between_the_impacts_of_a_disk_in_a_fluid(tmp_path):
     rigidfluid.run(whole, tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "contacts.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_run_with_wakes_boxes_and_meshes_made_by_age_is_taken_up_between_them(tmp_path):
+    settings = [*SETTINGS, "body.0.position=[1.0, 3.0]", "output.every=0.012", "mesh.remesh_every=0.02"]
+    settings += ["mesh.wake={time = 0.05, size = 0.06}"]
+    settings += ["mesh.refine=[{lower = [0.5, 2.5], upper = [1.5, 2.8], size = 0.06}]"]
+    whole, first = (load_scene(SCENES / "falling_disk.toml", [*settings, f"time.end={end}"]) for end in (0.072, 0.036))
+    meshes = rigidfluid.run(whole, tmp_path / "whole").summary["remeshes"]
+    assert 0 < rigidfluid.run(first, tmp_path / "parts").summary["remeshes"] < meshes
+    rigidfluid.run(whole, tmp_path / "parts", resume=True)
+    assert contents(tmp_path / "parts") == contents(tmp_path / "whole")
