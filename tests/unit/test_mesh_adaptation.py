@@ -80,10 +80,14 @@ def test_a_mesh_is_made_anew_at_the_age_that_the_scene_gives():
     assert sorted(set(made)) == pytest.approx([0.0, 0.008, 0.016, 0.024])
 
 
-def test_the_run_asks_for_a_mesh_whose_cells_have_become_too_coarse(monkeypatch):
-    """A disk that is carried along asks after some diameters, far from walls and with good cells."""
-    driven = {"prescribed": {"velocity": [0.0, -10.0]}, "position": [1.0, 5.5]}
-    tables = {"time": {"step": 0.01, "end": 0.2}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 1.0}}
-    assert rigidfluid.run(falling_disk(**tables, body=driven)).summary["remeshes"] > 0
-    monkeypatch.setattr(mesh_adaptation, "has_coarsened", lambda *_: False)
-    assert rigidfluid.run(falling_disk(**tables, body=driven)).summary["remeshes"] == 0
+def test_a_run_looks_at_its_cells_sizes_on_the_way_and_heeds_them(monkeypatch):
+    """A driven disk goes six growth lengths, far from walls."""
+    driven = {"prescribed": {"velocity": [0.0, -10.0]}}
+    mesh = {"size": 0.3, "size_body": 0.05}
+    scene = falling_disk(time={"step": 0.01, "end": 0.16}, mesh=mesh, output={"every": 1.0}, body=driven)
+    made = []
+    for coarse in (True, False):
+        monkeypatch.setattr(mesh_adaptation, "has_coarsened", lambda *_, coarse=coarse: coarse)
+        made.append(rigidfluid.run(scene).summary["remeshes"])
+    assert made[0] > 5
+    assert made[1] == 0

@@ -18,7 +18,7 @@ from rigidfluid.testing.fluid.boxes import (
     renumbered,
     samples,
 )
-from rigidfluid.testing.fluid.exact import DENSITY, LinearFlow, Waves, enclosed, problem
+from rigidfluid.testing.fluid.exact import DENSITY, LinearFlow, enclosed, problem
 from rigidfluid.testing.fluid.flow import Flow, components, figures
 
 INSTANT = 1e-6
@@ -65,7 +65,7 @@ class TransferContract(FluidContract):
         assert np.abs(wrench).max() < 10.0 * before
 
     def test_the_energy_lost_is_told(self, dimension: int) -> None:
-        """What is told is the difference of ½ ρ ∫ |u|² on the two meshes; here of waves that the new one cannot hold."""
+        """What is told is the difference of ½ ρ ∫ |u|² on the two meshes, of waves that the new one cannot hold."""
         old, new = box(dimension, 4), box(dimension, 2)
         flow = self.empty(enclosed(dimension, _nothing, _short_waves), old).after(0.1)
         before = _energy(flow, old)
