@@ -92,7 +92,7 @@ def check(scene: Scene) -> Report:
         scene = parts.scene
         start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
-        return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
+        return Report(scene.name, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found))
 
 
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
