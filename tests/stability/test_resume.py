@@ -90,3 +90,14 @@ def test_a_run_with_a_tolerance_taken_up_where_its_steps_change(tmp_path):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
     sizes = {line.split(",")[2] for line in (tmp_path / "whole" / "steps.csv").read_text().splitlines()[1:]}
     assert len(sizes) > 3
+
+
+def test_a_run_with_wakes_boxes_and_meshes_made_by_age_is_taken_up_between_them(tmp_path):
+    settings = [*SETTINGS, "body.0.position=[1.0, 3.0]", "output.every=0.012", "mesh.remesh_every=0.02"]
+    settings += ["mesh.wake={time = 0.05, size = 0.06}"]
+    settings += ["mesh.refine=[{lower = [0.5, 2.5], upper = [1.5, 2.8], size = 0.06}]"]
+    whole, first = (load_scene(SCENES / "falling_disk.toml", [*settings, f"time.end={end}"]) for end in (0.072, 0.036))
+    meshes = rigidfluid.run(whole, tmp_path / "whole").summary["remeshes"]
+    assert 0 < rigidfluid.run(first, tmp_path / "parts").summary["remeshes"] < meshes
+    rigidfluid.run(whole, tmp_path / "parts", resume=True)
+    assert contents(tmp_path / "parts") == contents(tmp_path / "whole")

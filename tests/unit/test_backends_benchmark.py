@@ -1,28 +1,13 @@
 """The benchmark of backends: its fit, its tables, and one run of each backend that is here, on a tiny mesh."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import pytest
-
-FOLDER = Path(__file__).parents[2] / "benchmarks"
+from benchmark_scripts import benchmark
 
 
 @pytest.fixture(scope="module")
 def backends():
-    """benchmarks/backends.py, which is no package."""
-    sys.path.insert(0, str(FOLDER))
-    try:
-        spec = importlib.util.spec_from_file_location("backends", FOLDER / "backends.py")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules["backends"] = module
-        spec.loader.exec_module(module)
+    with benchmark("backends") as module:
         yield module
-    finally:
-        sys.path.remove(str(FOLDER))
-        for name in ("backends", "disk_under_way", "stages"):
-            sys.modules.pop(name, None)
 
 
 def test_the_exponent_is_that_of_a_power_law(backends):

@@ -197,7 +197,8 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "reynolds": 13.9654,
         "smallest_gap": None,
         "rest_position": [1.0, 2.0],
-        "failed_remeshes": 0,
+        "failed_remeshes": 2,
+        "latest_failed_remesh": "at time 0.3: mesh: found nothing",
     }
     history = at_rest()
     history.summary = figures | {"files": [tmp_path / "bodies.csv"]}
@@ -205,6 +206,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
     assert "rest position: (1, 2)" in text
+    assert "2 times; the one before served on. The latest failure, at time 0.3: mesh: found nothing" in text
     assert "energy: 0 % created, 0 % lost, of 0 put in" in text
 
 

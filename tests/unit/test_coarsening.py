@@ -83,7 +83,6 @@ def test_a_gap_asks_by_its_own_rule_alone():
 
 
 def test_cells_that_are_carried_into_a_box_ask():
-    points, pose = fallen(0.3)
     below = RefinedBox(np.array([0.8, 5.0]), np.array([1.2, 5.5]), 0.05)
     sizes = replace(SIZES, regions=(below,))
     mesh = initial_mesh(DISK, START, BOX, WALLS, sizes)

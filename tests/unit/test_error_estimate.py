@@ -43,7 +43,7 @@ def at(run: Simulation, time: float, step: float, previous: float, force: float 
         twist=twist(time),
         past=Past(run.state.pose, twist(time - step), previous),
         contact_wrench=Wrench(np.array([[0.0, 0.0], [0.0, force], [0.0, 0.0]]), zero),
-        estimate=ErrorEstimate(7, 0.0, 0.0, SPEED, ENERGY),
+        estimate=ErrorEstimate(7, 3, 0.0, 0.0, SPEED, ENERGY),
         reference=None,
     )
 
@@ -90,9 +90,15 @@ def test_nothing_is_known_of_the_first_two_steps(run):
     assert found[0].speed == pytest.approx(float(run.system.loads.speed[:2].max()))
 
 
+def test_the_level_is_that_of_the_latest_step_without_an_impact(run):
+    state, candidate = at(run, 0.9, 0.1, 0.1), replace(at(run, 1.0, 0.1, 0.1), tick=99, level=5)
+    assert estimate_error(run.system, 1.0, state, candidate).level == 5
+    assert estimate_error(run.system, 1.0, state, replace(candidate, impact=99)).level == 3
+
+
 def test_a_new_mesh_leaves_the_estimate_of_the_step_before(run):
     state = replace(at(run, 0.9, 0.1, 0.1), reference=run.state.reference)
-    state = replace(state, estimate=ErrorEstimate(7, 0.25, 0.5, SPEED, ENERGY))
+    state = replace(state, estimate=ErrorEstimate(7, 3, 0.25, 0.5, SPEED, ENERGY))
     found = estimate_error(run.system, 1.0, state, at(run, 1.0, 0.1, 0.1))
     assert (found.steps, found.error, found.with_contacts) == (8, 0.25, 0.5)
 

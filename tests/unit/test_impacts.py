@@ -11,7 +11,7 @@ import pytest
 from rigidfluid.core.contact.contact_path import BodyStep
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger
-from rigidfluid.core.model.state import State
+from rigidfluid.core.model.state import ErrorEstimate, State
 from rigidfluid.core.run.impacts import (
     FELT,
     HALVINGS,
@@ -53,6 +53,13 @@ def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
     too_much, enough = path(state, 1.01 * TOLERATED * PUT_IN), path(state, 0.99 * TOLERATED * PUT_IN)
     assert [is_unresolved(state, too_much, level) for level in range(HALVINGS + 1)] == [True] * HALVINGS + [False]
     assert not is_unresolved(state, enough, 0)
+
+
+def test_halvings_count_from_the_level_that_a_tolerance_asked_for(state):
+    shorter = replace(state, estimate=ErrorEstimate(9, 2, 0.0, 0.0, 1.0, 1.0))
+    too_much = path(state, 1.01 * TOLERATED * PUT_IN)
+    found = [is_unresolved(shorter, too_much, level) for level in range(HALVINGS + 3)]
+    assert found == [True] * (HALVINGS + 2) + [False]
 
 
 @pytest.mark.parametrize(

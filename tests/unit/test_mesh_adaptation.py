@@ -35,7 +35,8 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     system: Any = None
     mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), asked, 1)
     monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
-    state: Any = SimpleNamespace(reference=SimpleNamespace(gaps=None, mesh=None, quality=made), gaps=None)
+    reference = SimpleNamespace(gaps=None, mesh=None, pose=None, quality=made)
+    state: Any = SimpleNamespace(reference=reference, gaps=None, pose=None)
     assert mesh_updater.needs_remesh(state, state) is anew
 
 
@@ -68,3 +69,25 @@ def test_a_mesh_is_moved_to_a_pose_once(monkeypatch):
     monkeypatch.setattr(MeshMotion, "move", lambda motion, pose: poses.append(pose) or move(motion, pose))
     rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]}))
     assert len({id(pose) for pose in poses}) == len(poses) > 4
+
+
+def test_a_mesh_is_made_anew_at_the_age_that_the_scene_gives():
+    made = []
+    mesh = {"size": 0.3, "size_body": 0.05, "remesh_every": 0.008}
+    simulation = Simulation(falling_disk(time={"step": 0.004, "end": 0.032}, mesh=mesh, output={"every": 0.032}))
+    simulation.observe(lambda now: made.append(now.clock.time(now.state.reference.tick)))
+    simulation.go()
+    assert sorted(set(made)) == pytest.approx([0.0, 0.008, 0.016, 0.024])
+
+
+def test_a_run_looks_at_its_cells_sizes_on_the_way_and_heeds_them(monkeypatch):
+    """A driven disk goes six growth lengths, far from walls."""
+    driven = {"prescribed": {"velocity": [0.0, -10.0]}}
+    mesh = {"size": 0.3, "size_body": 0.05}
+    scene = falling_disk(time={"step": 0.01, "end": 0.16}, mesh=mesh, output={"every": 1.0}, body=driven)
+    made = []
+    for coarse in (True, False):
+        monkeypatch.setattr(mesh_adaptation, "has_coarsened", lambda *_, coarse=coarse: coarse)
+        made.append(rigidfluid.run(scene).summary["remeshes"])
+    assert made[0] > 5
+    assert made[1] == 0

@@ -97,7 +97,7 @@ def test_the_system_knows_the_velocity_by_surface_number() -> None:
     system = build_system(scene([BELT]))
     np.testing.assert_array_equal(system.wall_velocity, [[0, 0], [0, 0], [0, 0], [0.5, 0], [0, 0]])
     assert build_system(scene([])).wall_velocity is None
-    told = {feature.name: (feature.on, feature.why) for feature in features(system)}
+    told = {feature.name: (feature.on, feature.why) for feature in features(system, None)}
     assert told["walls that slide"] == (True, "bottom")
 
 

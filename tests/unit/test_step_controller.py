@@ -35,7 +35,7 @@ def controller() -> StepController:
 
 def after(run: Simulation, level: int, error: float, with_contacts: float | None = None, steps: int = 9) -> State:
     """A state at the start of a nominal step."""
-    estimate = ErrorEstimate(steps, error, error if with_contacts is None else with_contacts, 1.0, 1.0)
+    estimate = ErrorEstimate(steps, level, error, error if with_contacts is None else with_contacts, 1.0, 1.0)
     return replace(run.state, tick=32, level=level, estimate=estimate)
 
 

@@ -160,10 +160,27 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
 
     monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
     monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: True)
-    summary = rigidfluid.run(falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})).summary
+    shown = []
+    scene = falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})
+    summary = rigidfluid.run(scene, progress=lambda now: shown.append(now.failed_remeshes)).summary
     assert summary["status"] == "complete"
     assert 0 < summary["failed_remeshes"] == len(tried) <= 4
     assert summary["steps"] > 8
+    assert sorted({0, *shown}) == list(range(len(tried) + 1))
+    assert summary["latest_failed_remesh"] == "at time 0.012: mesh: found nothing; allowed is a mesh. None."
+
+
+def test_why_a_remesh_failed_is_still_known_after_a_resumption(monkeypatch, tmp_path):
+    def fail(*_):
+        raise MeshError("mesh", "nothing", "a mesh", "None.")
+
+    monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
+    monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: True)
+    told = rigidfluid.run(falling_disk(**SHORT), tmp_path).summary["latest_failed_remesh"]
+    monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: False)
+    longer = {**SHORT, "time": {"step": 0.004, "end": 0.028}}
+    resumed = rigidfluid.run(falling_disk(**longer), tmp_path, resume=True).summary
+    assert resumed["latest_failed_remesh"] == told is not None
 
 
 def test_a_body_without_any_wall_has_no_gap(tmp_path):

@@ -18,6 +18,7 @@ from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
 from rigidfluid.checks.static_load import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
+from rigidfluid.checks.tolerance import to_a_tolerance
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray
@@ -92,12 +93,13 @@ def check(scene: Scene) -> Report:
         scene = parts.scene
         start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
-        return Report(scene.name, tuple(features(system)), tuple(_rows(scene, system, start)), tuple(found))
+        return Report(scene.name, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found))
 
 
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
+    yield from to_a_tolerance(scene.time)
     mesh = scene.mesh if system.backend.needs_mesh else None
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

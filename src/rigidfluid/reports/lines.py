@@ -106,6 +106,15 @@ def energy_plot(results: Results) -> Figure:
     return figure
 
 
+def step_plot(results: Results) -> Figure:
+    """How long each step is."""
+    figure, (axes,) = time_panels(1)
+    axes.step(results.time[1:], np.diff(results.time), where="pre", color=BLUE)
+    axes.set_yscale("log")
+    axes.set_ylabel("step [time]")
+    return figure
+
+
 def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArray]:
     """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R as in the summary."""
     fluid = results.scene.fluid

@@ -87,7 +87,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     Their facets are kept too, except that those too long for the gap they face are bisected first. Where that would
     invert a cell, the cells are improved around the unbisected facets before. Of those that still do not fit after
     ROUNDS of it, the ones within LONGEST_EDGE stay. MMG knows the wanted size at the vertices of the mesh that it is
-    given alone: where that is far too coarse, it is given its own mesh again.
+    given alone, and sometimes leaves a sliver at a flat wall: where its mesh is far too coarse or has a bad cell, it is
+    given that mesh again.
 
     Parameters
     ----------
@@ -120,9 +121,11 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     surroundings = bodies, pose, domain, walls, sizes
     new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at)
     for _ in range(ROUNDS):
-        if longest_relative_edge(new, size_at) <= LONGEST_EDGE and not len(long_edges(new, *surroundings, LONGEST)[0]):
+        well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
+        if well_shaped and not len(long_edges(new, *surroundings, LONGEST)[0]):
             break
         new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at)
+    check_mesh(new, quality=WORST_QUALITY)
     excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
         found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
@@ -157,7 +160,7 @@ def remeshed_once(
     outer = ~on_kept_surfaces(made, bodies, domain)
     restored = with_kept_facets(made, outer, mesh, kept, given.points)
     new = orient(put_back(restored, bodies, domain, curved=False))
-    check_mesh(new, quality=WORST_QUALITY)
+    check_mesh(new, quality=0.0)
     before, after = (float(np.sum(cell_volumes(m.points, m.cells))) for m in (mesh, new))
     if abs(after - before) > 1e-12 * before:
         raise MeshError("mesh", f"a volume of {after!r} after re-meshing", f"{before!r} as before", REMEDY)

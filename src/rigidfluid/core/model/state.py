@@ -45,10 +45,11 @@ class FreeMotions:
 class ErrorEstimate:
     """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
     infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
-    once. The greatest so far, or expected: ``speed`` of a free body [length/time], kinetic ``energy`` of all
-    [energy]."""
+    once; ``level``: of the latest one without an impact. The greatest so far, or expected: ``speed`` of a free body
+    [length/time], kinetic ``energy`` of all [energy]."""
 
     steps: int
+    level: int
     error: float
     with_contacts: float
     speed: float

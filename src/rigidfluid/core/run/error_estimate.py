@@ -46,7 +46,13 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     """
     before, masses = state.estimate or _expected(system), _Masses(system, time, candidate)
     speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))
-    after = replace(before, steps=before.steps + 1, speed=speed, energy=max(before.energy, candidate.ledger.kinetic))
+    after = replace(
+        before,
+        steps=before.steps + 1,
+        level=before.level if candidate.level is None or candidate.impact == candidate.tick else candidate.level,
+        speed=speed,
+        energy=max(before.energy, candidate.ledger.kinetic),
+    )
     if after.steps <= UNSEEN or _is_on_new_mesh(state) or state.past is None or candidate.past is None:
         return after
     size, previous = candidate.past.step, state.past.step
@@ -95,7 +101,7 @@ def _expected(system: System) -> ErrorEstimate:
     free = ~system.controlled
     speed, added = system.loads.speed[free], np.trace(system.added_mass[free], axis1=1, axis2=2) / system.dimension
     energy = 0.5 * float((system.mass[free] + added) @ speed**2)
-    return ErrorEstimate(0, math.inf, math.inf, float(speed.max(initial=0.0)), energy)
+    return ErrorEstimate(0, 0, math.inf, math.inf, float(speed.max(initial=0.0)), energy)
 
 
 def _ratio(value: float, scale: float) -> float:

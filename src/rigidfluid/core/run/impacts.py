@@ -19,8 +19,12 @@ HALVINGS = 3
 
 
 def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
-    """Whether a step of this ``level`` is to be halved for what an impact on its ``path`` would lose."""
-    return level < HALVINGS and path.friction > TOLERATED * state.ledger.put_in
+    """Whether a step of this ``level`` is to be halved for what an impact on its ``path`` would lose.
+
+    Halvings count from the nominal step, or from what a tolerance made of it before the impact.
+    """
+    before = 0 if state.estimate is None else state.estimate.level
+    return level < before + HALVINGS and path.friction > TOLERATED * state.ledger.put_in
 
 
 def impact_tick(state: State, path: BodyStep, candidate: State) -> int | None:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
     from rigidfluid.core.model.types import FluidProblem
+    from rigidfluid.core.scene.scene import MeshTable
 
 
 @dataclass(frozen=True)
@@ -23,13 +24,15 @@ class Feature:
     why: str
 
 
-def features(system: System) -> Iterator[Feature]:
+def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     """What is on, what is off, and why.
 
     Parameters
     ----------
     system : System
         What was built from the scene.
+    mesh : MeshTable or None
+        Of the scene.
 
     Yields
     ------
@@ -42,7 +45,7 @@ def features(system: System) -> Iterator[Feature]:
     else:
         yield Feature("fluid", True, f"backend {backend.name!r}")
         yield from _fluid(problem)
-    yield from _mesh(system)
+    yield from _mesh(system, mesh)
     yield from _contact(system)
     yield _count("controlled motion", system.controlled, "fixed or prescribed")
 
@@ -55,7 +58,7 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     yield Feature("pressure fixed by a constraint", not outlets, why)
 
 
-def _mesh(system: System) -> Iterator[Feature]:
+def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     backend = type(system.backend)
     yield Feature(
         "mesh", backend.needs_mesh, f"backend {backend.name!r} needs {'one' if backend.needs_mesh else 'none'}"
@@ -63,6 +66,18 @@ def _mesh(system: System) -> Iterator[Feature]:
     if backend.needs_mesh:
         turning = np.array([body.radius is None for body in system.bodies])
         yield _count("rotation of the mesh", turning, "no balls")
+    if backend.needs_mesh and mesh is not None:
+        yield Feature("boxes of finer cells", bool(mesh.refine), f"[[mesh.refine]] names {len(mesh.refine) or 'none'}")
+        yield _wake(mesh)
+        age = mesh.remesh_every
+        why = "mesh.remesh_every is not given" if age is None else f"mesh.remesh_every is {age:g}"
+        yield Feature("re-meshing by age", age is not None, why)
+
+
+def _wake(mesh: MeshTable) -> Feature:
+    wake = mesh.wake
+    why = "no table [mesh.wake]" if wake is None else f"cells of {wake.size:g} where bodies were for {wake.time:g}"
+    return Feature("finer cells in wakes", wake is not None, why)
 
 
 def _contact(system: System) -> Iterator[Feature]:

@@ -18,7 +18,7 @@ from rigidfluid.testing.fluid.boxes import (
     renumbered,
     samples,
 )
-from rigidfluid.testing.fluid.exact import DENSITY, LinearFlow, Waves, enclosed, problem
+from rigidfluid.testing.fluid.exact import DENSITY, LinearFlow, enclosed, problem
 from rigidfluid.testing.fluid.flow import Flow, components, figures
 
 INSTANT = 1e-6
@@ -65,16 +65,15 @@ class TransferContract(FluidContract):
         assert np.abs(wrench).max() < 10.0 * before
 
     def test_the_energy_lost_is_told(self, dimension: int) -> None:
-        """What is told is the difference of ½ ρ ∫ |u|² on the two meshes."""
-        exact = Waves(dimension)
-        old, new = box(dimension, 4), box(dimension, 3)
-        flow = self.empty(enclosed(dimension, exact.velocity, exact.source), old).after(None).after(0.1)
+        """What is told is the difference of ½ ρ ∫ |u|² on the two meshes, of waves that the new one cannot hold."""
+        old, new = box(dimension, 4), box(dimension, 2)
+        flow = self.empty(enclosed(dimension, _nothing, _short_waves), old).after(0.1)
         before = _energy(flow, old)
         self.assert_close(flow.advance.kinetic_energy, before, scale=before)
         mesh = self.make_mesh(new)
         fluid, lost = flow.backend.transfer(flow.fluid, flow.mesh, mesh)
         after = _energy(replace(flow, fluid=fluid, mesh=mesh), new)
-        assert abs(before - after) > 1e-5 * before
+        assert before - after > 0.1 * before
         self.assert_close(lost, before - after, scale=before)
 
     def test_bodies_at_rest_leave_the_fluid_at_rest(self, dimension: int) -> None:
@@ -104,6 +103,16 @@ class TransferContract(FluidContract):
         mesh = reference if shift is None else replace(reference, points=carried(reference.points, shift))
         fluid, _ = flow.backend.transfer(flow.fluid, flow.mesh, mesh)
         return replace(flow, fluid=fluid, mesh=mesh, reference=reference)
+
+
+def _nothing(time: float, points: FloatArray) -> FloatArray:
+    """No velocity."""
+    return np.zeros_like(points)
+
+
+def _short_waves(time: float, points: FloatArray) -> FloatArray:
+    """A force along x that is zero at all nodes of a box of two cells along each edge."""
+    return np.asarray(np.sin(4.0 * np.pi * points[:, 1:2]) * np.eye(points.shape[1])[0])
 
 
 def _energy(flow: Flow, whole: Mesh) -> float:

@@ -1,0 +1,40 @@
+"""Can steps become as short as a tolerance of their error may ask for?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor, log2
+
+from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.core.run.initial_state import START_LEVEL
+from rigidfluid.core.scene.scene import TimeTable
+
+QUESTION = "tolerance"
+
+
+def to_a_tolerance(time: TimeTable) -> Iterator[Finding]:
+    """Compare the shortest step with the longest, where the scene has a tolerance.
+
+    Parameters
+    ----------
+    time : TimeTable
+        Steps and tolerance.
+
+    Yields
+    ------
+    Finding
+        One with a tolerance: a warning where there are fewer halvings than the first step takes.
+    """
+    if time.tolerance is None:
+        return
+    halvings = floor(log2(time.step / time.shortest) + 1e-9)
+    found = {"tolerance": time.tolerance, "longest": time.step, "shortest": time.shortest, "halvings": halvings}
+    text = f"steps are between {figure(time.shortest)} and {figure(time.step)}"
+    text += f", by a local error of at most {figure(time.tolerance)}"
+    if halvings >= START_LEVEL:
+        yield Finding("note", QUESTION, (), text, found=found)
+        return
+    enough = {"shortest": time.step / 2**START_LEVEL}
+    text += f"; {halvings} halvings are fewer than the {START_LEVEL} of the first step"
+    remedy = f"Set time.shortest to {at_most(enough['shortest'])} or less, or leave it out."
+    yield Finding("warning", QUESTION, (), text, remedy, found, enough)
