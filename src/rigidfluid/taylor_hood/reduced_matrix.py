@@ -51,7 +51,7 @@ def _arrays(matrix: sparse.csr_array) -> tuple[Any, Any, Any]:
 
 def _ones(matrix: sparse.csr_array) -> sparse.csr_array:
     """Sums of products of such do not cancel."""
-    return sparse.csr_array((np.ones(matrix.nnz), matrix.indices, matrix.indptr), shape=matrix.shape)
+    return sparse.csr_array((np.ones(matrix.nnz, dtype=np.float32), matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
 def _blocks(constraint: Constraint) -> sparse.csr_array:

@@ -108,11 +108,12 @@ class CompiledAssembly:
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension
         velocity = (n.cell_nodes[:, :, None] * d + np.arange(d)).reshape(len(n.cells), -1)
-        unknowns = np.concatenate([velocity, n.nodes * d + n.cells], axis=1)
+        unknowns = np.concatenate([velocity, n.nodes * d + n.cells], axis=1).astype(np.int32)
         width = unknowns.shape[1]
         rows = np.repeat(unknowns, width, axis=1).ravel()
         columns = np.tile(unknowns, (1, width)).ravel()
-        pattern = sparse.coo_array((np.ones(len(rows)), (rows, columns)), shape=(n.unknowns,) * 2).tocsr()
+        ones = np.ones(len(rows), dtype=np.int8)
+        pattern = sparse.coo_array((ones, (rows, columns)), shape=(n.unknowns,) * 2).tocsr()
         pattern.sort_indices()
         self._indptr = pattern.indptr.astype(np.int32)
         self._indices = pattern.indices.astype(np.int32)
