@@ -71,6 +71,15 @@ def test_what_an_impact_changes_is_no_error_and_stays_visible(run):
     assert estimated(run, 0.1, 0.1, jump=30.0).error == pytest.approx(hit.with_contacts)
 
 
+def test_what_impacts_may_do_to_the_fluid_is_no_error_of_it_either(run, monkeypatch):
+    """They give their energy to the bodies' own masses at most."""
+    mass, jump, smooth = run.system.mass[1], 30.0, 1e-2
+    known = 0.5 * mass * jump**2
+    monkeypatch.setattr(run.system.backend, "prediction_error", lambda *_: (known**0.5 + smooth**0.5) ** 2)
+    hit = estimated(run, 0.1, 0.1, jump=jump, force=jump * mass / 0.1)
+    assert hit.error == pytest.approx(5.0 / 12.0 * math.sqrt(smooth / ENERGY))
+
+
 def test_the_scales_are_the_greatest_so_far(run):
     fast = estimated(run, 0.1, 0.1, jump=98.0)
     assert fast.speed == pytest.approx(math.hypot(100.0, 5.0 * 0.125 / math.sqrt(2.0)))
