@@ -38,6 +38,7 @@ ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "validation"
 sys.path.append(str(ROOT / "tests" / "support"))
 
+import adaptive_step as adaptive  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
@@ -621,7 +622,51 @@ HUNDRED_DISKS = """`scenes/hundred_disks.toml` as shipped: the paper's law, box 
 {stages}"""
 
 
+def adaptive_step() -> None:
+    """Errors over CPU seconds, with fixed steps and with tolerances, of two scenes."""
+    figure, tables = Figure(figsize=(12.0, 7.0), layout="constrained"), []
+    cases = {"falling disk": adaptive.FALLING, "flow started at once": adaptive.STARTED}
+    for panels, (title, case) in zip(figure.subplots(2, 3), cases.items(), strict=True):
+        reference, *runs = adaptive.outcomes(case)
+        errors = [case.errors(run.history, reference.history) for run in runs]
+        fixed, free = slice(len(case.steps)), slice(len(case.steps), None)
+        shown = ("velocity, rms", "passage, greatest [s]") if case is adaptive.FALLING else list(errors[0])[:2]
+        for axes, name in zip(panels, shown, strict=False):
+            for where, style, label in ((fixed, "o-", "fixed steps"), (free, "s-", "tolerances")):
+                seconds = [run.seconds for run in runs[where]]
+                axes.loglog(seconds, [found[name] for found in errors[where]], style, label=label)
+            axes.set(xlabel="CPU seconds", ylabel=f"error of {name}", title=title)
+        for run in runs[free]:
+            times = run.history.energy["time"]
+            panels[-1].step(times[1:], np.diff(times), where="pre", label=run.label)
+        panels[-1].set(xlabel="time [s]", ylabel="step [s]", yscale="log", title=title)
+        panels[0].legend()
+        panels[-1].legend()
+        rows = [step_row(*pair) for pair in zip(runs, errors, strict=True)]
+        tables.append(table(("", "CPU s", "steps", "rejected", *errors[0], "created [%]", "lost [%]"), rows))
+    figure.savefig(OUT / "adaptive_step.png", dpi=100)
+    text = ADAPTIVE_STEP.format(falling=tables[0], started=tables[1])
+    command = "OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 python docs/make_validation.py adaptive_step"
+    write_page("adaptive_step", "Steps by a tolerance", command, text)
+
+
+def step_row(run: adaptive.Outcome, errors: dict[str, float]) -> tuple[str, ...]:
+    """A run in the table: what it cost, its errors, and its balance of energy."""
+    summary = run.history.summary
+    cost = f"{run.seconds:.1f}", f"{summary['steps']}", f"{summary['rejected_steps']}"
+    balance = (f"{100.0 * summary['energy'][name]:.3f}" for name in ("created", "lost"))
+    return run.label, *cost, *(f"{error:.1e}" for error in errors.values()), *balance
+
+
+ADAPTIVE_STEP = """TEXT
+
+{falling}
+
+{started}"""
+
+
 CASES = {
+    "adaptive_step": adaptive_step,
     "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,
     "dfg_cylinder": dfg_cylinder,
