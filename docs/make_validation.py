@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +22,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import rigidfluid
+from rigidfluid.core.mesh.coarsening import relative_sizes
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.output.history import History
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepError
 from rigidfluid.evaluation.crosscheck import crosscheck
 from rigidfluid.evaluation.crosscheck.comparison import PARTED
@@ -34,6 +38,7 @@ ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "validation"
 sys.path.append(str(ROOT / "tests" / "support"))
 
+import adaptive_step as adaptive  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
@@ -179,6 +184,103 @@ def coarser_cylinders() -> Iterable[tuple[str, ...]]:
             history, _ = run("dfg_cylinder.toml", mesh)
             off = [f"{values[-1] / reference - 1.0:+.4%}" for values, reference in cylinder_figures(history).values()]
             yield f"{size_body:g}", str(order), str(history.summary["unknowns"]), *off
+
+
+SETTLING: dict[float, list[str]] = {
+    1.5: [],
+    3.0: ["body.0.density=3.0", "time.step=0.0025", "time.end=7.8", "output.every=0.5"],
+}
+"""Of the cylinder's density: what differs from the scene as shipped."""
+WACHS_2009 = {1.5: (259.5, 1.785), 3.0: (522.0, 1.764)}
+"""Reynolds number and drag coefficient of the settled cylinder."""
+
+
+def settling_cylinder() -> None:
+    """A cylinder leaves the wall of a long channel; whether the mesh keeps up with it."""
+    with ProcessPoolExecutor(len(SETTLING)) as pool:
+        runs = dict(zip(SETTLING, pool.map(settled, SETTLING), strict=True))
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
+    path, speed = figure.subplots(1, 2)
+    path.set(xlabel="fallen [diameters]", ylabel="from the wall [diameters]")
+    speed.set(xlabel="fallen [diameters]", ylabel="Reynolds number")
+    for (density, (history, _)), colour in zip(runs.items(), ("C0", "C1"), strict=True):
+        bodies = history.bodies
+        fallen = bodies["y"][0] - bodies["y"]
+        path.plot(fallen, bodies["x"], colour, label=f"density {density:g}")
+        speed.plot(fallen, -bodies["vy"] / NU, colour)
+        speed.axhline(WACHS_2009[density][0], color=colour, ls=":")
+    path.axhline(2.0, color="grey", ls=":")
+    path.legend()
+    figure.savefig(OUT / "settling_cylinder.png", dpi=120)
+    columns = {f"density {density:g}": settling_figures(density, *found) for density, found in runs.items()}
+    names = next(iter(columns.values()))
+    rows = [(name, *(column[name] for column in columns.values())) for name in names]
+    text = SETTLING_CYLINDER.format(figures=table(("figure", *columns), rows))
+    write_page("settling_cylinder", "A settling cylinder", "python docs/make_validation.py settling_cylinder", text)
+
+
+NU = 0.008088
+
+
+def settled(density: float) -> tuple[History, np.ndarray]:
+    """A run, and every ten steps of its cells the mean factor off the wanted size and the coarsest relative size."""
+    scene = rigidfluid.load_scene(ROOT / "scenes" / "settling_cylinder.toml", SETTLING[density])
+    assert scene.mesh is not None
+    sizes, rows = Sizes(scene.mesh.size, scene.mesh.size_body, scene.mesh.growth), []
+
+    def look(now: Simulation) -> None:
+        mesh = now.state.mesh
+        if mesh is not None and now.state.count % 10 == 0:
+            relative = relative_sizes(mesh.points, mesh.cells, now.system.bodies, now.state.pose, sizes)
+            rows.append((np.maximum(relative, 1.0 / relative).mean(), relative.max()))
+
+    simulation, start = Simulation(scene), time.process_time()
+    simulation.observe(look)
+    simulation.go()
+    simulation.finish("complete")
+    simulation.history.summary["cpu"] = time.process_time() - start
+    return simulation.history, np.array(rows)
+
+
+def settling_figures(density: float, history: History, sizes: np.ndarray) -> dict[str, str]:
+    """What the page tells of one run; settled is the second half of the way."""
+    bodies, summary = history.bodies, history.summary
+    fallen = bodies["y"][0] - bodies["y"]
+    late = fallen > 0.5 * fallen[-1]
+    speed = np.ptp(fallen[late]) / np.ptp(bodies["time"][late])
+    reynolds, drag = WACHS_2009[density]
+    found = 0.5 * np.pi * (density - 1.0) * 10.0 / speed**2
+    lost, put = history.energy["residual"], summary["energy"]["put_in"]
+    return {
+        "fallen [diameters]": f"{fallen[-1]:.1f}",
+        "Reynolds number, settled (Wachs 2009)": f"{speed / NU:.1f} ({reynolds:g}, {speed / NU / reynolds - 1:+.1%})",
+        "drag coefficient, settled (Wachs 2009)": f"{found:.3f} ({drag:g}, {found / drag - 1:+.1%})",
+        "from the wall at the start, and settled [diameters]": (
+            f"{bodies['x'][0]:g}, {bodies['x'][late].min():.2f} … {bodies['x'][late].max():.2f}"
+        ),
+        "cells off their wanted size, mean over the mesh: mean and highest of the run": (
+            f"{sizes[:, 0].mean():.2f}, {sizes[:, 0].max():.2f}"
+        ),
+        "coarsest cell of the run over its wanted size": f"{sizes[:, 1].max():.2f}",
+        "energy unaccounted for, largest": f"{np.abs(lost).max() / put:.2%}",
+        "energy lost by re-meshing": f"{summary['energy']['transfer_loss'] / put:.1e}",
+        "new meshes, and such that could not be made": f"{summary['remeshes']}, {summary['failed_remeshes']}",
+        "steps": f"{summary['steps']}",
+        "unknowns at the end": f"{summary['unknowns']}",
+        "CPU time of one thread [s]": f"{summary['cpu']:.0f}",
+    }
+
+
+SETTLING_CYLINDER = """`scenes/settling_cylinder.toml`: a cylinder is let go in a channel of four diameters, half a
+diameter from its wall, and falls thirty diameters. Published are the settled Reynolds numbers and drag coefficients
+(Wachs, Comput. Fluids 38 (2009) 1608, after Yu et al., J. Non-Newtonian Fluid Mech. 104 (2002) 87), dotted on the
+right; the cylinder leaves the wall, and sways about a place nearer to the middle. Settled is here the second half of
+the way.
+
+{figures}
+
+A cell's relative size is the edge of a regular triangle of its area over the size wanted at its centre, gaps left out;
+off by a factor, it may be too coarse or too fine."""
 
 
 def lammps() -> None:
@@ -520,10 +622,55 @@ HUNDRED_DISKS = """`scenes/hundred_disks.toml` as shipped: the paper's law, box 
 {stages}"""
 
 
+def adaptive_step() -> None:
+    """Errors over CPU seconds, with fixed steps and with tolerances, of two scenes."""
+    figure, tables = Figure(figsize=(12.0, 7.0), layout="constrained"), []
+    cases = {"falling disk": adaptive.FALLING, "flow started at once": adaptive.STARTED}
+    for panels, (title, case) in zip(figure.subplots(2, 3), cases.items(), strict=True):
+        reference, *runs = adaptive.outcomes(case)
+        errors = [case.errors(run.history, reference.history) for run in runs]
+        fixed, free = slice(len(case.steps)), slice(len(case.steps), None)
+        shown = ("velocity, rms", "passage, greatest [s]") if case is adaptive.FALLING else list(errors[0])[:2]
+        for axes, name in zip(panels, shown, strict=False):
+            for where, style, label in ((fixed, "o-", "fixed steps"), (free, "s-", "tolerances")):
+                seconds = [run.seconds for run in runs[where]]
+                axes.loglog(seconds, [found[name] for found in errors[where]], style, label=label)
+            axes.set(xlabel="CPU seconds", ylabel=f"error of {name}", title=title)
+        for run in runs[free]:
+            times = run.history.energy["time"]
+            panels[-1].step(times[1:], np.diff(times), where="pre", label=run.label)
+        panels[-1].set(xlabel="time [s]", ylabel="step [s]", yscale="log", title=title)
+        panels[0].legend()
+        panels[-1].legend()
+        rows = [step_row(*pair) for pair in zip(runs, errors, strict=True)]
+        tables.append(table(("", "CPU s", "steps", "rejected", *errors[0], "created [%]", "lost [%]"), rows))
+    figure.savefig(OUT / "adaptive_step.png", dpi=100)
+    text = ADAPTIVE_STEP.format(falling=tables[0], started=tables[1])
+    command = "OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 python docs/make_validation.py adaptive_step"
+    write_page("adaptive_step", "Steps by a tolerance", command, text)
+
+
+def step_row(run: adaptive.Outcome, errors: dict[str, float]) -> tuple[str, ...]:
+    """A run in the table: what it cost, its errors, and its balance of energy."""
+    summary = run.history.summary
+    cost = f"{run.seconds:.1f}", f"{summary['steps']}", f"{summary['rejected_steps']}"
+    balance = (f"{100.0 * summary['energy'][name]:.3f}" for name in ("created", "lost"))
+    return run.label, *cost, *(f"{error:.1e}" for error in errors.values()), *balance
+
+
+ADAPTIVE_STEP = """TEXT
+
+{falling}
+
+{started}"""
+
+
 CASES = {
+    "adaptive_step": adaptive_step,
     "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,
     "dfg_cylinder": dfg_cylinder,
+    "settling_cylinder": settling_cylinder,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
     "lammps": lammps,

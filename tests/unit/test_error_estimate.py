@@ -71,6 +71,15 @@ def test_what_an_impact_changes_is_no_error_and_stays_visible(run):
     assert estimated(run, 0.1, 0.1, jump=30.0).error == pytest.approx(hit.with_contacts)
 
 
+def test_what_impacts_may_do_to_the_fluid_is_no_error_of_it_either(run, monkeypatch):
+    """They give their energy to the bodies' own masses at most."""
+    mass, jump, smooth = run.system.mass[1], 30.0, 1e-2
+    known = 0.5 * mass * jump**2
+    monkeypatch.setattr(run.system.backend, "prediction_error", lambda *_: (known**0.5 + smooth**0.5) ** 2)
+    hit = estimated(run, 0.1, 0.1, jump=jump, force=jump * mass / 0.1)
+    assert hit.error == pytest.approx(5.0 / 12.0 * math.sqrt(smooth / ENERGY))
+
+
 def test_the_scales_are_the_greatest_so_far(run):
     fast = estimated(run, 0.1, 0.1, jump=98.0)
     assert fast.speed == pytest.approx(math.hypot(100.0, 5.0 * 0.125 / math.sqrt(2.0)))
@@ -80,13 +89,13 @@ def test_the_scales_are_the_greatest_so_far(run):
     assert estimate_error(run.system, 1.0, at(run, 0.9, 0.1, 0.1), candidate).energy == 2.0 * ENERGY
 
 
-def test_nothing_is_known_of_the_first_two_steps(run):
+def test_nothing_is_known_of_the_first_three_steps(run):
     state, candidate = at(run, 0.9, 0.1, 0.1), at(run, 1.0, 0.1, 0.1)
     found = []
-    for _ in range(3):
+    for _ in range(4):
         estimate = found[-1] if found else None
         found.append(estimate_error(run.system, 1.0, replace(state, estimate=estimate), candidate))
-    assert [one.is_unknown for one in found] == [True, True, False]
+    assert [one.is_unknown for one in found] == [True, True, True, False]
     assert found[0].speed == pytest.approx(float(run.system.loads.speed[:2].max()))
 
 

@@ -14,6 +14,7 @@ from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.errors import SceneError
+from rigidfluid.marching.exact import put_back
 from rigidfluid.marching.field import march_from
 from rigidfluid.marching.shared import SharedMesh
 from rigidfluid.marching.topology import Topology
@@ -125,7 +126,9 @@ def test_the_band_ends_where_that_of_the_whole_does(dimension, seed):
         part = part_of(mesh, ranks)
         shared = SharedMesh(part)
         points, space = shared.points(part), shared.part.workspace
-        shared.march(points, shared.neighbours(points), [0], 0.1, 0.5, space)
+        [march] = shared.march(points, shared.neighbours(points), [[0]], 0.1, 0.5)
+        if march is not None:
+            put_back(space, *march[:4])
         inside = slice(len(part.points))
         return part.part.vertices, space.state[inside] == KNOWN, space.key[inside]
 
@@ -145,10 +148,29 @@ def test_ranks_exchange_what_is_new(monkeypatch):
         return shared.exchanges, len(shared.part.border)
 
     (exchanges, border), *_ = on_ranks(2, work)
-    posts = [item for item in sent if isinstance(item, tuple) and len(item) == 3]
+    lists = [item for item in sent if isinstance(item, list) and isinstance(item[0], tuple)]
+    posts = [item for item in lists if isinstance(item[0][0], bool)]
     assert len(posts) == 2 * exchanges
-    assert len(bodies) <= exchanges <= 4 * len(bodies)  # the last one of each march finds nothing
-    assert sum(len(vertices) for vertices, _, _ in posts) <= len(bodies) * border
+    assert 2 <= exchanges <= 4  # for all bodies together; the last one finds nothing
+    keys = np.concatenate([key for post in posts for _, (_, _, key, _) in post])
+    assert 0 < len(keys) <= len(bodies) * border
+    assert keys.min() > 0.0  # what is on a body is known to all
+
+
+def test_a_body_in_another_part_is_not_marched_from():
+    bodies, _, _, mesh = random_ellipsoids(2, 0)
+
+    def work(ranks):
+        part = part_of(mesh, ranks)
+        shared = SharedMesh(part)
+        points = shared.points(part)
+        marches = shared.march(points, shared.neighbours(points), [[body] for body in range(len(bodies))], 0.01, 0.5)
+        held = [np.isin(body, part.markers) for body in range(len(bodies))]
+        return [march is not None for march in marches], held
+
+    for marched, held in on_ranks(4, work):
+        assert sum(marched) < len(bodies)
+        assert all(np.array(marched)[held])
 
 
 def test_where_nothing_is_near_nobody_is_asked(monkeypatch):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from math import inf, sqrt
 from typing import NamedTuple
@@ -15,10 +15,10 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of, wall_radii
 from rigidfluid.errors import SceneError
-from rigidfluid.marching.exact import measure, reset
-from rigidfluid.marching.field import Accuracy, Wave, march_from
+from rigidfluid.marching.exact import measure, put_back, reset
+from rigidfluid.marching.field import Accuracy, march_from
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
-from rigidfluid.marching.shared import Gaps, SharedMesh
+from rigidfluid.marching.shared import Gaps, SharedMesh, no_gaps
 from rigidfluid.marching.topology import Numbers, Topology
 from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workers import Workers, same_topology
@@ -32,32 +32,16 @@ TO_CORNER = {2: 0.5, 3: 1.0 / sqrt(3.0)}
 
 
 class _Scope(NamedTuple):
-    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted.
-
-    ``march(surfaces, width, slack, work=...)`` leaves a field in a workspace; ``facets_of(surface)`` are those whose
-    gaps are measured here.
-    """
+    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
 
     topology: Topology
     points: FloatArray
     position: FloatArray
     reach: float
-    march: Callable[..., Wave]
-    facets_of: Callable[[int], Numbers]
 
 
 _Near = tuple[int, list[int]]
 """A body, and the surfaces that may be near it."""
-
-
-class _Touch(NamedTuple):
-    """One contact before it is put into arrays."""
-
-    body_a: int
-    body_b: int
-    gap: float
-    point_a: FloatArray
-    point_b: FloatArray
 
 
 class ContactFinder:
@@ -104,31 +88,43 @@ class ContactFinder:
 
     def find(self, pose: Pose, mesh: Mesh, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap)."""
-        near = self._near(pose.position, reach)
-        touches: list[_Touch] = []
         if mesh.part is not None:
             self._refuse_first_order(mesh.ranks.size)
-        if near:
-            search = self._in_the_whole if mesh.part is None else self._in_parts
-            touches = search(pose.position, mesh, reach, near)
-        return self._contacts(sorted(touches, key=lambda touch: touch[:3]), mesh.points.shape[1])
+        near = self._near(pose.position, reach)
+        if not near:
+            return self._contacts(mesh.points, mesh.facets.astype(np.int32), [])
+        search = self._in_the_whole if mesh.part is None else self._in_parts
+        scope, gaps = search(pose.position, mesh, reach, near)
+        return self._contacts(scope.points, scope.topology.surfaces.facets, gaps)
 
-    def _in_the_whole(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> list[_Touch]:
+    def _in_the_whole(
+        self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
+    ) -> tuple[_Scope, list[Gaps]]:
         topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
-        march = partial(march_from, topology, points, accuracy=self._accuracy)
-        scope = _Scope(topology, points, position, reach, march, topology.facets_of)
-        return self._workers.map(partial(self._touches_of, scope), near)
+        scope = _Scope(topology, points, position, reach)
+        return scope, self._workers.map(partial(self._gaps_of, scope), near)
 
-    def _in_parts(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> list[_Touch]:
+    def _in_parts(
+        self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
+    ) -> tuple[_Scope, list[Gaps]]:
         """As in the whole; each rank measures the facets of its part, and all judge what all have found."""
         if self._shared is None or not same_topology(mesh, self._shared.mesh):
             self._shared = SharedMesh(mesh)
         shared = self._shared
         points, work = shared.points(mesh), shared.part.workspace
-        march = partial(shared.march, points, shared.neighbours(points))
-        scope = _Scope(shared.part.topology, points, position, reach, march, shared.facets_of)
-        found = [gaps for each in near for gaps in self._gaps_of(scope, work, each)]
-        return [touch for gaps in shared.together(found) for touch in self._touches(scope, gaps)]
+        scope = _Scope(shared.part.topology, points, position, reach)
+        near = [(body, close) for body, others in near if (close := self._close(scope, body, others))]
+        sources = [(body,) for body, _ in near]
+        marches = shared.march(points, shared.neighbours(points), sources, *self._band(scope))
+        gaps: list[Gaps] = []
+        for (body, others), march in zip(near, marches, strict=True):
+            if march is None:
+                gaps += [no_gaps(body, other) for other in others]
+                continue
+            put_back(work, *march[:4])
+            gaps += [self._between(scope, work, march.tree, body, other, shared.facets_of(other)) for other in others]
+            reset(work, len(march.vertices), len(march.beyond))
+        return scope, shared.together(gaps) if gaps else gaps
 
     def _refuse_first_order(self, ranks: int) -> None:
         if self._accuracy != "exact":
@@ -148,46 +144,38 @@ class ContactFinder:
             surfaces[body].append(wall.surface)
         return sorted(surfaces.items())
 
-    def _touches_of(self, scope: _Scope, work: Workspace, near: _Near) -> list[_Touch]:
-        return [touch for gaps in self._gaps_of(scope, work, near) for touch in self._touches(scope, gaps)]
+    def _close(self, scope: _Scope, body: int, others: Sequence[int]) -> list[int]:
+        """Of the other surfaces those that have a facet whose bounding box is in reach of the body's ball."""
+        points, facets, (centre, radius) = scope.points, scope.topology.surfaces.facets, self._ball(scope, body)
+        near, facets_of = radius + scope.reach, scope.topology.facets_of
+        return [other for other in others if any_near(points, facets, facets_of(other), centre, near)]
 
     def _gaps_of(self, scope: _Scope, work: Workspace, near: _Near) -> list[Gaps]:
-        body, others = near
-        topology, points, position, reach = scope[:4]
-        ball = position[body], self._bounds[body] * ROUNDED_UP
-        facets = topology.surfaces.facets
-        others = [
-            other for other in others if any_near(points, facets, topology.facets_of(other), ball[0], ball[1] + reach)
-        ]
+        body, others = near[0], self._close(scope, *near)
         if not others:
             return []
-        band = inf if self._whole_domain else reach, TO_CORNER[points.shape[1]]
-        wave = scope.march([body], *band, work=work)
+        topology, points = scope.topology, scope.points
+        wave = march_from(topology, points, [body], *self._band(scope), self._accuracy, work)
         if self._accuracy != "exact":
             measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
-        gaps = [self._between(scope, work, wave.tree, ball, body, other) for other in others]
+        gaps = [self._between(scope, work, wave.tree, body, other, topology.facets_of(other)) for other in others]
         reset(work, wave.touched, wave.beyond)
         return gaps
 
-    def _between(
-        self, scope: _Scope, work: Workspace, tree: Tree, ball: tuple[FloatArray, float], body: int, other: int
-    ) -> Gaps:
-        topology, points, reach = scope.topology, scope.points, scope.reach
-        chosen = scope.facets_of(other)
+    def _between(self, scope: _Scope, work: Workspace, tree: Tree, body: int, other: int, chosen: Numbers) -> Gaps:
+        """Of the facets ``chosen`` of the other surface to the body whose field is in ``work``."""
+        topology, points, reach, several = scope.topology, scope.points, scope.reach, self._several
+        ball, wanted = self._ball(scope, body), topology.seeds([body]).wanted
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
-        wanted = topology.seeds([body]).wanted
-        several = self._several
         facet_gaps(points, topology.surfaces, wanted, tree, *ball, chosen, reach, several, work, gap, partner)
         return Gaps(body, other, chosen, gap, partner)
 
-    def _touches(self, scope: _Scope, gaps: Gaps) -> list[_Touch]:
-        points, facets = scope.points, scope.topology.surfaces.facets
-        touches = []
-        for row in self._best_rows(facets, gaps.facet, gaps.gap):
-            on_body, on_other = np.empty((2, points.shape[1]))
-            nearest_points(points, facets, gaps.partner[row], gaps.facet[row], on_body, on_other)
-            touches.append(_Touch(gaps.body, gaps.other, float(gaps.gap[row]), on_body, on_other))
-        return touches
+    def _ball(self, scope: _Scope, body: int) -> tuple[FloatArray, float]:
+        return scope.position[body], self._bounds[body] * ROUNDED_UP
+
+    def _band(self, scope: _Scope) -> tuple[float, float]:
+        """Width and slack."""
+        return inf if self._whole_domain else scope.reach, TO_CORNER[scope.points.shape[1]]
 
     def _best_rows(self, facets: Numbers, chosen: Numbers, gap: FloatArray) -> list[int]:
         """Where the gap is least: of all, or of each separate place."""
@@ -199,12 +187,16 @@ class ContactFinder:
         rows = [np.flatnonzero(patch == number) for number in range(patch.max() + 1)]
         return [int(row[np.argmin(gap[row])]) for row in rows]
 
-    def _contacts(self, touches: Sequence[_Touch], dimension: int) -> Contacts:
-        columns = list(zip(*touches, strict=True)) or [()] * len(_Touch._fields)
-        shape = (len(touches), dimension)
-        a, b = (np.array(column, dtype=np.int64) for column in columns[:2])
-        gap = np.array(columns[2], dtype=float)
-        point_a, point_b = (np.array(column, dtype=float).reshape(shape) for column in columns[3:])
+    def _contacts(self, points: FloatArray, facets: Numbers, gaps: Sequence[Gaps]) -> Contacts:
+        gaps = [no_gaps(-1, -1), *gaps]
+        rows = [self._best_rows(facets, one.facet, one.gap) for one in gaps]
+        each = np.repeat(np.arange(len(gaps)), [len(best) for best in rows])
+        a, b = np.array([(one.body, one.other) for one in gaps])[each].T
+        chosen = ((one.gap[best], one.partner[best], one.facet[best]) for one, best in zip(gaps, rows, strict=True))
+        gap, partner, facet = map(np.concatenate, zip(*chosen, strict=True))
+        order = np.lexsort((gap, b, a))
+        a, b, gap = a[order], b[order], gap[order]
+        point_a, point_b = nearest_points(points, facets, partner[order], facet[order])
         at_wall, radius_b = b >= len(self._radii), np.empty(len(b))
         radius_b[~at_wall], radius_b[at_wall] = self._radii[b[~at_wall]], wall_radii(self._walls, b[at_wall])
         return Contacts(

@@ -95,3 +95,24 @@ def reset(work, touched, beyond):
         work.state[work.touched[k]] = FAR
     for k in range(1, beyond + 1):
         work.state[work.touched[-k]] = FAR
+
+
+@njit(cache=True, nogil=True)
+def put_aside(work, touched, beyond):
+    """What a march has left, vertices, keys, facets and vertices beyond, and make the workspace free for another."""
+    vertices, outside = work.touched[:touched].copy(), work.touched[len(work.touched) - beyond :].copy()
+    key, facet = work.key[vertices], work.facet[vertices]
+    reset(work, touched, beyond)
+    return vertices, key, facet, outside
+
+
+@njit(cache=True, nogil=True)
+def put_back(work, vertices, key, facet, outside):
+    """Leave the workspace as it was before `put_aside`."""
+    work.touched[: len(vertices)] = vertices
+    for k in range(len(vertices)):
+        vertex = vertices[k]
+        work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, key[k], facet[k]
+    work.touched[len(work.touched) - len(outside) :] = outside
+    for vertex in outside:
+        work.state[vertex] = BEYOND

@@ -87,14 +87,16 @@ def _facet_gap(points, surfaces, wanted, tree, facet, work):
 
 
 @njit(cache=True, nogil=True)
-def nearest_points(points, facets, first, second, on_first, on_second):
-    """Write the nearest points of two facets to ``on_first`` (d,) and ``on_second`` (d,)."""
-    found = facet_to_facet(points, facets, first, second)
-    on_first[:], on_second[:] = 0.0, 0.0
-    for i in range(points.shape[1]):
-        for k in range(points.shape[1]):
-            on_first[k] += found[1 + i] * points[facets[first, i], k]
-            on_second[k] += found[4 + i] * points[facets[second, i], k]
+def nearest_points(points, facets, first, second):
+    """The nearest points (c, d) on the facets ``first`` (c,) and on those ``second`` (c,), pair by pair."""
+    on_first, on_second = np.zeros((2, len(first), points.shape[1]))
+    for pair in range(len(first)):
+        found = facet_to_facet(points, facets, first[pair], second[pair])
+        for i in range(points.shape[1]):
+            for k in range(points.shape[1]):
+                on_first[pair, k] += found[1 + i] * points[facets[first[pair], i], k]
+                on_second[pair, k] += found[4 + i] * points[facets[second[pair], i], k]
+    return on_first, on_second
 
 
 @njit(cache=True, nogil=True)

@@ -1,9 +1,9 @@
-"""One distance field over a mesh in parts, each with its own workspace: for threads here, for ranks in `shared`.
+"""Distance fields over a mesh in parts, each with its own workspace: for threads here, for ranks in `shared`.
 
 Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
 both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from
 there, until nothing is new. As a vertex gets its distance at its first visit, wherever that comes from, the field is
-that of the whole mesh.
+that of the whole mesh. Several fields take their turns on one workspace, so that an exchange serves all of them.
 """
 
 from __future__ import annotations
@@ -11,33 +11,68 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from threading import Barrier, BrokenBarrierError, Lock
+from typing import NamedTuple
 
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
-from rigidfluid.marching.exact import accept, march, reset, seed
-from rigidfluid.marching.field import DistanceField, Wave
+from rigidfluid.marching.exact import accept, march, put_aside, put_back, seed
+from rigidfluid.marching.field import DistanceField
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology
-from rigidfluid.marching.workspace import KNOWN, Workspace, new_workspace
+from rigidfluid.marching.tree import Tree
+from rigidfluid.marching.workspace import Workspace, new_workspace
 
 NOT_REACHED = np.int32(-1)
-"""In place of a facet, where a part has not come to a vertex of its border."""
+"""In place of a facet, where no part has come to a vertex of a border."""
 
-Exchange = Callable[[FloatArray, Numbers], tuple[FloatArray, Numbers] | None]
-"""From squared distance and facet at a part's border to those of any part that has come there; None if none is new."""
+
+class Reached(NamedTuple):
+    """Vertices of a part's border that marches have come to, in any order.
+
+    ``march`` (c,) is the number of the march, ``row`` (c,) the vertex' place in the border, ``key`` (c,) the squared
+    distance [length²], ``facet`` (c,) the nearest.
+    """
+
+    march: IntArray
+    row: IntArray
+    key: FloatArray
+    facet: Numbers
+
+    def at(self, chosen: IntArray) -> Reached:
+        """Some of them."""
+        return Reached(self.march[chosen], self.row[chosen], self.key[chosen], self.facet[chosen])
+
+
+Exchange = Callable[[Reached], Reached | None]
+"""From what a part has reached since the last exchange to what others have, at its border; None if nobody has."""
+
+
+class Halted(NamedTuple):
+    """A march that has left its workspace to others: ``vertices`` in the band with their ``key`` and ``facet``, those
+    ``beyond`` it, the ``tree`` of its facets."""
+
+    vertices: Numbers
+    key: FloatArray
+    facet: Numbers
+    beyond: Numbers
+    tree: Tree
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
     """Some cells of a mesh: ``topology`` in numbers of its own, ``vertices`` (n,) their numbers in the whole mesh.
 
-    ``border`` (s,) are its own numbers of vertices that other parts hold as well.
+    The first ``inside`` vertices are those of its cells. ``border`` (s,) are its own numbers of vertices that other
+    parts hold as well, ``border_row`` (n,) the place of each vertex there, or -1.
     """
 
     topology: Topology
     vertices: IntArray
+    inside: int
     border: Numbers
+    border_row: Numbers
     workspace: Workspace
 
 
@@ -95,7 +130,9 @@ def part_of(cells: IntArray, facets: IntArray, markers: IntArray, across: IntArr
 
     topology = Topology(own(cells), own(facets), markers, len(vertices), own(across).astype(np.int32))
     border = np.flatnonzero(np.isin(inside, shared)).astype(np.int32)
-    return Part(topology, vertices, border, new_workspace(len(vertices)))
+    border_row = np.full(len(vertices), -1, np.int32)
+    border_row[border] = np.arange(len(border))
+    return Part(topology, vertices, len(inside), border, border_row, new_workspace(len(vertices)))
 
 
 def march_part(
@@ -126,41 +163,99 @@ def march_part(
     Only exact: `march_first_order` fixes each vertex once, in the order of the whole mesh, and on obtuse cells its
     values depend on that order.
     """
-    work = part.workspace
-    wave = march_part_from(part, points, part.topology.neighbours, surfaces, band_width, 0.0, work, exchange)
-    local = work.touched[: wave.touched].copy()
-    field = DistanceField(part.vertices[local].astype(np.int32), np.sqrt(work.key[local]), work.facet[local])
-    reset(work, wave.touched, wave.beyond)
-    return field
+    chosen = [tuple(surfaces)]
+    [march] = march_side_by_side(part, points, part.topology.neighbours, chosen, (band_width, 0.0), exchange)
+    if march is None:
+        return DistanceField(np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
+    return DistanceField(part.vertices[march.vertices].astype(np.int32), np.sqrt(march.key), march.facet)
 
 
-def march_part_from(
+def march_side_by_side(
     part: Part,
     points: FloatArray,
     neighbours: Neighbours,
-    surfaces: Iterable[int],
-    band_width: float,
-    slack: float,
-    work: Workspace,
+    sources: Sequence[Sequence[int]],
+    band: tuple[float, float],
     exchange: Exchange,
-) -> Wave:
-    """March and leave the field in ``work``, as `march_from` does with the whole mesh.
+) -> list[Halted | None]:
+    """This part of several fields of the whole mesh, each from its own surfaces.
 
-    With ``slack`` the ``neighbours`` must know the longest edges elsewhere, at the vertices of the border.
+    Parameters
+    ----------
+    part : Part
+        From `split`.
+    points : (n, d) array
+        The part's own vertices, in the order of ``part.vertices`` [length].
+    neighbours : Neighbours
+        Of the vertices; with a slack they must know the longest edges elsewhere, at the border.
+    sources : sequence of sequences of int
+        Markers of the surfaces to measure from, for each field.
+    band : (float, float)
+        Width and slack of the band, as of `march_from` [length, 1].
+    exchange : callable
+        Called by all parts together, once a round for all fields.
+
+    Returns
+    -------
+    list of Halted or None
+        One for each field; None where it does not come into this part.
     """
-    topology = part.topology
-    seeds = topology.seeds(surfaces)
-    touched, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
-    surface, band = (topology.surfaces, seeds.wanted, tree), (band_width, slack)
-    first = beyond = 0
+    marches: list[Halted | None] = [None] * len(sources)
+    due = [(number, _NOTHING) for number, surfaces in enumerate(sources) if _starts_in(part, surfaces)]
     while True:
-        counts = first, touched, beyond
-        touched, beyond = march(points, neighbours, *surface, *band, work, *counts)
-        reached = work.state[part.border] == KNOWN
-        found = exchange(work.key[part.border], np.where(reached, work.facet[part.border], NOT_REACHED))
+        fresh = [_NOTHING]
+        for number, news in due:
+            march, rows, first = _go_on(part, points, neighbours, sources[number], band, marches[number], news)
+            marches[number] = march
+            fresh.append(Reached(np.full(len(rows), number), rows, march.key[first], march.facet[first]))
+        found = exchange(Reached(*map(np.concatenate, zip(*fresh, strict=True))))
         if found is None:
-            return Wave(touched, beyond, tree)
-        first, touched = touched, accept(part.border, *found, work, touched)
+            return marches
+        due = _by_march(found)
+
+
+_NOTHING = Reached(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0), np.empty(0, np.int32))
+
+
+def _starts_in(part: Part, surfaces: Sequence[int]) -> bool:
+    """Whether a vertex of the surfaces is in the part's cells; else a march from them has nowhere to go."""
+    corners = part.topology.surfaces.facets[part.topology.seeds(surfaces).facets]
+    return bool((corners < part.inside).any())
+
+
+def _go_on(
+    part: Part,
+    points: FloatArray,
+    neighbours: Neighbours,
+    surfaces: Sequence[int],
+    band: tuple[float, float],
+    before: Halted | None,
+    news: Reached,
+) -> tuple[Halted, IntArray, IntArray]:
+    """March on from ``news``; also the rows of the border that it has come to, and which of its vertices they are."""
+    topology, work, seeds = part.topology, part.workspace, part.topology.seeds(surfaces)
+    if before is None:
+        size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
+        first, beyond = 0, 0
+    else:
+        size, tree = len(before.vertices), before.tree
+        first, beyond = size, len(before.beyond)
+        put_back(work, *before[:4])
+    taken = accept(part.border[news.row], news.key, news.facet, work, size)
+    surface = topology.surfaces, seeds.wanted, tree
+    touched, beyond = march(points, neighbours, *surface, *band, work, first, taken, beyond)
+    vertices, key, facet, outside = put_aside(work, touched, beyond)
+    rows = part.border_row[vertices[taken:]]
+    at_border = np.flatnonzero(rows >= 0)
+    return Halted(vertices, key, facet, outside, tree), rows[at_border].astype(np.int64), taken + at_border
+
+
+def _by_march(found: Reached) -> list[tuple[int, Reached]]:
+    """March by march, along the border; of equally near facets the last is first, whoever sent it."""
+    order = np.lexsort((-found.facet, found.row, found.march))
+    numbers, starts = np.unique(found.march[order], return_index=True)
+    pieces = [order[first:end] for first, end in pairwise((*starts, len(order)))]
+    return [(int(number), found.at(piece)) for number, piece in zip(numbers, pieces, strict=True)]
 
 
 def field_in_threads(
@@ -202,14 +297,17 @@ class _Board:
         """The callback of one part."""
         border = part.vertices[part.border]
 
-        def exchange(key: FloatArray, facet: Numbers) -> tuple[FloatArray, Numbers] | None:
+        def exchange(reached: Reached) -> Reached | None:
             self._barrier.wait()
             self._new = False
             self._barrier.wait()
             with self._lock:
-                self._post(border, key, facet)
+                self._post(border[reached.row], reached.key, reached.facet)
             self._barrier.wait()
-            return (self._key[border], self._facet[border]) if self._new else None
+            if not self._new:
+                return None
+            rows = np.flatnonzero(self._facet[border] != NOT_REACHED)
+            return Reached(np.zeros_like(rows), rows, self._key[border[rows]], self._facet[border[rows]])
 
         return exchange
 
@@ -217,9 +315,8 @@ class _Board:
         """Let nobody wait for a part that has failed."""
         self._barrier.abort()
 
-    def _post(self, border: IntArray, key: FloatArray, facet: Numbers) -> None:
-        known = self._facet[border]
-        self._new |= bool(np.any((known < 0) & (facet >= 0)))
+    def _post(self, vertices: IntArray, key: FloatArray, facet: Numbers) -> None:
+        self._new |= len(vertices) > 0
         # of equally near facets the last, whoever comes first
-        better = facet > known
-        self._key[border[better]], self._facet[border[better]] = key[better], facet[better]
+        better = facet > self._facet[vertices]
+        self._key[vertices[better]], self._facet[vertices[better]] = key[better], facet[better]

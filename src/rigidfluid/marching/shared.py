@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.adjacency import inner_vertices, rows_of
 from rigidfluid.marching.band import longest_edges
-from rigidfluid.marching.field import Wave
-from rigidfluid.marching.partition import NOT_REACHED, Exchange, march_part_from, part_of
+from rigidfluid.marching.partition import Halted, Reached, march_side_by_side, part_of
 from rigidfluid.marching.topology import Neighbours, Numbers
-from rigidfluid.marching.workspace import Workspace
 
 
 class Gaps(NamedTuple):
@@ -24,6 +23,11 @@ class Gaps(NamedTuple):
     facet: Numbers
     gap: FloatArray
     partner: Numbers
+
+
+def no_gaps(body: int, other: int) -> Gaps:
+    """Where no facet is in reach."""
+    return Gaps(body, other, np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
 
 
 class SharedMesh:
@@ -47,9 +51,11 @@ class SharedMesh:
         self._own_facets[place.facets] = True
         self._posted = np.flatnonzero(place.owned & np.isin(place.vertices, np.append(facets, across)))
         posted = np.concatenate(self._ranks.allgather(place.vertices[self._posted]))
-        self._post, _ = _found(self.part.vertices, posted)
-        self._border = place.vertices[self.part.border]
-        self._met, self._meets = _found(self._border, np.concatenate(self._ranks.allgather(self._border)))
+        order = np.argsort(self.part.vertices)
+        self._post = order[np.searchsorted(self.part.vertices, posted, sorter=order)]
+        border = place.vertices[self.part.border]
+        self._rows_there = [_rows_in(theirs, border) for theirs in self._ranks.allgather(border)]
+        self._rows_there[self._ranks.rank][:] = -1
         self.exchanges = 0
 
     def facets_of(self, surface: int) -> Numbers:
@@ -67,36 +73,33 @@ class SharedMesh:
     def neighbours(self, points: FloatArray) -> Neighbours:
         """The part's, with the longest edges elsewhere, when its vertices are at ``points`` (n, d)."""
         own, border = self.part.topology.neighbours, self.part.border
-        squares = np.concatenate(self._ranks.allgather(longest_edges(points, own, border)))
-        elsewhere = np.zeros(len(points))
-        np.maximum.at(elsewhere, border[self._met], squares[self._meets])
+        elsewhere, rows = np.zeros(len(points)), np.arange(len(border))
+        for row, square in self._ranks.alltoall(self._addressed(rows, longest_edges(points, own, border))):
+            elsewhere[border[row]] = np.maximum(elsewhere[border[row]], square)
         return own._replace(elsewhere=elsewhere)
 
     def march(
         self,
         points: FloatArray,
         neighbours: Neighbours,
-        surfaces: Iterable[int],
+        sources: Sequence[Sequence[int]],
         width: float,
         slack: float,
-        work: Workspace,
-    ) -> Wave:
-        """Leave this part of the field in ``work``, as `march_from` does that of a whole mesh."""
-        return march_part_from(self.part, points, neighbours, surfaces, width, slack, work, self._exchange())
+    ) -> list[Halted | None]:
+        """This part of several fields, as `march_side_by_side` has it."""
+        return march_side_by_side(self.part, points, neighbours, sources, (width, slack), self._exchange)
 
     def together(self, gaps: Sequence[Gaps]) -> list[Gaps]:
         """Pair by pair the finite gaps that all ranks have found, facets ascending."""
-        found = [np.isfinite(one.gap) for one in gaps]
-        sent = [(one.facet[near], one.gap[near], one.partner[near]) for one, near in zip(gaps, found, strict=True)]
-        everyone = [
-            [np.concatenate(column) for column in zip(*pieces, strict=True)]
-            for pieces in zip(*self._ranks.allgather(sent), strict=True)
-        ]
-        orders = [np.argsort(facet) for facet, _, _ in everyone]
-        return [
-            Gaps(one.body, one.other, *(column[order] for column in columns))
-            for one, columns, order in zip(gaps, everyone, orders, strict=True)
-        ]
+        near = [np.flatnonzero(np.isfinite(one.gap)) for one in gaps]
+        pair = np.repeat(np.arange(len(gaps)), [len(rows) for rows in near])
+        found = [(one.facet[rows], one.gap[rows], one.partner[rows]) for one, rows in zip(gaps, near, strict=True)]
+        sent = pair, *map(np.concatenate, zip(*found, strict=True))
+        pair, *everyones = map(np.concatenate, zip(*self._ranks.allgather(sent), strict=True))
+        order = np.lexsort((everyones[0], pair))
+        ends = np.searchsorted(pair[order], np.arange(1, len(gaps)))
+        pieces = zip(*(np.split(column[order], ends) for column in everyones), strict=True)
+        return [Gaps(one.body, one.other, *piece) for one, piece in zip(gaps, pieces, strict=True)]
 
     def _boundary(self, mesh: Mesh) -> tuple[IntArray, IntArray, IntArray]:
         """Facets (F, d), markers (F,), vertices across (F,) of the whole mesh."""
@@ -108,26 +111,24 @@ class SharedMesh:
         order = np.argsort(numbers)
         return corners[order], markers[order], seen_from[order]
 
-    def _exchange(self) -> Exchange:
-        """For one march: the ranks tell each other what they have reached since the last time."""
-        key, facet = np.zeros(len(self._border)), np.full(len(self._border), NOT_REACHED)
+    def _exchange(self, reached: Reached) -> Reached | None:
+        """What ranks have reached goes to those who have it on their border as well."""
+        march, row, key, facet = reached
+        news = len(row) > 0
+        everyones = self._ranks.alltoall([(news, piece) for piece in self._addressed(row, march, key, facet)])
+        self.exchanges += 1
+        if not any(new for new, _ in everyones):
+            return None
+        row, march, key, facet = map(np.concatenate, zip(*(piece for _, piece in everyones), strict=True))
+        return Reached(march, row, key, facet)
 
-        def exchange(own_key: FloatArray, own_facet: Numbers) -> tuple[FloatArray, Numbers] | None:
-            new = (own_facet >= 0) & (facet < 0)
-            pieces = self._ranks.allgather((self._border[new], own_key[new], own_facet[new]))
-            self.exchanges += 1
-            vertices, keys, facets = map(np.concatenate, zip(*pieces, strict=True))
-            rows, mine = _found(self._border, vertices)
-            keys, facets = keys[mine], facets[mine]
-            # of equally near facets the last, whoever comes first
-            last = np.argsort(facets, kind="stable")
-            key[rows[last]], facet[rows[last]] = keys[last], facets[last]
-            return (key, facet) if len(vertices) else None
-
-        return exchange
+    def _addressed(self, rows: IntArray, *columns: NDArray[Any]) -> list[tuple[NDArray[Any], ...]]:
+        """For each rank its own rows of those border vertices that it has as well, and what ``columns`` say of them."""
+        there = [self._rows_there[rank][rows] for rank in range(self._ranks.size)]
+        return [(row[row >= 0], *(column[row >= 0] for column in columns)) for row in there]
 
 
-def _found(numbers: IntArray, wanted: IntArray) -> tuple[IntArray, BoolArray]:
-    """Where those ``wanted`` stand among ``numbers``, (f,), and which of them do, (w,)."""
-    held, order = np.isin(wanted, numbers), np.argsort(numbers)
-    return order[np.searchsorted(numbers, wanted[held], sorter=order)], held
+def _rows_in(border: IntArray, wanted: IntArray) -> IntArray:
+    """Where the vertices ``wanted`` stand on an ascending ``border``, or -1, (w,)."""
+    rows = np.minimum(np.searchsorted(border, wanted), max(len(border) - 1, 0))
+    return np.where(np.append(border, -1)[rows] == wanted, rows, -1)

@@ -13,8 +13,10 @@ from rigidfluid.core.model.state import ErrorEstimate, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 
-UNSEEN = 2
-"""In so many steps after a start there are no three velocities of one smooth motion: the first step may be a jump."""
+UNSEEN = 3
+"""Nothing is known of so many steps after a start. Before the last of them there are no three velocities of one smooth
+motion, as the first step may be a jump. To that the pressure answers twice, with opposite signs, and in the balance of
+energy these cancel each other if all of the steps are equal."""
 
 
 def estimate_error(system: System, time: float, state: State, candidate: State) -> ErrorEstimate:
@@ -42,7 +44,7 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     Returns
     -------
     ErrorEstimate
-        Unknown in the first two steps.
+        Unknown in the first steps.
     """
     before, masses = state.estimate or _expected(system), _Masses(system, time, candidate)
     speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))

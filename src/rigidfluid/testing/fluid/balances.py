@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.rigid import cross, moment
+from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.types import FloatArray, FluidProblem, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import (
@@ -203,6 +204,18 @@ class BalancesContract(FluidContract):
         self.assert_close(flow.advance.boundary_power, dissipated - given, scale=10.0)
         kinetic = 0.5 * DENSITY * float(weights @ np.sum(velocity**2, axis=1))
         self.assert_close(flow.advance.kinetic_energy, kinetic, scale=10.0)
+
+    def test_a_prediction_error_is_kinetic_energy(self, dimension: int) -> None:
+        """Of what moves otherwise than extrapolated: all of it from nothing, and none from itself."""
+        flow = self.stir(self.stirred(dimension, steps=2))
+        backend = flow.backend
+        if type(backend).prediction_error is FluidBackend.prediction_error:
+            pytest.skip("this backend leaves the choice of steps to the bodies")
+        all_of_it, none = (
+            backend.prediction_error(flow.fluid, flow.fluid, flow.mesh, np.array([share, 0.0])) for share in (0.0, 1.0)
+        )
+        self.assert_close(all_of_it, flow.advance.kinetic_energy, scale=flow.advance.kinetic_energy)
+        self.assert_close(none, 0.0, scale=flow.advance.kinetic_energy)
 
     def test_convection_makes_no_energy(self, dimension: int) -> None:
         """A lid drives a fast flow that the cells do not resolve: in steady steps all that it gives is dissipated."""
