@@ -40,7 +40,7 @@ def two_balls(backend: str, dimension: int, model: str) -> rigidfluid.Scene:
             },
             "domain": {"type": "box", "lower": [0.0] * dimension, "upper": [1.0] * dimension},
             "body": [ball | free, ball | driven],
-            "mesh": {"size": 0.5, "size_body": 0.12, "growth": 0.8},
+            "mesh": {"size": 0.5, "size_body": 0.12, "growth": 0.8, "order": 1},
             "time": {"step": 0.01, "end": 0.03},
             "output": {"every": 1.0},
         }
@@ -50,6 +50,7 @@ def two_balls(backend: str, dimension: int, model: str) -> rigidfluid.Scene:
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
 def test_steps_are_those_of_scikit_fem(dimension: int, model: str) -> None:
+    """On straight cells, where all integrals are exact."""
     ours, theirs = (Simulation(two_balls(backend, dimension, model), None, False) for backend in BACKENDS)
     for _ in range(3):
         for simulation in (ours, theirs):
@@ -77,7 +78,9 @@ def test_a_run_is_that_of_scikit_fem_and_near_it_after_re_meshing() -> None:
     assert ours.summary["remeshes"] == theirs.summary["remeshes"] == 1
     on_one_mesh = slice(0, 20)
     for column in ("y", "vy", "fy"):
-        close(ours.bodies[column][on_one_mesh], theirs.bodies[column][on_one_mesh])
+        close(
+            ours.bodies[column][on_one_mesh], theirs.bodies[column][on_one_mesh], to=1e-9
+        )  # the stress in curved cells
         close(ours.bodies[column], theirs.bodies[column], to=1e-2)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,12 @@ from rigidfluid_ngsolve.mesh import NodeMesh
 
 _ORDER_OF_FIELD = 2
 """NGSolve takes the order of quadrature from the test and trial functions, not from a field that convects."""
+
+_ORDER_OF_STRAIN_SQUARE = 2
+"""The same where there is no test function at all."""
+
+_ORDER_OF_CURVES = 4
+"""More of it where cells are curved: exact for convection and divergence, as with scikit-fem."""
 
 
 class FormAssembly:
@@ -37,15 +44,17 @@ class FormAssembly:
         self._inertia, self._viscosity = ngs.Parameter(0.0), ngs.Parameter(0.0)
         (u, p), (v, q) = space.TnT()
         # One integral each: NGSolve multiplies all functions of an integral with each other.
+        over = _over_cells(self._mesh)
         self._form = ngs.BilinearForm(space)
-        self._form += self._inertia * u * v * ngs.dx
-        self._form += self._viscosity * ngs.InnerProduct(_twice_strain(u), ngs.grad(v)) * ngs.dx
-        self._form += (-p * ngs.div(v) - q * ngs.div(u)) * ngs.dx
+        self._form += over(self._inertia * u * v)
+        self._form += over(self._viscosity * ngs.InnerProduct(_twice_strain(u), ngs.grad(v)))
+        self._form += over(-p * ngs.div(v) - q * ngs.div(u))
         if convection:
             convected = ngs.grad(u) * self._field + 0.5 * ngs.div(self._flow) * u
-            self._form += convected * v * ngs.dx(bonus_intorder=_ORDER_OF_FIELD)
-        self._load = ngs.LinearForm(self._field * velocities.TestFunction() * ngs.dx)
-        self._strain_square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
+            self._form += over(convected * v, _ORDER_OF_FIELD)
+        self._load = ngs.LinearForm(over(self._field * velocities.TestFunction(), _ORDER_OF_FIELD))
+        square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
+        self._strain_square = over(square, _ORDER_OF_STRAIN_SQUARE)
         self._order: IntArray | None = None
 
     def matrix(
@@ -71,11 +80,22 @@ class FormAssembly:
         from ngsolve import Integrate
 
         self._take(points, velocity)
-        return float(Integrate(self._strain_square, self._mesh.ngsolve, order=2))
+        return float(Integrate(self._strain_square, self._mesh.ngsolve))
 
     def _take(self, points: FloatArray, field: FloatArray) -> None:
         self._mesh.move(points)
         _nodal(self._field.vec, field.shape[1])[:] = field
+
+
+def _over_cells(mesh: NodeMesh) -> Callable[..., Any]:
+    """Makes integrals of integrands; ``more`` is the order that NGSolve does not know of."""
+    import ngsolve as ngs
+
+    def over(integrand: Any, more: int = 0) -> Any:
+        straight = integrand * ngs.dx(bonus_intorder=more, definedonelements=~mesh.curved)
+        return straight + integrand * ngs.dx(bonus_intorder=more + _ORDER_OF_CURVES, definedonelements=mesh.curved)
+
+    return over
 
 
 def _twice_strain(velocity: Any) -> Any:

@@ -16,12 +16,12 @@ _NETGEN_EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((0, 1), (0, 2), (0, 3), (1, 2)
 class NodeMesh:
     """Netgen's quadratic cells over all nodes of ``numbering``, so that nodal spaces on them have its numbers.
 
-    The cells at curved edges are declared curved; NGSolve maps the others from their vertices alone.
+    The cells at curved edges are declared ``curved``; NGSolve maps the others from their vertices alone.
     """
 
     def __init__(self, numbering: Numbering) -> None:
         import netgen.meshing as netgen
-        from ngsolve import Mesh
+        from ngsolve import BitArray, Mesh
 
         d = numbering.dimension
         made = netgen.Mesh(dim=d)
@@ -33,6 +33,7 @@ class NodeMesh:
         curved = np.isin(np.arange(len(numbering.cells)), numbering.curved_cells)
         (made.Elements2D() if d == 2 else made.Elements3D()).NumPy()["curved"] = curved
         self.ngsolve: Any = Mesh(made)
+        self.curved: Any = BitArray(curved.tolist())
         self._numbering = numbering
         self._coordinates: FloatArray = made.Coordinates()
 
