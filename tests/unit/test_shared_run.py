@@ -86,6 +86,15 @@ def test_the_run_is_that_of_one_process(detector):
                         np.testing.assert_allclose(history.table(table)[name], column, rtol=1e-9, atol=1e-11)
 
 
+def test_steps_by_a_tolerance_are_those_of_one_process():
+    time = {"step": 0.008, "end": 0.056, "tolerance": 1e-2}
+    serial = rigidfluid.run(fall(time=time))
+    assert len(set(serial.steps["size"])) > 2
+    for history in shared(2, time=time):
+        np.testing.assert_array_equal(history.steps["size"], serial.steps["size"])
+        np.testing.assert_allclose(history.steps["error"], serial.steps["error"], rtol=1e-6)
+
+
 def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
     expected = shared(2)
     shared(2, tmp_path, end=0.02)
@@ -96,7 +105,7 @@ def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
 def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
     histories = shared(2, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
-        *("bodies.csv", "contacts.csv", "energy.csv", "probes.csv"),
+        *("bodies.csv", "contacts.csv", "energy.csv", "steps.csv", "probes.csv"),
         *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json", "run.lock"),
     }
     assert histories[0].summary["files"] == histories[1].summary["files"]
