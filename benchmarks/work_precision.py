@@ -123,7 +123,7 @@ PAGE = """\
 # Error against CPU seconds: the falling disk
 
 Made on {date} by `python benchmarks/work_precision.py --page docs/validation/work_precision.md`, load of the machine
-{load:.1f} on {cores} cores, which makes all seconds longer.
+{load:.1f} on {cores} cores; seconds grow with it.
 
 ![Error against CPU seconds]({picture})
 
