@@ -34,6 +34,7 @@ lint: .venv/.installed-dev
 bench: .venv/.installed-bench
 	$(BIN)/python benchmarks/step.py --page docs/validation/step.md
 	$(BIN)/python benchmarks/backends.py --page docs/validation/backends.md
+	$(BIN)/python benchmarks/work_precision.py --page docs/validation/work_precision.md
 	$(BIN)/python benchmarks/dry_spheres.py
 
 clean:
