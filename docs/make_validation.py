@@ -272,10 +272,9 @@ def settling_figures(density: float, history: History, sizes: np.ndarray) -> dic
 
 
 SETTLING_CYLINDER = """`scenes/settling_cylinder.toml`: a cylinder is let go in a channel of four diameters, half a
-diameter from its wall, and falls thirty diameters. Published are the settled Reynolds numbers and drag coefficients
-(Wachs, Comput. Fluids 38 (2009) 1608, after Yu et al., J. Non-Newtonian Fluid Mech. 104 (2002) 87), dotted on the
-right; the cylinder leaves the wall, and sways about a place nearer to the middle. Settled is here the second half of
-the way.
+diameter from its wall, and falls some thirty diameters. Published are the settled Reynolds numbers and drag
+coefficients (Wachs, Comput. Fluids 38 (2009) 1608, after Yu et al., J. Non-Newtonian Fluid Mech. 104 (2002) 87), dotted
+on the right. The cylinder leaves the wall, and sways towards the middle. Settled is here the second half of the way.
 
 {figures}
 

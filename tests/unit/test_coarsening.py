@@ -32,7 +32,9 @@ def fallen(height):
 
 
 def asks(points, pose, reference=REFERENCE, sizes=SIZES):
-    return has_coarsened(reference, points, DISK, pose, sizes)
+    cells = reference.mesh.cells
+    made = relative_sizes(reference.mesh.points, cells, DISK, reference.pose, sizes)
+    return has_coarsened(made, relative_sizes(points, cells, DISK, pose, sizes), reference.mesh.ranks)
 
 
 def test_the_size_of_regular_simplices_is_their_edge():
@@ -110,7 +112,7 @@ def test_all_ranks_are_told_the_same():
         def told(ranks, points=points, pose=pose):
             part = distributed(MESH if ranks.is_root else None, ranks)
             reference = reference_of(part, START, np.array([1.0]), 0)
-            return has_coarsened(reference, points[part.part.vertices], DISK, pose, SIZES)
+            return asks(points[part.part.vertices], pose, reference)
 
         assert set(on_ranks(3, told)) == {asks(points, pose)}
 

@@ -4,6 +4,7 @@ import numpy as np
 from falling import falling_disk
 from mesh_tools import ball, box, box_walls, upright
 
+from rigidfluid.checks import check
 from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, Wake
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
@@ -75,3 +76,13 @@ def test_a_scene_s_wake_is_in_the_meshes_after_the_first():
     before = fineness()
     simulation.go()
     assert all(after > 4 * count for after, count in zip(fineness(), before, strict=True))
+
+
+def test_the_check_says_whether_a_scene_has_boxes_wakes_and_meshes_made_by_age():
+    box_below = {"lower": [0.0, 0.0], "upper": [2.0, 1.0], "size": 0.05}
+    keys = {"refine": [box_below], "wake": {"time": 0.1, "size": 0.03}, "remesh_every": 0.05}
+    names = "boxes of finer cells", "finer cells in wakes", "re-meshing by age"
+    for mesh, on in ((keys, True), ({}, False)):
+        told = {feature.name: feature for feature in check(falling_disk(mesh=mesh)).features}
+        assert [told[name].on for name in names] == [on] * 3
+    assert told["boxes of finer cells"].why == "[[mesh.refine]] names none"

@@ -9,40 +9,33 @@ import numpy as np
 from rigidfluid.core.mesh.mesh_quality import cell_sizes
 from rigidfluid.core.mesh.size_field import Sizes, size_away_from_gaps
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.state import Reference
+from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose
 
 MOST_COARSENED = 1.4
 """A cell may become this many times longer, over the wanted size, than it was when made, or than wanted."""
 
 
-def has_coarsened(reference: Reference, points: FloatArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> bool:
+def has_coarsened(made: FloatArray, now: FloatArray, ranks: Ranks) -> bool:
     """Whether r > MOST_COARSENED · max(r₀, 1) in a cell of the whole mesh, r the cell's relative size, r₀ when made.
 
-    A mesh just made has r = r₀, so it never asks for another at once. Gaps are left out of the wanted size: cells in a
-    gap are squeezed with it, and a rule of their own watches them.
+    A mesh just made has r = r₀, so it never asks for another at once.
 
     Parameters
     ----------
-    reference : Reference
-        The mesh when it was made, and the bodies' pose then.
-    points : (N, d) array
-        Its vertices now [length].
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are now.
-    sizes : Sizes
-        The wanted size.
+    made, now : (M,) array
+        Relative sizes of this rank's cells when the mesh was made, and now [1].
+    ranks : Ranks
+        Who has the other cells.
     """
-    mesh = reference.mesh
-    made = relative_sizes(mesh.points, mesh.cells, bodies, reference.pose, sizes)
-    now = relative_sizes(points, mesh.cells, bodies, pose, sizes)
-    return bool(mesh.ranks.greatest((now / np.maximum(made, 1.0)).max()) > MOST_COARSENED)
+    return bool(ranks.greatest(float((now / np.maximum(made, 1.0)).max())) > MOST_COARSENED)
 
 
 def relative_sizes(points: FloatArray, cells: IntArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:
-    """Each cell's size over the one wanted at its centre away from gaps, (M,) [1]."""
+    """Each cell's size over the one wanted at its centre, (M,) [1].
+
+    Gaps are left out of the wanted size: cells in a gap are squeezed with it, and a rule of their own watches them.
+    """
     centres = points[cells].mean(axis=1)
     return cell_sizes(points, cells) / size_away_from_gaps(centres, bodies, pose, sizes)
 

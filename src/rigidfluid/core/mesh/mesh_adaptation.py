@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mesh.coarsening import has_coarsened, is_due
+from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -69,6 +69,7 @@ class MeshUpdater:
         self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
+        self._made: tuple[Reference, FloatArray] | None = None
 
     def first_mesh(self) -> Mesh | None:
         """The mesh around the bodies' initial pose."""
@@ -153,8 +154,18 @@ class MeshUpdater:
         points, worst = self._placed(reference, pose)
         if worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * reference.quality):
             return True
-        due = is_due(reference.pose, state.pose, pose, sizes)
-        return due and has_coarsened(reference, points, self._system.bodies, pose, sizes)
+        if not is_due(reference.pose, state.pose, pose, sizes):
+            return False
+        mesh, bodies = reference.mesh, self._system.bodies
+        now = relative_sizes(points, mesh.cells, bodies, pose, sizes)
+        return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
+
+    def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
+        """Relative sizes of the reference's cells, (M,), kept for the next look."""
+        if self._made is None or self._made[0] is not reference:
+            mesh, bodies = reference.mesh, self._system.bodies
+            self._made = reference, relative_sizes(mesh.points, mesh.cells, bodies, reference.pose, sizes)
+        return self._made[1]
 
     def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
         """Geometry (N + K, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of
