@@ -12,7 +12,6 @@ from rigidfluid.taylor_hood.discretisation import Discretisation, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.sampling import Samples
 from rigidfluid.taylor_hood.state import at_rest
-from rigidfluid.taylor_hood.surfaces import rigid_velocity
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
 """What divergence is left shows, over the step, as a burst of pressure: projections are solved so much better."""
@@ -32,19 +31,21 @@ def transfer(
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
-    projected, on the mesh where it belongs. ``forget`` drops what the solution before has left.
+    projected, on the mesh where it belongs; one preconditioner serves both, as the meshes differ by a step. ``forget``
+    drops what the solution before has left.
     """
     numbering = target.numbering
     on_nodes = Samples(old, source, numbering.node_points(new.geometry))
     displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
     moved = dict(fluid)
     moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
+    forget()
     for suffix, points in (("", new.geometry), ("_previous", moved["points_previous"])):
         moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
-        position = fluid["position" + suffix]
-        _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
-        forget()
+        position, twist = fluid["position" + suffix], fluid["twist" + suffix]
+        every = np.ones(len(twist), dtype=bool)
+        target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
         moved["velocity" + suffix] = project(target, tolerance, velocity, points, position)
     forget()
     return moved
@@ -92,11 +93,3 @@ def project(
         twist=np.zeros((bodies, width)),
     )
     return target.solve(system, max(_TIGHTER * tolerance, _TIGHTEST)).velocity
-
-
-def _move_with_bodies(
-    target: Discretisation, velocity: FloatArray, points: FloatArray, position: FloatArray, twist: FloatArray
-) -> None:
-    node_points = target.numbering.node_points(points)
-    for body, nodes in enumerate(target.surfaces.body_nodes):
-        velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
