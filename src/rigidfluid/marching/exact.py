@@ -98,6 +98,16 @@ def reset(work, touched, beyond):
 
 
 @njit(cache=True, nogil=True)
+def march_on(
+    points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond, vertices, key, facet
+):
+    """Take in the ``vertices`` that others have reached, `march` and `put_aside`; also where the march began."""
+    taken = accept(vertices, key, facet, work, touched)
+    touched, beyond = march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, taken, beyond)
+    return taken, put_aside(work, touched, beyond)
+
+
+@njit(cache=True, nogil=True)
 def put_aside(work, touched, beyond):
     """What a march has left, vertices, keys, facets and vertices beyond, and make the workspace free for another."""
     vertices, outside = work.touched[:touched].copy(), work.touched[len(work.touched) - beyond :].copy()

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
-from rigidfluid.marching.exact import accept, march, put_aside, put_back, seed
+from rigidfluid.marching.exact import march_on, put_back, seed
 from rigidfluid.marching.field import DistanceField
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology
 from rigidfluid.marching.tree import Tree
@@ -235,16 +235,14 @@ def _go_on(
     """March on from ``news``; also the rows of the border that it has come to, and which of its vertices they are."""
     topology, work, seeds = part.topology, part.workspace, part.topology.seeds(surfaces)
     if before is None:
-        size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
-        first, beyond = 0, 0
+        (size, tree), first, beyond = seed(points, topology.surfaces, seeds.facets, seeds.whole, work), 0, 0
     else:
-        size, tree = len(before.vertices), before.tree
-        first, beyond = size, len(before.beyond)
         put_back(work, *before[:4])
-    taken = accept(part.border[news.row], news.key, news.facet, work, size)
-    surface = topology.surfaces, seeds.wanted, tree
-    touched, beyond = march(points, neighbours, *surface, *band, work, first, taken, beyond)
-    vertices, key, facet, outside = put_aside(work, touched, beyond)
+        first = size = len(before.vertices)
+        tree, beyond = before.tree, len(before.beyond)
+    surface, counts = (topology.surfaces, seeds.wanted, tree), (first, size, beyond)
+    reached = part.border[news.row], news.key, news.facet
+    taken, (vertices, key, facet, outside) = march_on(points, neighbours, *surface, *band, work, *counts, *reached)
     rows = part.border_row[vertices[taken:]]
     at_border = np.flatnonzero(rows >= 0)
     return Halted(vertices, key, facet, outside, tree), rows[at_border].astype(np.int64), taken + at_border

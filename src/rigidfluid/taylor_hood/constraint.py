@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
-from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, joined, pinned_vertex
 
 # Entries of ω × r: (velocity component, component of ω, component of r, sign).
 CROSS = {
@@ -54,12 +54,11 @@ class Constraint:
         self.twist_start = velocities
         self.unknowns = len(self.free_unknowns) + size * len(free_motions)
         self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_motions))
-        rows, columns = [self.free_unknowns], [self.free_columns]
-        for place, motion in enumerate(free_motions):
-            nodes, start = self.surfaces.motion_nodes[motion], velocities + size * place
-            rows += [nodes * d + a for a in range(d)] + [nodes * d + a for a, *_ in CROSS[d]]
-            columns += [np.full(len(nodes), start + a) for a in range(d)]
-            columns += [np.full(len(nodes), start + d + b) for _, b, *_ in CROSS[d]]
+        nodes, self._carrier = joined([self.surfaces.motion_nodes[motion] for motion in free_motions])
+        self._carried, self._free_motions = nodes, free_motions
+        first = velocities + size * self._carrier
+        rows = [self.free_unknowns, *(nodes * d + a for a in range(d)), *(nodes * d + a for a, *_ in CROSS[d])]
+        columns = [self.free_columns, *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])]
         row, column = np.concatenate(rows), np.concatenate(columns)
         shape = (self._numbering.unknowns, self.unknowns)
         numbering = sparse.coo_array((np.arange(1.0, len(row) + 1), (row, column)), shape=shape)
@@ -70,10 +69,8 @@ class Constraint:
     def place(self, node_points: FloatArray, position: FloatArray) -> None:
         """Fill P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
         d = self._numbering.dimension
-        values = [np.ones(len(self.free_unknowns))]
-        for motion in np.flatnonzero(~self.controlled):
-            arm = node_points[self.surfaces.motion_nodes[motion]] - position[motion]
-            values += [np.ones(len(arm) * d), *(sign * arm[:, c] for _, _, c, sign in CROSS[d])]
-        flat = np.concatenate(values)
+        arm = node_points[self._carried] - position[self._free_motions][self._carrier]
+        ones = np.ones(len(self.free_unknowns) + d * len(arm))
+        flat = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])
         self.operator.data = flat[self._order]
         self.transposed.data = flat[self._transposed_order]

@@ -190,11 +190,11 @@ class SparseDiscretisation:
         constraint, masses = self._constraint, m.mass_matrix[~m.controlled]
         constraint.place(m.node_points, m.position)
         twists = slice(constraint.twist_start, constraint.twist_start + masses.shape[0] * masses.shape[1])
-        inertia = sparse.block_diag([*masses, sparse.csr_array((0, 0))], format="csr")
 
         def apply(x: FloatArray) -> FloatArray:
             result: FloatArray = constraint.transposed @ (stiffness @ (constraint.operator @ x))
-            result[twists] += inertia @ x[twists]
+            of_bodies = x[twists].reshape(*masses.shape[:2], *x.shape[1:])
+            result[twists] += np.einsum("nij,nj...->ni...", masses, of_bodies).reshape(x[twists].shape)
             return result
 
         def build() -> sparse.csr_array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
-from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
+from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
@@ -17,8 +17,7 @@ def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidSt
     node_points = surfaces.numbering.node_points(mesh.geometry)
     velocity = np.zeros_like(node_points)
     twists = np.concatenate([twist.velocity, twist.angular_velocity], axis=1)
-    for body, nodes in enumerate(surfaces.body_nodes):
-        velocity[nodes] = rigid_velocity(twists[body], node_points[nodes] - pose.position[body])
+    surfaces.move_with_bodies(velocity, node_points, pose.position, twists, np.ones(len(twists), dtype=bool))
     pressure = np.zeros(len(mesh.points))
     return {
         "velocity": velocity,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 from scipy.spatial import cKDTree
 
 from rigidfluid.core.mechanics.rigid import cross, moment
@@ -105,10 +106,16 @@ class Surfaces:
             velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(velocity, node_points)
-        for body in np.flatnonzero(controlled):
-            nodes = self.body_nodes[body]
-            velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
+        self.move_with_bodies(velocity, node_points, position, twist, controlled)
         return velocity
+
+    def move_with_bodies(
+        self, velocity: FloatArray, node_points: FloatArray, position: FloatArray, twist: FloatArray, chosen: BoolArray
+    ) -> None:
+        """Write U + ω × r over ``velocity`` (nodes, d) at the nodes of the ``chosen`` (n,) bodies."""
+        nodes, body = joined(self.body_nodes)
+        nodes, body = nodes[chosen[body]], body[chosen[body]]
+        velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
 
     def _balance(self, velocity: FloatArray, node_points: FloatArray) -> None:
         """Scale inflow and outflow of an enclosed flow to be equal on this mesh; else a pinned vertex leaks.
@@ -136,12 +143,18 @@ class Surfaces:
 
         With several processes a node's force is the sum of what they have there.
         """
-        torques = 1 if self.numbering.dimension == 2 else 3
-        found = np.zeros((len(self.body_nodes), self.numbering.dimension + torques))
-        for body, nodes in enumerate(self.body_nodes):
-            arm, force = node_points[nodes] - position[body], node_force[nodes]
-            found[body] = np.concatenate([force.sum(axis=0), moment(arm, force).sum(axis=0)])
-        return np.asarray(self.ranks.sum(found))
+        nodes, body = joined(self.body_nodes)
+        force = node_force[nodes]
+        wrench = np.concatenate([force, moment(node_points[nodes] - position[body], force)], axis=1)
+        shape = len(self.body_nodes), len(nodes)
+        of_body = sparse.csr_array((np.ones(len(nodes)), (body, np.arange(len(nodes)))), shape=shape)
+        return np.asarray(self.ranks.sum(of_body @ wrench))
+
+
+def joined(each: Sequence[IntArray]) -> tuple[IntArray, IntArray]:
+    """All nodes of several lists, one list after the other, (c,), and the number of each node's list, (c,)."""
+    number = np.repeat(np.arange(len(each)), [len(nodes) for nodes in each])
+    return np.concatenate([*each, np.empty(0, np.int64)]), number
 
 
 def _of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[IntArray]:
@@ -153,9 +166,9 @@ def _of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[
 
 
 def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:
-    """U + ω × r, (N, d), for a twist (d+k,) and arms (N, d)."""
+    """U + ω × r, (N, d), for a twist (d+k,), or one for each arm (N, d+k), and arms (N, d)."""
     d = arm.shape[1]
-    return np.asarray(twist[:d] + cross(twist[d:], arm))
+    return np.asarray(twist[..., :d] + cross(twist[..., d:], arm))
 
 
 def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:

@@ -12,7 +12,6 @@ from rigidfluid.taylor_hood.discretisation import Discretisation, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.sampling import Samples
 from rigidfluid.taylor_hood.state import at_rest
-from rigidfluid.taylor_hood.surfaces import rigid_velocity
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
 """What divergence is left shows, over the step, as a burst of pressure: projections are solved so much better."""
@@ -49,8 +48,9 @@ def transfer(
     for suffix, points, energy in levels:
         moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
-        position = fluid["position" + suffix]
-        _move_with_bodies(target, velocity, points, position, fluid["twist" + suffix])
+        position, twist = fluid["position" + suffix], fluid["twist" + suffix]
+        every = np.ones(len(twist), dtype=bool)
+        target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
         projected = project(target, tolerance, velocity, points, position)
         at_boundary = np.where(target.surfaces.velocity_free, 0.0, projected)
         potential = project(target, tolerance, at_boundary, points, position)
@@ -119,11 +119,3 @@ def _with_energy(
     root = np.sqrt(max(product**2 - 4.0 * square * (rest - energy), 0.0))
     scale = np.clip((root - product) / (2.0 * square), 1.0 / _MOST_SCALED, _MOST_SCALED)
     return np.asarray(potential + scale * beside)
-
-
-def _move_with_bodies(
-    target: Discretisation, velocity: FloatArray, points: FloatArray, position: FloatArray, twist: FloatArray
-) -> None:
-    node_points = target.numbering.node_points(points)
-    for body, nodes in enumerate(target.surfaces.body_nodes):
-        velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])

@@ -14,7 +14,7 @@ from scipy import sparse
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.taylor_hood.constraint import CROSS
-from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.taylor_hood.surfaces import Surfaces, joined
 
 
 class DistributedConstraint:
@@ -48,7 +48,9 @@ class DistributedConstraint:
         self._first_twist = counts[0][1]
         place = np.full(space.numbering.nodes, -1)
         place[space.owned_nodes] = np.arange(len(space.owned_nodes))
-        self._motion_rows = [(on := place[surfaces.motion_nodes[motion]])[on >= 0] for motion in self._free_motions]
+        nodes, carrier = joined([surfaces.motion_nodes[motion] for motion in self._free_motions])
+        owned = place[nodes] >= 0
+        self._carried, self._carrier = place[nodes[owned]], carrier[owned]
         self._width = width
 
     @property
@@ -63,8 +65,7 @@ class DistributedConstraint:
 
     def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
         """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
-        local = self._free_columns()
-        blocks = [local, *self._rigid_blocks(node_points, position)]
+        blocks = [self._free_columns(), *self._rigid_blocks(node_points, position)]
         row, column, value = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         matrix = sparse.coo_array((value, (row, column)), shape=(self.rows, self.unknowns)).tocsr()
         matrix.sort_indices()
@@ -90,12 +91,9 @@ class DistributedConstraint:
     def _rigid_blocks(
         self, node_points: FloatArray, position: FloatArray
     ) -> list[tuple[IntArray, IntArray, FloatArray]]:
-        """u = U + ω × r, row by row, for each free motion's nodes that this process owns."""
-        d, blocks = self._space.numbering.dimension, []
-        for number, (motion, at) in enumerate(zip(self._free_motions, self._motion_rows, strict=True)):
-            first = self._first_twist + self._width * number
-            arm = node_points[self._space.owned_nodes[at]] - position[motion]
-            one, column = np.ones(len(at)), np.full(len(at), first)
-            blocks += [(at * d + a, column + a, one) for a in range(d)]
-            blocks += [(at * d + a, column + d + b, sign * arm[:, c]) for a, b, c, sign in CROSS[d]]
-        return blocks
+        """u = U + ω × r, component by component, for the free motions' nodes that this process owns."""
+        d, at = self._space.numbering.dimension, self._carried
+        first = self._first_twist + self._width * self._carrier
+        arm = node_points[self._space.owned_nodes[at]] - position[self._free_motions][self._carrier]
+        straight = [(at * d + a, first + a, np.ones(len(at))) for a in range(d)]
+        return straight + [(at * d + a, first + d + b, sign * arm[:, c]) for a, b, c, sign in CROSS[d]]

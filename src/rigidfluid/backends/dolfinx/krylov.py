@@ -38,11 +38,14 @@ class Krylov(LaggedSolver[Reduced]):
     """PETSc options."""
     sharper: ClassVar[float] = 1.0
     """What answers to impulses have for a residual, over what is asked of those by factors."""
+    keeps_pattern: ClassVar[bool]
+    """Whether what is found out about a matrix' pattern serves for the next one."""
 
     def __init__(self, ranks: Ranks, dimension: int, settings: Settings) -> None:
         super().__init__(ranks, dimension)
         self._settings = dict(settings)
         self._ksp: Any = None
+        self._assembled: Any = None
         self._operator = _Operator()
 
     @final
@@ -58,7 +61,12 @@ class Krylov(LaggedSolver[Reduced]):
             ) from error
 
     def _make(self, matrix: Reduced) -> None:
-        assembled = matrix.as_matrix()
+        self._assembled = matrix.as_matrix(self._assembled)
+        if self._ksp is not None:
+            self._ksp.setOperators(*self._ksp.getOperators())  # the same ones, with new entries
+            self._ksp.setUp()
+            return
+        assembled = self._assembled
         shell = PETSc.Mat().createPython(assembled.getSizes(), self._operator, comm=assembled.comm)
         shell.setUp()
         self._ksp = PETSc.KSP().create(assembled.comm)
@@ -73,10 +81,16 @@ class Krylov(LaggedSolver[Reduced]):
             self.finish(self._ksp, matrix)
 
     @final
+    def make_room(self) -> None:
+        if not self.keeps_pattern:
+            self.drop()
+
+    @final
     def drop(self) -> None:
-        if self._ksp is not None:
-            self._ksp.destroy()
-            self._ksp = None
+        for held in (self._ksp, self._assembled):
+            if held is not None:
+                held.destroy()
+        self._ksp = self._assembled = None
 
     @final
     def iterate(
@@ -119,8 +133,12 @@ class Krylov(LaggedSolver[Reduced]):
 
 @final
 class LaggedLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS; each renewal analyses the matrix again."""
+    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `LaggedFactors`, to agree to round-off.
 
+    The matrix is analysed, and the pattern of its product found, once for each topology.
+    """
+
+    keeps_pattern: ClassVar[bool] = True
     rebuild_cost: ClassVar[Mapping[int, int]] = LaggedFactors.rebuild_cost
     fresh_iterations: ClassVar[int] = LaggedFactors.fresh_iterations
     most: ClassVar[int] = LaggedFactors.most
@@ -143,6 +161,7 @@ class LaggedLU(Krylov):
 class LaggedSchur(Krylov):
     """Upper block triangle [[A, Bᵀ], [0, S]]: A, with the bodies' rows, by an inner iteration, S by Cahouet–Chabard."""
 
+    keeps_pattern: ClassVar[bool] = False  # its parts are set up for one matrix
     rebuild_cost: ClassVar[Mapping[int, int]] = {2: 8, 3: 8}
     fresh_iterations: ClassVar[int] = 20
     most: ClassVar[int] = 200

@@ -62,9 +62,9 @@ class Reduced:
         self.matrix.mult(source, image)
         return np.asarray(image.array.copy())
 
-    def as_matrix(self) -> Any:
-        """A PETSc matrix."""
-        made = self.matrix.PtAP(self.operator)
+    def as_matrix(self, before: Any = None) -> Any:
+        """A PETSc matrix, in the place of one that was made ``before`` with the same constraint, if there is one."""
+        made = self.matrix.PtAP(self.operator, result=before)
         made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         twists = self.constraint.twist_slice
         numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column

@@ -158,12 +158,19 @@ def _reached(
     A law may be far stiffer where bodies start than on their way apart. Their substeps grow there, but only where the
     contact is so soft that the change costs next to no energy.
     """
-    stored, force = law.energy(contacts), motion.mass * pull
-    stiffness, damping = _greatest(law, contacts, motion, _deepest(law, contacts, approach.energy + stored, force))
-    if approach.parting.any():
-        left = _greatest(law, contacts, motion, _deepest(law, contacts, stored, force))
-        stiffness = np.where(approach.parting, np.minimum(stiffness, FADED**2 * left[0]), stiffness)
-        damping = np.where(approach.parting, np.minimum(damping, FADED * left[1]), damping)
+    parting = np.flatnonzero(approach.parting)
+    rows = np.concatenate(
+        [np.arange(len(contacts)), parting]
+    )  # those that part a second time, with no energy of motion
+    stored = law.energy(contacts)
+    energy = np.concatenate([approach.energy + stored, stored[parting]])
+    both, alike = select(contacts, rows), Motion(motion.velocity[rows], motion.mass[rows])
+    stiffness, damping = _greatest(law, both, alike, _deepest(law, both, energy, (motion.mass * pull)[rows]))
+    (stiffness, faded), (damping, faded_damping) = (
+        np.split(column, [len(contacts)]) for column in (stiffness, damping)
+    )
+    stiffness[parting] = np.minimum(stiffness[parting], FADED**2 * faded)
+    damping[parting] = np.minimum(damping[parting], FADED * faded_damping)
     return stiffness, damping
 
 

@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.sparse import csc_array
 
-from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
 
 MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
 
@@ -58,9 +58,11 @@ class MeshMotion:
     ) -> None:
         self._points = mesh.points
         self._curved = mesh.curved
-        self._bodies = tuple(bodies)
+        self._turns = np.array([body.radius is None for body in bodies], dtype=bool)
         self._pose = reference_pose
-        self._surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
+        surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
+        self._on_bodies = np.concatenate([*surfaces, np.empty(0, np.int64)])
+        self._body = np.repeat(np.arange(len(bodies)), [len(on_body) for on_body in surfaces])
         self._held = held_components(mesh, len(bodies), domain)
         matrix = stiffness(mesh)
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
@@ -79,9 +81,7 @@ class MeshMotion:
             Vertices, and middles of curved edges; those of a body lie on its surface [length].
         """
         displacement = np.zeros_like(self._points)
-        for i, body in enumerate(self._bodies):
-            on_body = self._surfaces[i]
-            displacement[on_body] = self._rigid_displacement(i, body, pose, self._points[on_body])
+        displacement[self._on_bodies] = self._rigid_displacement(pose, self._body, self._points[self._on_bodies])
         for k, extension in enumerate(self._solves):
             extension.fill(displacement[:, k])
         moved: FloatArray = self._points + displacement
@@ -90,17 +90,20 @@ class MeshMotion:
     def _moved_middles(self, curved: CurvedEdges, pose: Pose) -> FloatArray:
         """Of curved edges: those on a body move with it, those on walls stay (K, d)."""
         middles = curved.middles.copy()
-        for i, body in enumerate(self._bodies):
-            mine = curved.surface == i
-            middles[mine] += self._rigid_displacement(i, body, pose, middles[mine])
+        on_body = curved.surface < len(self._turns)
+        middles[on_body] += self._rigid_displacement(pose, curved.surface[on_body], middles[on_body])
         return middles
 
-    def _rigid_displacement(self, i: int, body: Body, pose: Pose, reference: FloatArray) -> FloatArray:
-        """x - X of points X (N, d) on one body: c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
-        if body.radius is not None:
-            return np.broadcast_to(pose.position[i] - self._pose.position[i], reference.shape)
-        turned: FloatArray = to_world(pose, i, to_body_frame(self._pose, i, reference)) - reference
-        return turned
+    def _rigid_displacement(self, pose: Pose, body: IntArray, reference: FloatArray) -> FloatArray:
+        """x - X of points X (N, d) on bodies (N,): c + R Rᵣᵀ(X - cᵣ) - X, or c - cᵣ for a ball."""
+        moved = (pose.position - self._pose.position)[body]
+        turning = self._turns[body]
+        if turning.any():
+            of, points = body[turning], reference[turning]
+            turn = rotation_matrices(pose.orientation) @ rotation_matrices(self._pose.orientation).swapaxes(1, 2)
+            arm = points - self._pose.position[of]
+            moved[turning] = pose.position[of] + np.einsum("nij,nj->ni", turn[of], arm) - points
+        return np.asarray(moved)
 
 
 def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
