@@ -66,7 +66,7 @@ def test_cells_are_never_much_coarser_than_wanted_if_it_is_heeded():
 
 def test_a_mesh_just_made_does_not_ask_however_coarse_it_is():
     far_too_fine = replace(SIZES, size=0.02, size_body=0.0025)
-    assert relative_sizes(MESH.points, MESH.cells, DISK, START, far_too_fine).min() > 2.0
+    assert relative_sizes(MESH.points, MESH.cells, DISK, START, far_too_fine).min() > 1.1 * MOST_COARSENED
     assert not asks(MESH.points, START, sizes=far_too_fine)
 
 
