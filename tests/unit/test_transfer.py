@@ -6,8 +6,8 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.core.mechanics.time_scheme import predict_pose
 from rigidfluid.core.mechanics.rigid import moment
+from rigidfluid.core.mechanics.time_scheme import predict_pose
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.taylor_hood.constraint import Constraint
