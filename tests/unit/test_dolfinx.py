@@ -82,6 +82,21 @@ def test_petscs_flags_are_true_in_the_scene(capfd):
     assert "Residual norms for rigidfluid_ solve." in capfd.readouterr().out
 
 
+def test_factors_on_a_kept_pattern_are_those_made_anew():
+    """To the last bit, as a run that is resumed has none to keep."""
+    kept, anew = (after(two_dimensional(backend="dolfinx"), 1) for _ in range(2))
+    solver = kept.system.backend._solver
+    analysed = solver._ksp
+    for _ in range(3):
+        solver._wasted = np.inf  # renews
+        anew.system.backend.drop_factors()
+        kept.step()
+        anew.step()
+    assert solver._ksp is analysed
+    for name in ("velocity", "pressure", "twist"):
+        np.testing.assert_array_equal(kept.state.fluid[name], anew.state.fluid[name])
+
+
 def test_bodies_apart_have_no_entries_in_common():
     """Each would be a new nonzero of PETSc's matrix: many bodies would take minutes."""
     scene = scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}})

@@ -6,6 +6,7 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
+from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.time_scheme import predict_pose
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.simulation import Simulation
@@ -126,3 +127,25 @@ def test_the_operator_moves_a_bodys_nodes_rigidly(dimension):
     padded = np.concatenate([force.ravel(), np.zeros(numbering.vertices)])
     expected = (constraint.transposed @ padded)[constraint.twist_start :][:size]
     np.testing.assert_allclose(surfaces.resultants(force, points, position)[0], expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_nodes_go_with_their_own_body_and_push_it_alone(dimension):
+    rng = np.random.default_rng(0)
+    cells = np.arange(dimension + 1)[None]
+    nowhere = np.zeros((0, dimension), dtype=np.int64)
+    mesh = Mesh(np.zeros((dimension + 1, dimension)), cells, nowhere, np.zeros(0, dtype=np.int64))
+    numbering = Numbering(cells, dimension + 1)
+    surfaces = Surfaces(numbering, mesh, (), 3)
+    surfaces.body_nodes = on = [np.array([0, 3]), np.array([], dtype=np.int64), np.array([4, 1, 2])]
+    points, force, velocity = rng.normal(size=(3, numbering.nodes, dimension))
+    position, twist = rng.normal(size=(3, dimension)), rng.normal(size=(3, {2: 3, 3: 6}[dimension]))
+    wrench = surfaces.resultants(force, points, position)
+    for body, nodes in enumerate(on):
+        arm = points[nodes] - position[body]
+        by_hand = np.concatenate([force[nodes].sum(axis=0), moment(arm, force[nodes]).sum(axis=0)])
+        np.testing.assert_allclose(wrench[body], by_hand, atol=1e-14)
+    moved = velocity.copy()
+    surfaces.move_with_bodies(moved, points, position, twist, np.array([False, True, True]))
+    velocity[on[2]] = rigid_velocity(twist[2], points[on[2]] - position[2])
+    np.testing.assert_array_equal(moved, velocity)

@@ -18,7 +18,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, put_back, reset
 from rigidfluid.marching.field import Accuracy, march_from
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
-from rigidfluid.marching.shared import Gaps, SharedMesh, no_gaps
+from rigidfluid.marching.shared import NO_GAPS, Gaps, SharedMesh, joined_gaps
 from rigidfluid.marching.topology import Numbers, Topology
 from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workers import Workers, same_topology
@@ -80,6 +80,7 @@ class ContactFinder:
         self._walls = tuple(walls)
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
+        self._surfaces = max([len(bodies) - 1, *(wall.surface for wall in walls)]) + 1
         self._accuracy: Accuracy = accuracy
         self._several = several
         self._whole_domain = whole_domain
@@ -92,21 +93,19 @@ class ContactFinder:
             self._refuse_first_order(mesh.ranks.size)
         near = self._near(pose.position, reach)
         if not near:
-            return self._contacts(mesh.points, mesh.facets.astype(np.int32), [])
+            return self._contacts(mesh.points, mesh.facets.astype(np.int32), NO_GAPS)
         search = self._in_the_whole if mesh.part is None else self._in_parts
         scope, gaps = search(pose.position, mesh, reach, near)
         return self._contacts(scope.points, scope.topology.surfaces.facets, gaps)
 
     def _in_the_whole(
         self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
-    ) -> tuple[_Scope, list[Gaps]]:
+    ) -> tuple[_Scope, Gaps]:
         topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
         scope = _Scope(topology, points, position, reach)
-        return scope, self._workers.map(partial(self._gaps_of, scope), near)
+        return scope, joined_gaps([NO_GAPS, *self._workers.map(partial(self._gaps_of, scope), near)])
 
-    def _in_parts(
-        self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
-    ) -> tuple[_Scope, list[Gaps]]:
+    def _in_parts(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> tuple[_Scope, Gaps]:
         """As in the whole; each rank measures the facets of its part, and all judge what all have found."""
         if self._shared is None or not same_topology(mesh, self._shared.mesh):
             self._shared = SharedMesh(mesh)
@@ -116,15 +115,13 @@ class ContactFinder:
         near = [(body, close) for body, others in near if (close := self._close(scope, body, others))]
         sources = [(body,) for body, _ in near]
         marches = shared.march(points, shared.neighbours(points), sources, *self._band(scope))
-        gaps: list[Gaps] = []
+        gaps = [NO_GAPS]
         for (body, others), march in zip(near, marches, strict=True):
-            if march is None:
-                gaps += [no_gaps(body, other) for other in others]
-                continue
-            put_back(work, *march[:4])
-            gaps += [self._between(scope, work, march.tree, body, other, shared.facets_of(other)) for other in others]
-            reset(work, len(march.vertices), len(march.beyond))
-        return scope, shared.together(gaps) if gaps else gaps
+            if march is not None:
+                put_back(work, *march[:4])
+                gaps += [self._between(scope, work, march.tree, body, it, shared.facets_of(it)) for it in others]
+                reset(work, len(march.vertices), len(march.beyond))
+        return scope, shared.together(joined_gaps(gaps))
 
     def _refuse_first_order(self, ranks: int) -> None:
         if self._accuracy != "exact":
@@ -168,7 +165,9 @@ class ContactFinder:
         ball, wanted = self._ball(scope, body), topology.seeds([body]).wanted
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
         facet_gaps(points, topology.surfaces, wanted, tree, *ball, chosen, reach, several, work, gap, partner)
-        return Gaps(body, other, chosen, gap, partner)
+        near = np.flatnonzero(np.isfinite(gap))
+        pair = np.full(len(near), body * self._surfaces + other)
+        return Gaps(pair, chosen[near], gap[near], partner[near])
 
     def _ball(self, scope: _Scope, body: int) -> tuple[FloatArray, float]:
         return scope.position[body], self._bounds[body] * ROUNDED_UP
@@ -177,26 +176,21 @@ class ContactFinder:
         """Width and slack."""
         return inf if self._whole_domain else scope.reach, TO_CORNER[scope.points.shape[1]]
 
-    def _best_rows(self, facets: Numbers, chosen: Numbers, gap: FloatArray) -> list[int]:
-        """Where the gap is least: of all, or of each separate place."""
-        if not np.isfinite(gap).any():
-            return []
-        if not self._several:
-            return [int(np.argmin(gap))]
-        patch = places(facets, chosen, gap)
-        rows = [np.flatnonzero(patch == number) for number in range(patch.max() + 1)]
-        return [int(row[np.argmin(gap[row])]) for row in rows]
+    def _best(self, facets: Numbers, gaps: Gaps) -> Gaps:
+        """Where the gap is least, of equal ones at the first facet: of each pair, or of each separate place."""
+        gaps = gaps.at(np.lexsort((gaps.facet, gaps.pair)))
+        pair, first, place = np.unique(gaps.pair, return_index=True, return_inverse=True)
+        if self._several:
+            patches = [places(facets, part) for part in np.split(gaps.facet, first[1:])] if len(pair) else []
+            place = place * len(gaps.pair) + np.concatenate([np.empty(0, np.int64), *patches])
+        order = np.lexsort((gaps.gap, place))
+        best = gaps.at(order[np.unique(place[order], return_index=True)[1]])
+        return best.at(np.lexsort((best.gap, best.pair)))
 
-    def _contacts(self, points: FloatArray, facets: Numbers, gaps: Sequence[Gaps]) -> Contacts:
-        gaps = [no_gaps(-1, -1), *gaps]
-        rows = [self._best_rows(facets, one.facet, one.gap) for one in gaps]
-        each = np.repeat(np.arange(len(gaps)), [len(best) for best in rows])
-        a, b = np.array([(one.body, one.other) for one in gaps])[each].T
-        chosen = ((one.gap[best], one.partner[best], one.facet[best]) for one, best in zip(gaps, rows, strict=True))
-        gap, partner, facet = map(np.concatenate, zip(*chosen, strict=True))
-        order = np.lexsort((gap, b, a))
-        a, b, gap = a[order], b[order], gap[order]
-        point_a, point_b = nearest_points(points, facets, partner[order], facet[order])
+    def _contacts(self, points: FloatArray, facets: Numbers, gaps: Gaps) -> Contacts:
+        best = self._best(facets, gaps)
+        (a, b), gap = np.divmod(best.pair, self._surfaces), best.gap
+        point_a, point_b = nearest_points(points, facets, best.partner, best.facet)
         at_wall, radius_b = b >= len(self._radii), np.empty(len(b))
         radius_b[~at_wall], radius_b[at_wall] = self._radii[b[~at_wall]], wall_radii(self._walls, b[at_wall])
         return Contacts(

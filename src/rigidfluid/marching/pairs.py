@@ -100,22 +100,21 @@ def nearest_points(points, facets, first, second):
 
 
 @njit(cache=True, nogil=True)
-def places(facets, chosen, gap):
-    """Number (c,) of the connected patch that each facet with a finite gap belongs to; -1 for the others.
+def places(facets, chosen):
+    """Number (c,) of the connected patch that each facet of ``chosen`` (c,) belongs to.
 
     Facets that share a vertex belong together.
     """
     patch = np.full(len(chosen), -1, np.int64)
-    rows = np.flatnonzero(np.isfinite(gap))
     count = 0
-    for row in rows:
+    for row in range(len(chosen)):
         if patch[row] >= 0:
             continue
         patch[row] = count
         waiting = [row]
         while len(waiting) > 0:
             at = waiting.pop()
-            for other in rows:
+            for other in range(len(chosen)):
                 if patch[other] < 0 and _touch(facets, chosen[at], chosen[other]):
                     patch[other] = count
                     waiting.append(other)

@@ -16,18 +16,25 @@ from rigidfluid.marching.topology import Neighbours, Numbers
 
 
 class Gaps(NamedTuple):
-    """Of facets of the surface ``other``, the ``gap`` (c,) to ``body`` and the facet ``partner`` (c,) that it is to."""
+    """Gaps of facets to bodies: the number of the ``pair`` (c,) of surfaces, the ``facet`` (c,), the ``gap`` (c,)
+    [length] and the facet ``partner`` (c,) of the body that it is to."""
 
-    body: int
-    other: int
+    pair: IntArray
     facet: Numbers
     gap: FloatArray
     partner: Numbers
 
+    def at(self, rows: IntArray) -> Gaps:
+        """Some of them, in the order wanted."""
+        return Gaps(self.pair[rows], self.facet[rows], self.gap[rows], self.partner[rows])
 
-def no_gaps(body: int, other: int) -> Gaps:
-    """Where no facet is in reach."""
-    return Gaps(body, other, np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
+
+def joined_gaps(parts: Sequence[Gaps]) -> Gaps:
+    """Those of several parts, at least one."""
+    return Gaps(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+NO_GAPS = Gaps(np.empty(0, np.int64), np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
 
 
 class SharedMesh:
@@ -89,17 +96,9 @@ class SharedMesh:
         """This part of several fields, as `march_side_by_side` has it."""
         return march_side_by_side(self.part, points, neighbours, sources, (width, slack), self._exchange)
 
-    def together(self, gaps: Sequence[Gaps]) -> list[Gaps]:
-        """Pair by pair the finite gaps that all ranks have found, facets ascending."""
-        near = [np.flatnonzero(np.isfinite(one.gap)) for one in gaps]
-        pair = np.repeat(np.arange(len(gaps)), [len(rows) for rows in near])
-        found = [(one.facet[rows], one.gap[rows], one.partner[rows]) for one, rows in zip(gaps, near, strict=True)]
-        sent = pair, *map(np.concatenate, zip(*found, strict=True))
-        pair, *everyones = map(np.concatenate, zip(*self._ranks.allgather(sent), strict=True))
-        order = np.lexsort((everyones[0], pair))
-        ends = np.searchsorted(pair[order], np.arange(1, len(gaps)))
-        pieces = zip(*(np.split(column[order], ends) for column in everyones), strict=True)
-        return [Gaps(one.body, one.other, *piece) for one, piece in zip(gaps, pieces, strict=True)]
+    def together(self, gaps: Gaps) -> Gaps:
+        """What all ranks have found."""
+        return joined_gaps(self._ranks.allgather(gaps))
 
     def _boundary(self, mesh: Mesh) -> tuple[IntArray, IntArray, IntArray]:
         """Facets (F, d), markers (F,), vertices across (F,) of the whole mesh."""

@@ -52,6 +52,8 @@ class DistributedConstraint:
         owned = place[nodes] >= 0
         self._carried, self._carrier = place[nodes[owned]], carrier[owned]
         self._width = width
+        self._operator: Any = None
+        self._lay_out()
 
     @property
     def rows(self) -> int:
@@ -64,17 +66,21 @@ class DistributedConstraint:
         return slice(self.velocities, self.velocities + self.twists)
 
     def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
-        """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
-        blocks = [self._free_columns(), *self._rigid_blocks(node_points, position)]
-        row, column, value = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
-        matrix = sparse.coo_array((value, (row, column)), shape=(self.rows, self.unknowns)).tocsr()
-        matrix.sort_indices()
-        index = PETSc.IntType
-        csr = matrix.indptr.astype(index), matrix.indices.astype(index), matrix.data
-        sizes = (self.rows, None), (self.columns, None)
-        made = PETSc.Mat().createAIJ(sizes, csr=csr, comm=self._space.communicator)
-        made.assemble()
-        return made
+        """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d).
+
+        One matrix is filled again and again, as products with it are told from others by it.
+        """
+        d = self._space.numbering.dimension
+        arm = node_points[self._space.owned_nodes[self._carried]] - position[self._free_motions][self._carrier]
+        ones = np.ones(len(self._order) - len(CROSS[d]) * len(arm))
+        data = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])[self._order]
+        if self._operator is None:
+            sizes = (self.rows, None), (self.columns, None)
+            self._operator = PETSc.Mat().createAIJ(sizes, csr=(*self._pattern, data), comm=self._space.communicator)
+        else:
+            self._operator.setValuesCSR(*self._pattern, data)
+        self._operator.assemble()
+        return self._operator
 
     def reduced(self, velocity: FloatArray, twist: FloatArray, pressure: FloatArray) -> FloatArray:
         """This process' unknowns from fields on nodes and vertices and all motions' twists (N, d+k)."""
@@ -83,17 +89,19 @@ class DistributedConstraint:
         twists = twist[self._free_motions].ravel() if self.twists else np.zeros(0)
         return np.concatenate([on_owned, twists, pressure[space.owned_vertices][self._pressure_free]])
 
-    def _free_columns(self) -> tuple[IntArray, IntArray, FloatArray]:
+    def _free_columns(self) -> tuple[IntArray, IntArray]:
         free = np.flatnonzero(np.concatenate([self._velocity_free, self._pressure_free]))
         number = np.arange(len(free)) + np.where(np.arange(len(free)) < self.velocities, 0, self.twists)
-        return free, self.first_column + number, np.ones(len(free))
+        return free, self.first_column + number
 
-    def _rigid_blocks(
-        self, node_points: FloatArray, position: FloatArray
-    ) -> list[tuple[IntArray, IntArray, FloatArray]]:
-        """u = U + ω × r, component by component, for the free motions' nodes that this process owns."""
-        d, at = self._space.numbering.dimension, self._carried
-        first = self._first_twist + self._width * self._carrier
-        arm = node_points[self._space.owned_nodes[at]] - position[self._free_motions][self._carrier]
-        straight = [(at * d + a, first + a, np.ones(len(at))) for a in range(d)]
-        return straight + [(at * d + a, first + d + b, sign * arm[:, c]) for a, b, c, sign in CROSS[d]]
+    def _lay_out(self) -> None:
+        """Ones of what is free, U and ω × r of u = U + ω × r: the rows of P, and where its values come from."""
+        d, at, first = self._space.numbering.dimension, self._carried, self._first_twist + self._width * self._carrier
+        free, number = self._free_columns()
+        row = np.concatenate([free, *(at * d + a for a in range(d)), *(at * d + a for a, *_ in CROSS[d])])
+        column = np.concatenate([number, *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])])
+        entries = np.arange(len(row)) + 1.0
+        matrix = sparse.coo_array((entries, (row, column)), shape=(self.rows, self.unknowns)).tocsr()
+        matrix.sort_indices()
+        self._pattern = matrix.indptr.astype(PETSc.IntType), matrix.indices.astype(PETSc.IntType)
+        self._order = matrix.data.astype(np.int64) - 1

@@ -147,6 +147,7 @@ class LaggedLU(Krylov):
         "ksp_gmres_restart": 60,
         "pc_type": "lu",
         "pc_factor_mat_solver_type": "mumps",
+        "mat_mumps_icntl_6": 0,  # analysed by the pattern alone, so that a run that is resumed finds the same factors
         "mat_mumps_icntl_14": 60,  # per cent of memory for pivots beyond the estimate
     }
 
