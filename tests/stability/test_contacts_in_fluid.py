@@ -117,8 +117,8 @@ def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
 @pytest.mark.parametrize("stepping", BOTH)
 @pytest.mark.parametrize(("step", "lost"), [(4.0, 0.03), (1.0, 0.01)])
 def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, stepping):
-    """At .25 ms with -6.33 and 6.35. Fluid that seems to flow through the disks' surfaces, as they turn back, would take
-    1.3 at the longer step."""
+    """At .25 ms with -6.33 and 6.35. Fluid that seems to flow through the disks' surfaces, as they turn back, would
+    take 1.3 at the longer step."""
     history = rigidfluid.run(scenes.head_on(step * MILLISECOND, stepping))
     refuse_imbalance(history, 0.003, lost)
     np.testing.assert_allclose(track(history, "vx")[-1], [-6.34, 6.34], atol=0.08)

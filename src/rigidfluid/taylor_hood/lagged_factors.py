@@ -23,7 +23,7 @@ _LEAST = float(np.finfo(float).tiny)
 class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     """LU by `factorise`.
 
-    PARDISO's factors know their rebuild_cost; that of others is what SuperLU and MUMPS, which analyse each time, took.
+    PARDISO's factors know their rebuild_cost; that of others is what SuperLU, which analyses each time, took.
     """
 
     rebuild_cost: ClassVar[Mapping[int, int]] = {2: 30, 3: 100}

@@ -139,7 +139,7 @@ class LaggedLU(Krylov):
     """
 
     keeps_pattern: ClassVar[bool] = True
-    rebuild_cost: ClassVar[Mapping[int, int]] = LaggedFactors.rebuild_cost
+    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 10, 3: 60}
     fresh_iterations: ClassVar[int] = LaggedFactors.fresh_iterations
     most: ClassVar[int] = LaggedFactors.most
     defaults: ClassVar[Settings] = {
