@@ -133,7 +133,7 @@ class Krylov(LaggedSolver[Reduced]):
 
 @final
 class LaggedLU(Krylov):
-    """LU factors of the whole matrix, by MUMPS; renewed at the same steps as `LaggedFactors`, to agree to round-off.
+    """LU factors of the whole matrix, by MUMPS.
 
     The matrix is analysed, and the pattern of its product found, once for each topology.
     """
