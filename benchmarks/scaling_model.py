@@ -4,10 +4,10 @@ mpirun -n 2 python benchmarks/scaling_model.py [--mesh 0|1|2] [--steps 5] [--lat
 
 T(N, p) = c N/p + r α log₂ p + m α + v (N/p)^⅔ / β
 
-Measured in a run of N unknowns on two processes: c, the CPU time of a process a step and unknown, what it waits left out;
-r, the global sums of a step; m, its rounds of messages between neighbours; v, their bytes over (N/p)^⅔. Assumed: the
-network's latency α [s] and bandwidth β [bytes/s]. Left out: what is not shared out (meshes are made by one process), coarse
-levels of multigrid that have less than one unknown a process, and unequal parts.
+Measured in a run of N unknowns on two processes that have a core each: c, the CPU time a step and unknown, with what
+the processes wait for each other; r, the global sums of a step; m, its rounds of messages between neighbours; v, their
+bytes over (N/p)^⅔. Assumed: the network's latency α [s] and bandwidth β [bytes/s]. Left out: what is not shared out
+(meshes are made by one process), coarse levels of multigrid that have less than one unknown a process, unequal parts.
 """
 
 from __future__ import annotations
