@@ -79,7 +79,7 @@ def test_a_new_mesh_in_a_gap_that_closes_keeps_the_energy_of_both_levels():
         old, new = (
             kinetic_energy(on(simulation, state.mesh), points, state.fluid["velocity" + suffix])
             for state in (before, after)
-            for points in [state.fluid["points_previous"] if suffix else state.mesh.points]
+            for points in [state.fluid["points_previous"] if suffix else state.mesh.geometry]
         )
         assert new == pytest.approx(old, rel=1e-9)
     assert after.ledger.transfer_loss == pytest.approx(0.0, abs=1e-9 * before.ledger.kinetic)
@@ -88,7 +88,7 @@ def test_a_new_mesh_in_a_gap_that_closes_keeps_the_energy_of_both_levels():
 def test_flow_beside_potential_flow_is_scaled_by_a_quarter_at_most(spinning):
     """Where the new mesh cannot hold the energy, the rest is lost or gained, and told."""
     state = spinning.state
-    target, points, velocity = on(spinning, state.mesh), state.mesh.points, state.fluid["velocity"]
+    target, points, velocity = on(spinning, state.mesh), state.mesh.geometry, state.fluid["velocity"]
     potential = np.where(target.surfaces.velocity_free, 0.0, velocity)
     for energy, scale in ((0.0, 0.8), (1e6, 1.25)):
         found = _with_energy(target, points, velocity, potential, energy)
