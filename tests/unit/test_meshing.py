@@ -79,9 +79,9 @@ def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
 def test_surfaces_show_what_edges_to_ask_for_before_the_mesh_is_made(bodies, pose, domain, sizes, monkeypatch):
     run, asked = meshing.run_netgen, []
 
-    def seen(*arguments, **options):
-        asked.append(("perfstepsend" in options, float(arguments[4][0])))
-        return run(*arguments, **options)
+    def seen(*arguments, surfaces_alone=False):
+        asked.append((surfaces_alone, float(arguments[4][0])))
+        return run(*arguments, surfaces_alone=surfaces_alone)
 
     monkeypatch.setattr(meshing, "run_netgen", seen)
     mesh = generate_mesh(bodies, pose, domain, *sizes)

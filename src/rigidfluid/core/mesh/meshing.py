@@ -26,7 +26,6 @@ def generate_mesh(
     size_body: float,
     growth: float,
     finer: Sequence[tuple[FloatArray, float]] = (),
-    improved: bool = True,
 ) -> Mesh:
     """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, the vertices of each surface's facets on that surface.
 
@@ -46,9 +45,6 @@ def generate_mesh(
         How fast the cell size grows with the distance to a body [1].
     finer : sequence of ((d,) array, float)
         Points where the edges must be shorter, and how long they may be [length].
-    improved : bool
-        Whether Netgen improves the cells of a plane mesh, for five times the time; MMG need not be given good ones.
-        Those in space are improved in any case.
 
     Returns
     -------
@@ -62,8 +58,7 @@ def generate_mesh(
     """
     refuse_bodies_outside(pose, domain)
     arguments = bodies, pose, domain, size, _size_to_ask(bodies, pose, domain, size, size_body, growth, finer)
-    options: dict[str, Any] = {} if improved else {"optsteps2d": 0}
-    netgen = run_netgen(*arguments, growth, finer, **options)
+    netgen = run_netgen(*arguments, growth, finer)
     mesh = put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain, curved=True)
     refuse_touching_bodies(mesh, len(bodies))
     check_mesh(mesh, quality=0.0)
@@ -83,12 +78,9 @@ def _size_to_ask(
 
     Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost.
     """
-    from netgen.meshing import MeshingStep
-
-    last = MeshingStep.MESHEDGES if domain.dimension == 2 else MeshingStep.MESHSURFACE
     asked = np.full(len(bodies), size_body)
     for _ in range(ATTEMPTS):
-        surfaces = run_netgen(bodies, pose, domain, size, asked, growth, finer, perfstepsend=last)
+        surfaces = run_netgen(bodies, pose, domain, size, asked, growth, finer, surfaces_alone=True)
         excess = longest_edges(surfaces_of(surfaces, domain.dimension), len(bodies)) / size_body
         if np.all(excess <= 1.0):
             return asked
@@ -135,15 +127,17 @@ def run_netgen(
     size_body: FloatArray,
     growth: float,
     finer: Sequence[tuple[FloatArray, float]],
-    **options: Any,
+    surfaces_alone: bool = False,
 ) -> Any:
-    """Netgen's mesh; ``size_body`` (n,) is the target edge length on each body [length], ``options`` are Netgen's."""
+    """Netgen's mesh; ``size_body`` (n,) is the target edge length on each body [length]."""
     from netgen import meshing, occ
 
+    surfaces = meshing.MeshingStep.MESHEDGES if domain.dimension == 2 else meshing.MeshingStep.MESHSURFACE
+    until = {"perfstepsend": surfaces} if surfaces_alone else {}
     verbosity = meshing.SetMessageImportance(0)
     try:
         geometry = occ.OCCGeometry(fluid_shape(bodies, pose, domain, size_body), dim=domain.dimension)
-        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **options)
+        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **until)
         for point, length in finer:
             parameters.RestrictH(*in_space(point), h=float(length))
         return geometry.GenerateMesh(parameters)

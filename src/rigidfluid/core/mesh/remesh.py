@@ -72,7 +72,7 @@ def initial_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequ
     """
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
-        mesh = generate_mesh(bodies, pose, domain, sizes.size, sizes.size_body, sizes.growth, finer, False)
+        mesh = generate_mesh(bodies, pose, domain, sizes.size, sizes.size_body, sizes.growth, finer)
         _, points, wanted = long_edges(mesh, bodies, pose, domain, walls, sizes, BISECTABLE)
         if not len(points):
             break
