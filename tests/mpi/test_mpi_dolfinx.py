@@ -17,7 +17,7 @@ STEPS = Path(__file__).parents[1] / "support" / "shared_steps.py"
 ANSWERS = Path(__file__).parent / "shared_answers.py"
 CHANNEL = {
     "scene": {"name": "channel", "dimension": 2},
-    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0], "tolerance": 1e-11},
+    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0], "tolerance": 1e-13},
     "domain": {"lower": [0.0, 0.0], "upper": [3.0, 1.0]},
     "boundary": [{"on": "left", "type": "velocity", "velocity": [1.0, 0.0], "profile": "parabolic"}]
     + [{"on": "right", "type": "pressure", "pressure": 0.3}, {"on": "top", "type": "slip"}],

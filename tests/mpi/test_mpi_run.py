@@ -74,7 +74,7 @@ def assert_same_tables(folders, names, rtol):
     for name in names:
         expected, found = (table(folder / name) for folder in folders)
         for column, values in expected.items():
-            np.testing.assert_allclose(found[column], values, rtol=rtol, atol=1e-9, err_msg=f"{name} {column}")
+            np.testing.assert_allclose(found[column], values, rtol=rtol, atol=1e-8, err_msg=f"{name} {column}")
 
 
 @pytest.fixture(params=["gathered", "dolfinx"])
@@ -110,7 +110,7 @@ def test_two_processes_see_the_impact_that_one_does(mpirun, tmp_path, backend):
     assert speed.min() < -8.0
     assert speed[-1] > 5.0
     assert pushed.max() > 100.0 * pushed[-1] >= 0.0
-    assert_same_tables(folders, ("bodies.csv", "energy.csv"), rtol=1e-6)
+    assert_same_tables(folders, ("bodies.csv", "energy.csv"), rtol=3e-6)
 
 
 def test_a_folder_of_two_processes_is_not_resumed_by_one(mpirun, tmp_path):

@@ -102,26 +102,26 @@ def test_a_bounce(step, stepping, lost):
 @pytest.mark.parametrize("density", [3.0, 0.2])
 @pytest.mark.parametrize("step", [1.0, 0.25])
 def test_a_cradle_gains_nothing_at_fine_steps(step, density):
-    """The flow, which the mesh does not resolve, may not add energy, however long it goes on."""
-    refuse_imbalance(rigidfluid.run(scenes.cradle(step * MILLISECOND, density=density)), created=5e-4)
+    """The flow, which the mesh does not resolve, may not add energy, however long it goes on; a new mesh adds .06 %."""
+    refuse_imbalance(rigidfluid.run(scenes.cradle(step * MILLISECOND, density=density)), created=8e-4)
 
 
 @pytest.mark.parametrize("stepping", BOTH)
-@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.001, 0.01, 0.07), (1.0, 0.001, 0.01, 0.025)])
+@pytest.mark.parametrize(("step", "created", "lost", "off"), [(4.0, 0.001, 0.01, 0.07), (1.0, 0.001, 0.01, 0.02)])
 def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
     history = rigidfluid.run(scenes.cradle(step * MILLISECOND, stepping))
     refuse_imbalance(history, created, lost)
-    assert track(history, "vx")[-1, 2] == pytest.approx(7.28, abs=off)
+    assert track(history, "vx")[-1, 2] == pytest.approx(7.266, abs=off)
 
 
 @pytest.mark.parametrize("stepping", BOTH)
 @pytest.mark.parametrize(("step", "lost"), [(4.0, 0.03), (1.0, 0.01)])
 def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, stepping):
-    """At .25 ms with -6.33 and 6.35. Fluid that seems to flow through the disks' surfaces, as they turn back, would
+    """At .5 ms with -6.32 and 6.33. Fluid that seems to flow through the disks' surfaces, as they turn back, would
     take 1.3 at the longer step."""
     history = rigidfluid.run(scenes.head_on(step * MILLISECOND, stepping))
     refuse_imbalance(history, 0.003, lost)
-    np.testing.assert_allclose(track(history, "vx")[-1], [-6.34, 6.34], atol=0.08)
+    np.testing.assert_allclose(track(history, "vx")[-1], [-6.32, 6.32], atol=0.06)
 
 
 @pytest.mark.parametrize("height", [0.19, 0.198, 0.206])

@@ -88,7 +88,7 @@ def test_factors_on_a_kept_pattern_are_those_made_anew():
     solver = kept.system.backend._solver
     analysed = solver._ksp
     for _ in range(3):
-        solver._wasted = np.inf  # renews
+        solver._wasted, solver._corrections = np.inf, ()  # renews, and recycles nothing
         anew.system.backend.drop_factors()
         kept.step()
         anew.step()
