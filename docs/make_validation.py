@@ -279,7 +279,10 @@ on the right. The cylinder leaves the wall, and sways towards the middle. Settle
 {figures}
 
 A cell's relative size is the edge of a regular triangle of its area over the size wanted at its centre, gaps left out;
-off by a factor, it may be too coarse or too fine."""
+off by a factor, it may be too coarse or too fine.
+
+The step is .01 at density 1.5 and .0025 at density 3. With .005 at density 3, tried first, 2.3 % of the energy were
+unaccounted for."""
 
 
 def lammps() -> None:
