@@ -93,7 +93,7 @@ class Pardiso:
 
     def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
         self.settings = settings
-        self._rows, self._columns = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
+        self._rows, self._columns = (each.astype(np.int32, copy=False) for each in (matrix.indptr, matrix.indices))
         self._handle = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
         self._iparm[[_GIVEN, _FROM_ZERO, _REORDERING, _PIVOTS]] = 1, 1, _NESTED_DISSECTION, settings.pivots
