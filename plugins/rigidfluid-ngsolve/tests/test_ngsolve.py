@@ -36,7 +36,7 @@ def two_balls(backend: str, dimension: int, model: str) -> rigidfluid.Scene:
                 "density": 1.0,
                 "viscosity": 0.05,
                 "gravity": [0.0] * (dimension - 1) + [-10.0],
-                "tolerance": 1e-12,
+                "tolerance": 1e-13,
             },
             "domain": {"type": "box", "lower": [0.0] * dimension, "upper": [1.0] * dimension},
             "body": [ball | free, ball | driven],
