@@ -1,11 +1,15 @@
 """Ctrl-C still reaches Python after MMG has run."""
 
+import contextlib
 import signal
 import subprocess
 import sys
 import time
 
+import pytest
 from falling import SCENES
+
+import rigidfluid
 
 
 def test_ctrl_c_is_reported_and_leaves_a_summary(tmp_path):
@@ -20,3 +24,19 @@ def test_ctrl_c_is_reported_and_leaves_a_summary(tmp_path):
     assert process.returncode == 130
     assert "--resume" in complaint
     assert "interrupted" in (tmp_path / "summary.json").read_text()
+
+
+def test_ctrl_c_that_is_lost_in_a_step_ends_the_run_after_it() -> None:
+    """Python ignores exceptions in finalisers and callbacks."""
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml")
+    steps = []
+
+    def lose(now) -> None:
+        steps.append(now.time)
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        rigidfluid.run(scene, progress=lose)
+    assert len(steps) == 1
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

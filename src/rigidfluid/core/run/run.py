@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
-from rigidfluid.core.run.process import one_openblas_thread
+from rigidfluid.core.run.process import one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, RigidfluidError
@@ -68,7 +68,8 @@ def run(
         if progress is not None:
             simulation.observe(lambda now: progress(_progress(now)))
         try:
-            with no_exit():
+            with no_exit(), remembered_interrupt() as interrupt_if_lost:
+                simulation.observe(lambda _: interrupt_if_lost())
                 simulation.go()
         except BaseException as error:
             if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
