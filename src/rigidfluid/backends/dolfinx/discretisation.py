@@ -104,7 +104,8 @@ class PetscDiscretisation:
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
         scale = max(self._solver.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
-        correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, tolerance * scale)
+        enough = tolerance * scale
+        correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
         return self._solution(s, reduced, guess + correction, given, load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
