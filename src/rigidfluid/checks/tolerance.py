@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import floor, log2
 
 from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import START_LEVEL
 from rigidfluid.core.scene.scene import TimeTable
 
@@ -27,7 +27,7 @@ def to_a_tolerance(time: TimeTable) -> Iterator[Finding]:
     """
     if time.tolerance is None:
         return
-    halvings = floor(log2(time.step / time.shortest) + 1e-9)
+    halvings = Clock.for_steps(time.step, time.shortest, time.end).levels
     found = {"tolerance": time.tolerance, "longest": time.step, "shortest": time.shortest, "halvings": halvings}
     text = f"steps are between {figure(time.shortest)} and {figure(time.step)}"
     text += f", by a local error of at most {figure(time.tolerance)}"

@@ -75,7 +75,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     present, before = mesh.geometry, fluid["points_previous"]
     points = present if step.points is None else step.points
     expected = e0 * present + e1 * before if step.points is None else points
-    node_points, flow = numbering.node_points(points), density * _extrapolated(fluid, step)
+    node_points, flow = numbering.node_points(points), density * extrapolated(fluid, step.extrapolation)
     mesh_velocity = numbering.node_points(d0 * expected + d1 * present + d2 * before)
     matrix = CoupledMatrix(
         points=points,
@@ -114,16 +114,16 @@ def _system(
         load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
         body_load=step.load,
         given=surfaces.prescribed(step.time, node_points, step.pose.position, flat(given), driven),
-        velocity=_extrapolated(fluid, step),
+        velocity=extrapolated(fluid, step.extrapolation),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),
         scale=step.load_scale,
     )
 
 
-def _extrapolated(fluid: FluidState, step: Step) -> FloatArray:
-    """u* = e₀uⁿ + e₁uⁿ⁻¹."""
-    e0, e1 = step.extrapolation
+def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
+    """u* = e₀uⁿ + e₁uⁿ⁻¹ with ``weights`` e (2,)."""
+    e0, e1 = weights
     return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
 
 

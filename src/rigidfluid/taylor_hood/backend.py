@@ -117,10 +117,11 @@ class TaylorHoodBackend(FluidBackend):
     def prediction_error(
         self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
     ) -> float:
+        from rigidfluid.taylor_hood.advance import extrapolated
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
 
-        expected = extrapolation[0] * before["velocity"] + extrapolation[1] * before["velocity_previous"]
-        return kinetic_energy(self._any(_given(mesh)), _given(mesh).geometry, after["velocity"] - expected)
+        missed = after["velocity"] - extrapolated(before, extrapolation)
+        return kinetic_energy(self._any(_given(mesh)), _given(mesh).geometry, missed)
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:

@@ -97,7 +97,7 @@ class MeshUpdater:
 
     def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
-        if state.reference is None or state.reference.tick == state.tick:
+        if state.reference is None or state.is_on_new_mesh:
             return state
         if self._waits(state.reference, state, pose) or not self.needs_remesh(state, pose):
             return state

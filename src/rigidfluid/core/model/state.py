@@ -134,6 +134,11 @@ class State(CarriedState):
         return self.contact_wrench if self.free is None else self.free.contact
 
     @property
+    def is_on_new_mesh(self) -> bool:
+        """Whether its mesh was made for it."""
+        return self.reference is not None and self.reference.tick == self.tick
+
+    @property
     def past_twist(self) -> Twist | None:
         """Twist of the motions one step earlier, None at the start."""
         return None if self.past is None else self.past.twist

@@ -55,7 +55,7 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
         speed=speed,
         energy=max(before.energy, candidate.ledger.kinetic),
     )
-    if after.steps <= UNSEEN or _is_on_new_mesh(state) or state.past is None or candidate.past is None:
+    if after.steps <= UNSEEN or state.is_on_new_mesh or state.past is None or candidate.past is None:
         return after
     size, previous = candidate.past.step, state.past.step
     weight, (e0, e1) = path_error_weight(size, previous), extrapolation_weights(size, previous)
@@ -68,10 +68,6 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     smooth_bodies = np.maximum(np.sqrt(bodies) - np.sqrt(contacts), 0.0) ** 2
     smooth = max(_ratio(masses.fastest(smooth_bodies), speed), _ratio(smooth_fluid, after.energy**0.5))
     return replace(after, error=weight * smooth, with_contacts=weight * whole)
-
-
-def _is_on_new_mesh(state: State) -> bool:
-    return state.reference is not None and state.reference.tick == state.tick
 
 
 class _Masses:
