@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import SpatialPart
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray
@@ -64,10 +65,16 @@ class Domain(SpatialPart):
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are inside, (N,); on the boundary either may be said."""
 
-    @abstractmethod
     def cad_shape(self) -> Any:
         """The domain as a ``netgen.occ`` face (2D) or solid (3D) whose edges (2D) or faces (3D) have the names of the
-        pieces that they lie on."""
+        pieces that they lie on; None of one made of `facets`."""
+        return None
+
+    @property
+    def facets(self) -> Facets | None:
+        """The facets that the boundary is made of, marked by the number of their piece; None where there is a
+        `cad_shape`."""
+        return None
 
     @property
     def names(self) -> tuple[str, ...]:

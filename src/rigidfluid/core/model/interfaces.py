@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict
 from scipy.sparse import csc_array
 
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import (
@@ -106,9 +107,14 @@ class Body(Surface, SpatialPart):
     def sample_surface(self, count: int) -> FloatArray:
         """About ``count`` points spread over the surface, (N, d) [length]."""
 
-    @abstractmethod
     def cad_shape(self) -> Any:
-        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator."""
+        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator; None where `facets` are given."""
+        return None
+
+    @property
+    def facets(self) -> Facets | None:
+        """The facets that the shape is made of, in its own frame; None of a smooth one, which has a `cad_shape`."""
+        return None
 
 
 @dataclass(frozen=True)

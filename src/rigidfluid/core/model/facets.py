@@ -1,0 +1,21 @@
+"""A surface made of simplices: what a polygon, a polyhedron, or a boundary read from a file is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class Facets:
+    """A closed surface of straight edges (2D) or flat triangles (3D).
+
+    ``points`` (N, d) [length]; ``vertices`` (F, d), the corners of each facet, in such an order that its normal points
+    into the fluid: (y_b - y_a, x_a - x_b) of an edge from a to b, (b - a) × (c - a) of a triangle; ``markers`` (F,),
+    the piece of a domain's boundary that each facet is on, 0 of a body's.
+    """
+
+    points: FloatArray
+    vertices: IntArray
+    markers: IntArray
