@@ -108,7 +108,7 @@ class Body(Surface, SpatialPart):
         """About ``count`` points spread over the surface, (N, d) [length]."""
 
     def cad_shape(self) -> Any:
-        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator; None where `facets` are given."""
+        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator; None with `facets`."""
         return None
 
     @property
