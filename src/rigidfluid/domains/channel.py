@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any, ClassVar
 
-import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.model.domain import Domain, Piece

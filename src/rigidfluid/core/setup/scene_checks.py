@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rigidfluid.core.setup.boundary_checks import check_inflow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.placing import check_orientation
