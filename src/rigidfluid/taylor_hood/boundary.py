@@ -11,12 +11,13 @@ from rigidfluid.taylor_hood.surfaces import Surfaces, facet_weights
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
     """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d)."""
     load = np.zeros_like(node_points)
-    for face in surfaces.faces:
-        if face.condition.type == "pressure" and face.condition.value is not None:
-            nodes = face.facet_nodes
-            pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
-            weight = facet_weights(node_points, face.facets)
-            np.add.at(load, nodes, (weight * pressure)[..., None] * face.normal)
+    with surfaces.ranks.raise_on_all():
+        for face in surfaces.faces:
+            if face.condition.type == "pressure" and face.condition.value is not None:
+                nodes = face.facet_nodes
+                pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
+                weight = facet_weights(node_points, face.facets)
+                np.add.at(load, nodes, (weight * pressure)[..., None] * face.normal)
     return load
 
 
