@@ -11,11 +11,12 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
     """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d)."""
     load = np.zeros_like(node_points)
-    for face in surfaces.faces:
-        if face.condition.type == "pressure" and face.condition.value is not None:
-            nodes = face.facet_nodes
-            pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
-            np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
+    with surfaces.ranks.raise_on_all():
+        for face in surfaces.faces:
+            if face.condition.type == "pressure" and face.condition.value is not None:
+                nodes = face.facet_nodes
+                pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
+                np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
     return load
 
 

@@ -71,9 +71,10 @@ class Surfaces:
         ``twist`` (n, d+k) is read for the ``controlled`` (n,) bodies alone.
         """
         velocity = np.zeros_like(node_points)
-        for face in self.faces:
-            if face.condition.type == "velocity" and face.condition.value is not None:
-                velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
+        with self.ranks.raise_on_all():
+            for face in self.faces:
+                if face.condition.type == "velocity" and face.condition.value is not None:
+                    velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
         walls = [face for face in self.faces if face.condition.type == "wall"]
         # where two meet, the one at rest holds the fluid
         for face in sorted(walls, key=lambda wall: wall.condition.value is None):
