@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.taylor_hood.surfaces import Surfaces, facet_weights
+from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
@@ -16,8 +16,7 @@ def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> F
             if face.condition.type == "pressure" and face.condition.value is not None:
                 nodes = face.facet_nodes
                 pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
-                weight = facet_weights(node_points, face.facets)
-                np.add.at(load, nodes, (weight * pressure)[..., None] * face.normal)
+                np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
     return load
 
 
@@ -31,7 +30,7 @@ def face_power(
 ) -> float:
     """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
-    ``normal`` points into the fluid, so u·n > 0 is inflow; the mesh does not move across a face. With several processes
+    The normal points into the fluid, so u·n > 0 is inflow; the mesh does not move across a face. With several processes
     the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
     """
     held = surfaces.dirichlet_nodes
@@ -39,6 +38,5 @@ def face_power(
     energy = 0.5 * inert_density * np.sum(velocity**2, axis=1)
     for face in surfaces.faces:
         if inert_density > 0.0 and face.condition.type in ("pressure", "velocity"):
-            weight, nodes = facet_weights(node_points, face.facets), face.facet_nodes
-            power += float(np.sum(weight * energy[nodes] * (velocity[nodes] @ face.normal)))
+            power += float(np.sum(energy[face.facet_nodes] * face.inflow(node_points, velocity)))
     return float(surfaces.ranks.sum(power))
