@@ -8,6 +8,7 @@ from numba import njit
 
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.topology import boundary_facets
+from rigidfluid.core.model.simplices import facet_to_facet
 from rigidfluid.core.model.types import Contacts, Mesh
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
@@ -15,7 +16,6 @@ from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure
 from rigidfluid.marching.field import march_from
 from rigidfluid.marching.pairs import facet_gaps
-from rigidfluid.marching.simplices import facet_to_facet
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.model.facet_tree import Tree
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of, wall_radii
@@ -20,7 +21,6 @@ from rigidfluid.marching.field import Accuracy, march_from
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
 from rigidfluid.marching.shared import NO_GAPS, Gaps, SharedMesh, joined_gaps
 from rigidfluid.marching.topology import Numbers, Topology
-from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workers import Workers, same_topology
 from rigidfluid.marching.workspace import Workspace
 

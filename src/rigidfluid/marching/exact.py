@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from numba import njit
 
+from rigidfluid.core.model.facet_tree import build_tree, empty_tree, search_to_vertex
 from rigidfluid.marching.band import square_in_band
 from rigidfluid.marching.convex import is_convex
-from rigidfluid.marching.tree import build_tree, empty_tree, search_to_vertex
 from rigidfluid.marching.walk import local_search_to_vertex
 from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 

@@ -8,11 +8,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.model.facet_tree import Tree
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.marching.exact import march, reset, seed
 from rigidfluid.marching.first_order import march_first_order
 from rigidfluid.marching.topology import Numbers, Topology
-from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 Accuracy = Literal["exact", "first-order"]

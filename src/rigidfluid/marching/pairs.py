@@ -10,8 +10,8 @@ from math import sqrt
 import numpy as np
 from numba import njit
 
-from rigidfluid.marching.simplices import facet_to_facet
-from rigidfluid.marching.tree import search_to_facet
+from rigidfluid.core.model.facet_tree import search_to_facet
+from rigidfluid.core.model.simplices import facet_to_facet
 from rigidfluid.marching.walk import local_search_to_facet
 from rigidfluid.marching.workspace import KNOWN
 

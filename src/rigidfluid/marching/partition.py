@@ -17,11 +17,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.model.facet_tree import Tree
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.exact import march_on, put_back, seed
 from rigidfluid.marching.field import DistanceField
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology
-from rigidfluid.marching.tree import Tree
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 NOT_REACHED = np.int32(-1)

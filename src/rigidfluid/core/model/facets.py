@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 
@@ -19,3 +21,13 @@ class Facets:
     points: FloatArray
     vertices: IntArray
     markers: IntArray
+
+
+def area_vectors(points: FloatArray, vertices: IntArray) -> FloatArray:
+    """Area (length in 2D) times unit normal of each facet, (F, d), for ``points`` and ``vertices`` as in `Facets`
+    [length^(d-1)]."""
+    corners = points[vertices]
+    edges = corners[:, 1:] - corners[:, :1]
+    if points.shape[1] == 2:
+        return np.stack([edges[:, 0, 1], -edges[:, 0, 0]], axis=1)
+    return np.asarray(0.5 * np.cross(edges[:, 0], edges[:, 1]))

@@ -319,10 +319,24 @@ class Scene(_Table):
 
 
 def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
-    """The tables of a TOML file; ``kind`` says in messages what file it should be."""
+    """The tables of a TOML file; ``kind`` says in messages what file it should be.
+
+    Where a table has a key ``file``, its path is relative to the file it stands in.
+    """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        tables: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
+    return _beside(tables, path.resolve().parent)
+
+
+def _beside(value: Any, folder: Path) -> Any:
+    """Tables with every ``file`` in them as an absolute path, seen from a folder."""
+    if isinstance(value, list):
+        return [_beside(inner, folder) for inner in value]
+    if not isinstance(value, dict):
+        return value
+    found = {key: _beside(inner, folder) for key, inner in value.items()}
+    return found | {"file": str(folder / found["file"])} if isinstance(found.get("file"), str) else found

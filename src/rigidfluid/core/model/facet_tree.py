@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+from rigidfluid.core.model.simplices import facet_to_facet, vertex_to_facet
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.marching.simplices import facet_to_facet, vertex_to_facet
-from rigidfluid.marching.topology import Numbers
 
 LEAF = 4
 """Facets in a leaf."""
@@ -26,7 +26,7 @@ LEAF = 4
 class Tree(NamedTuple):
     """``order`` of the facets along the curve, ``boxes`` (nodes, 2, d), the lower and upper corner of each [length]."""
 
-    order: Numbers
+    order: NDArray[np.int32]
     boxes: FloatArray
 
 
@@ -73,6 +73,28 @@ def search_to_vertex(points, vertex, facets, tree, square, facet):
 
 
 @njit(cache=True, nogil=True)
+def nearest_facets(points, facets, tree, queries):
+    """Of the points ``queries`` (N, d): the facet nearest to each, bits of the corners that carry weight, the weights.
+
+    Each is the last of ``points`` for a while, since distances are those of vertices.
+    """
+    last = len(points)
+    extended = np.empty((last + 1, points.shape[1]))
+    extended[:last] = points
+    nearest = np.empty(len(queries), np.int64)
+    bits = np.empty(len(queries), np.int64)
+    weights = np.empty((len(queries), 3))
+    for row in range(len(queries)):
+        extended[last] = queries[row]
+        guess = _facet_near(extended, last, tree)
+        square = vertex_to_facet(extended, last, facets, guess)[0]
+        facet = search_to_vertex(extended, last, facets, tree, square, guess)[1]
+        nearest[row] = facet
+        _, bits[row], weights[row, 0], weights[row, 1], weights[row, 2] = vertex_to_facet(extended, last, facets, facet)
+    return nearest, bits, weights
+
+
+@njit(cache=True, nogil=True)
 def search_to_facet(points, target, facets, tree, square, facet):
     """``square`` and ``facet``, or what in the tree is nearer to the facet ``target``."""
     order, boxes = tree.order, tree.boxes
@@ -86,6 +108,18 @@ def search_to_facet(points, target, facets, tree, square, facet):
                 square, facet = new_square, order[row]
         node = _leaf(points, corners, boxes, _after(node), square)
     return square, facet
+
+
+@njit(cache=True, nogil=True)
+def _facet_near(points, vertex, tree):
+    """The first facet of the leaf that is found by going to the nearer box each time."""
+    order, boxes = tree.order, tree.boxes
+    leaves, node = len(boxes) // 2, 1
+    while node < leaves:
+        node *= 2
+        if _apart(points, (vertex,), boxes, node + 1) < _apart(points, (vertex,), boxes, node):
+            node += 1
+    return order[(node - leaves) * LEAF]
 
 
 @njit(cache=True, nogil=True, forceinline=True)

@@ -1,0 +1,142 @@
+"""Distances to surfaces of facets against all facets one by one and the winding of the surface."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+L_SHAPE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]])
+# corners of a cube, and its facets seen from outside
+CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+SQUARES = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+
+
+def polygon(corners: FloatArray) -> Facets:
+    numbers = np.arange(len(corners))
+    return Facets(corners, np.stack([numbers, np.roll(numbers, -1)], axis=1), numbers)
+
+
+def notched_cube() -> Facets:
+    """A cube with its top pushed in to a pyramid, which is not convex and has edges and corners of all kinds."""
+    points = np.vstack([CUBE, [0.5, 0.5, 0.3]])
+    triangles = [[a, b, c] for a, b, c, _ in SQUARES[:5]] + [[a, c, d] for a, _, c, d in SQUARES[:5]]
+    top = SQUARES[5]
+    triangles += [[a, b, 8] for a, b in pairwise([*top, top[0]])]
+    return Facets(points, np.array(triangles), np.repeat(np.arange(len(triangles)), 1))
+
+
+def shapes() -> list[Facets]:
+    return [polygon(L_SHAPE), notched_cube()]
+
+
+def queries(dimension: int) -> FloatArray:
+    scattered = np.random.default_rng(4).uniform(-1.0, 2.5, (2000, dimension))
+    on_axes = np.stack(np.meshgrid(*[np.linspace(-0.5, 1.5, 9)] * dimension), axis=-1).reshape(-1, dimension)
+    return np.concatenate([scattered, on_axes + 1e-3 * np.array([1.0, 2.0, 3.0])[:dimension]])
+
+
+def naive_distance(facets: Facets, points: FloatArray) -> FloatArray:
+    """By dense samples of each facet, an upper bound that is 2 samples' distance off at most."""
+    steps = np.linspace(0.0, 1.0, 201)
+    if points.shape[1] == 2:
+        weights = np.stack([1 - steps, steps], axis=1)
+    else:
+        s, t = (grid.ravel() for grid in np.meshgrid(steps, steps))
+        inside = s + t <= 1 + 1e-12
+        weights = np.stack([1 - s - t, s, t], axis=1)[inside]
+    samples = np.einsum("wi,fij->fwj", weights, facets.points[facets.vertices]).reshape(-1, points.shape[1])
+    from scipy.spatial import KDTree
+
+    return np.asarray(KDTree(samples).query(points)[0])
+
+
+def winding(facets: Facets, points: FloatArray) -> IntArray:
+    """How often the surface goes round each point: the angle it is seen at, over the full one."""
+    rays = facets.points[facets.vertices][None] - points[:, None, None]
+    if points.shape[1] == 2:
+        a, b = rays[:, :, 0], rays[:, :, 1]
+        angle = np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], np.sum(a * b, axis=-1))
+        return np.rint(angle.sum(axis=1) / (2 * np.pi)).astype(int)
+    a, b, c = np.moveaxis(rays, 2, 0)
+    la, lb, lc = (np.linalg.norm(ray, axis=-1) for ray in (a, b, c))
+    below = la * lb * lc + np.sum(a * b, -1) * lc + np.sum(b * c, -1) * la + np.sum(c * a, -1) * lb
+    angle = 2 * np.arctan2(np.linalg.det(rays), below)
+    return np.rint(angle.sum(axis=1) / (4 * np.pi)).astype(int)
+
+
+@pytest.mark.parametrize("facets", shapes(), ids=["plane", "space"])
+def test_distance_is_that_of_all_facets_and_the_sign_that_of_the_winding(facets: Facets) -> None:
+    points = queries(facets.points.shape[1])
+    found = FacetSurface(facets).signed_distance(points)
+    np.testing.assert_allclose(np.abs(found), naive_distance(facets, points), rtol=0, atol=0.01)
+    np.testing.assert_array_equal(found < 0, winding(facets, points) != 0)
+
+
+@pytest.mark.parametrize("facets", shapes(), ids=["plane", "space"])
+def test_closest_points_are_on_the_surface_and_as_far_as_told(facets: Facets) -> None:
+    surface, points = FacetSurface(facets), queries(facets.points.shape[1])
+    foot = surface.closest_point(points)
+    away = np.linalg.norm(points - foot, axis=1)
+    np.testing.assert_allclose(away, np.abs(surface.signed_distance(points)), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(surface.signed_distance(foot), 0.0, atol=1e-15)
+    np.testing.assert_allclose(surface.closest_point(foot), foot, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("facets", shapes(), ids=["plane", "space"])
+def test_normals_are_the_slope_of_the_distance(facets: Facets) -> None:
+    surface, points = FacetSurface(facets), queries(facets.points.shape[1])
+    steps = 1e-6 * np.eye(points.shape[1])
+    slope = np.stack(
+        [(surface.signed_distance(points + step) - surface.signed_distance(points - step)) / 2e-6 for step in steps],
+        axis=1,
+    )
+    smooth = np.abs(np.linalg.norm(slope, axis=1) - 1) < 1e-6
+    assert np.mean(smooth) > 0.95
+    np.testing.assert_allclose(surface.normal(points)[smooth], slope[smooth], rtol=0, atol=1e-6)
+
+
+def test_normals_at_a_corner_itself_are_the_mean_of_those_around_it() -> None:
+    found = FacetSurface(polygon(L_SHAPE)).normal(L_SHAPE)
+    np.testing.assert_allclose(found[0], [-np.sqrt(0.5), -np.sqrt(0.5)], atol=1e-15)
+    found = FacetSurface(notched_cube()).normal(CUBE[:1])
+    np.testing.assert_allclose(found[0], -np.ones(3) / np.sqrt(3.0), atol=1e-15)
+
+
+def test_flat_pieces_have_a_plane_and_others_none() -> None:
+    whole = FacetSurface(polygon(L_SHAPE))
+    assert whole.plane is None
+    assert whole.radius is None
+    floor = whole.piece(0)
+    assert floor.plane is not None
+    assert floor.radius == np.inf
+    assert floor.plane.axis == 1
+    np.testing.assert_array_equal(floor.plane.unit_normal, [0.0, -1.0])
+    np.testing.assert_array_equal(floor.bounds, [[0.0, 0.0], [2.0, 0.0]])
+
+
+def test_a_piece_takes_the_sign_of_the_whole_in_the_fluid() -> None:
+    # fluid inside an L: round the inner corner, behind the plane of the piece, there is still fluid
+    room = FacetSurface(polygon(L_SHAPE[::-1]))
+    names = [tuple(edge) for edge in room.facets.points[room.facets.vertices].sum(axis=1).tolist()]
+    ledge = room.piece(names.index((2.5, 1.0)))  # from (0.5, 0.5) to (2, 0.5), the fluid below
+    around = np.array([[0.25, 0.9], [1.0, 0.4], [1.0, 0.6]])
+    foot = np.array([[0.5, 0.5], [1.0, 0.5], [1.0, 0.5]])
+    expected = np.linalg.norm(around - foot, axis=1) * [1.0, 1.0, -1.0]
+    np.testing.assert_allclose(ledge.signed_distance(around), expected, rtol=1e-15)
+    alone = FacetSurface(ledge.facets)
+    assert alone.signed_distance(around)[0] < 0
+
+
+def test_area_vectors_point_into_the_fluid_and_add_up_to_nothing() -> None:
+    for facets in shapes():
+        vectors = area_vectors(facets.points, facets.vertices)
+        np.testing.assert_allclose(vectors.sum(axis=0), 0.0, atol=1e-15)
+        flux = np.einsum("fj,fj->", vectors, facets.points[facets.vertices].mean(axis=1))
+        volume = {2: 1.25, 3: 1.0 - 0.7 / 3}[facets.points.shape[1]]
+        assert flux / facets.points.shape[1] == pytest.approx(volume, rel=1e-14)
