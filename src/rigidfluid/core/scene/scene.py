@@ -328,11 +328,13 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     return _beside(tables, path.resolve().parent)
 
 
-def _beside(value: Any, folder: Path) -> Any:
-    """Tables with every ``file`` in them as an absolute path, seen from a folder."""
-    if isinstance(value, list):
-        return [_beside(inner, folder) for inner in value]
-    if not isinstance(value, dict):
-        return value
-    found = {key: _beside(inner, folder) for key, inner in value.items()}
+def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """A table with every ``file`` in it, and in the tables within, as an absolute path, seen from a folder."""
+    found = {key: _each_beside(inner, folder) for key, inner in table.items()}
     return found | {"file": str(folder / found["file"])} if isinstance(found.get("file"), str) else found
+
+
+def _each_beside(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [_each_beside(inner, folder) for inner in value]
+    return _beside(value, folder) if isinstance(value, dict) else value
