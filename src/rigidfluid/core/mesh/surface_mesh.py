@@ -20,8 +20,9 @@ from rigidfluid.core.mesh.refine_surface import (
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
@@ -93,8 +94,8 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
         found = surfaces_of(netgen, body.dimension)
         excess = float(longest_edges(found, 1)[0]) / sizes.size_body
         if excess <= 1.0:
-            surface = _outward(_as_mesh(Facets(found.points, found.facets, found.markers)))
-            return replace(surface, points=body.closest_point(surface.points))
+            surface = _as_mesh(Facets(found.points, found.facets, found.markers))
+            return _into_fluid(replace(surface, points=body.closest_point(surface.points)), [body])
         asked *= 0.95 / excess
     edge = f"a facet of length {excess * sizes.size_body:.4g}"
     raise MeshError(f"body.{number}", edge, f"at most size_body = {sizes.size_body:g}", REMEDY)
@@ -105,13 +106,18 @@ def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
     nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
     netgen = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
     found = surfaces_of(netgen, domain.dimension)
-    outward = _outward(_as_mesh(Facets(found.points, found.facets, found.markers)))
-    return put_back(replace(outward, facets=outward.facets[:, ::-1]), 0, domain, curved=True)
+    surface = put_back(_as_mesh(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
+    return _into_fluid(surface, [piece.shape for piece in domain.pieces])
 
 
-def _outward(surface: Mesh) -> Mesh:
-    """The same facets with normals out of what they enclose; Netgen's all point to one side."""
-    return surface if enclosed(surface) > 0.0 else replace(surface, facets=surface.facets[:, ::-1])
+def _into_fluid(surface: Mesh, shapes: Sequence[Surface]) -> Mesh:
+    """The same facets, with the normals of the shapes that they are on: Netgen's may point to either side."""
+    normals, middles = area_vectors(surface.points, surface.facets), surface.points[surface.facets].mean(axis=1)
+    along = np.empty(len(normals))
+    for number, shape in enumerate(shapes):
+        mine = surface.markers == number
+        along[mine] = np.sum(normals[mine] * shape.normal(middles[mine]), axis=1)
+    return replace(surface, facets=np.where(along[:, None] > 0.0, surface.facets, surface.facets[:, ::-1]))
 
 
 def _joined(parts: Sequence[Mesh]) -> Mesh:
