@@ -64,6 +64,11 @@ def fill_mesh(
     """
     surface = surface_mesh(bodies, pose, domain, walls, sizes)
     refuse_unfillable(surface, bodies, pose, domain)
+    return fill_between(surface, sizes, timeout)
+
+
+def fill_between(surface: Mesh, sizes: Sizes, timeout: float) -> Mesh:
+    """The mesh inside a closed surface, whose facets and vertices stay to the last bit."""
     points, cells = filled(surface, sizes.size, sizes.growth, timeout)
     mesh = orient(_with_facets(points, cells, surface))
     check_mesh(mesh, quality=0.0)

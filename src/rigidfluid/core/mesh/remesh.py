@@ -11,6 +11,7 @@ import numpy as np
 
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
+from rigidfluid.core.mesh.level_set import level_set_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh, put_back
 from rigidfluid.core.mesh.mmg import run_mmg, with_kept_facets
@@ -80,9 +81,11 @@ def initial_mesh(
     MeshError
         When no valid mesh can be made.
     """
-    if inserter.chosen(bodies, domain) == "fill":
-        filled = fill_mesh(bodies, pose, domain, walls, sizes, inserter.timeout)
-        return remesh(filled, bodies, pose, domain, walls, sizes)
+    way = inserter.chosen(bodies, domain)
+    if way != "cad":
+        insert = fill_mesh if way == "fill" else level_set_mesh
+        inserted = insert(bodies, pose, domain, walls, sizes, inserter.timeout)
+        return remesh(inserted, bodies, pose, domain, walls, sizes)
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
         mesh = generate_mesh(bodies, pose, domain, sizes.size, sizes.size_body, sizes.growth, finer)

@@ -8,7 +8,7 @@ from itertools import permutations
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.surface_mesh import enclosed
+from rigidfluid.core.mesh.surface_mesh import enclosed, part_of
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
@@ -93,7 +93,7 @@ def _found_in(wanted: IntArray, rows: IntArray) -> BoolArray:
 def _refuse_inside_out(surface: Mesh, bodies: int) -> None:
     """The normals of a body point out of it, those of the domain into it."""
     for i in range(bodies):
-        volume = enclosed(_part(surface, surface.markers == i))
+        volume = enclosed(part_of(surface, surface.markers == i))
         if volume <= 0.0:
             allowed = "a positive one: normals into the fluid"
             raise MeshError(f"body.{i}", f"facets that enclose a volume of {volume:.6g}", allowed, _MEND)
@@ -101,10 +101,6 @@ def _refuse_inside_out(surface: Mesh, bodies: int) -> None:
     if volume <= 0.0:
         allowed = "a positive one: normals of the domain's facets into it, and bodies smaller than it"
         raise MeshError("domain", f"facets around a fluid with a volume of {volume:.6g}", allowed, _MEND)
-
-
-def _part(surface: Mesh, chosen: BoolArray) -> Mesh:
-    return Mesh(surface.points, surface.cells, surface.facets[chosen], surface.markers[chosen])
 
 
 def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:

@@ -23,7 +23,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
 
@@ -66,6 +66,13 @@ def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequ
     return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
 
 
+def part_of(surface: Mesh, chosen: BoolArray) -> Mesh:
+    """The ``chosen`` facets (F,) with their vertices."""
+    used, compact = np.unique(surface.facets[chosen], return_inverse=True)
+    facets = compact.reshape(-1, surface.facets.shape[1])
+    return _without_cells(surface.points[used], facets, surface.markers[chosen])
+
+
 def enclosed(surface: Mesh) -> float:
     """What a closed surface encloses, Σ det(x_1, …, x_d) / d!, > 0 where its normals point out of it [length^d]."""
     corners = surface.points[surface.facets]
@@ -74,8 +81,8 @@ def enclosed(surface: Mesh) -> float:
 
 def _as_mesh(facets: Facets) -> Mesh:
     """The vertices that facets use, and the facets."""
-    used, compact = np.unique(facets.vertices, return_inverse=True)
-    return _without_cells(facets.points[used], compact.reshape(facets.vertices.shape), facets.markers)
+    whole = _without_cells(facets.points, facets.vertices, facets.markers)
+    return part_of(whole, np.ones(len(facets.vertices), dtype=bool))
 
 
 def _without_cells(points: FloatArray, facets: IntArray, markers: IntArray) -> Mesh:
