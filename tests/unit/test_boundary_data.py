@@ -174,6 +174,10 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
         "boundary.0.over_time.2: found time 1 after 1",
         "Sort",
     ),
+    "truth": ([LEFT | {"velocity": [True, 0.0]}, OPEN], "boundary.0.velocity.0: found True", "Velocity"),
+    "row of one": ([LEFT | {"over_time": [[0.0], [1.0, 1.0]]}, OPEN], "boundary.0.over_time.0: found", "Factor"),
+    "no table": ([LEFT | {"over_time": 3.0}, OPEN], "boundary.0.over_time: found 3.0", "Factor"),
+    "unknown key": ([LEFT | {"over_time": {"flie": "a"}}, OPEN], "boundary.0.over_time.flie", "'file'"),
     "no file": (
         [LEFT | {"over_time": {"file": "nowhere.csv"}}, OPEN],
         "boundary.0.over_time.file: found 'nowhere.csv'",
