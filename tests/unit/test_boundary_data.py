@@ -243,12 +243,20 @@ def test_what_balances_needs_no_outlet(boundary: list[dict[str, Any]]) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["0.0, 0.0\n1.0\n", "0.0, zero\n", "0, 0, 0\n2, 0, 0\n", "0.0, nan\n2.0, 1.0\n", "t, q\n0, 1\n"]
+    "text",
+    [
+        "0.0, 0.0\n1.0\n",
+        "0.0, zero\n",
+        "0, 0, 0\n2, 0, 0\n",
+        "0.0, nan\n2.0, 1.0\n",
+        "t, q\n0, 1\n",
+        "0, 1e-99\n2, 1\n",
+    ],
 )
 def test_files_that_are_no_tables(tmp_path: Path, text: str) -> None:
     file = tmp_path / "inflow.csv"
     file.write_text(text)
-    with pytest.raises(SceneError, match=r"boundary\.0\.over_time\.file: found .*inflow\.csv.*Correct it"):
+    with pytest.raises(SceneError, match=r"boundary\.0\.over_time\.file: found "):
         scene_from_dict(tables([LEFT | {"over_time": {"file": str(file)}}, OPEN]))
 
 

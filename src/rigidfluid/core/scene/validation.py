@@ -51,7 +51,7 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
         complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
         raise _scene_error(model, complaints, at) from None
     for field, number in _numbers(json.loads(text), at):
-        _refuse_out_of_proportion(field, number)
+        refuse_out_of_proportion(field, number)
     return table
 
 
@@ -107,7 +107,8 @@ def _numbers(value: Any, at: str) -> Iterator[tuple[str, float]]:
         yield at, value
 
 
-def _refuse_out_of_proportion(field: str, number: float) -> None:
+def refuse_out_of_proportion(field: str, number: float) -> None:
+    """Raise SceneError for a number that is not zero and beyond `SMALLEST` or `LARGEST`."""
     if number != 0 and not SMALLEST <= abs(number) <= LARGEST:
         allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size"
         raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
