@@ -186,6 +186,71 @@ def coarser_cylinders() -> Iterable[tuple[str, ...]]:
             yield f"{size_body:g}", str(order), str(history.summary["unknowns"]), *off
 
 
+UNSTEADY: dict[str, list[str]] = {
+    "step 0.01": ["time.step=0.01"],
+    "step 0.005": ["time.step=0.005"],
+    "step 0.0025": [],
+    "step 0.0025, size_body 0.00245": ["mesh.size_body=0.00245"],
+}
+"""What differs from the scene as shipped."""
+
+JOHN_2004 = {
+    "greatest drag coefficient": 2.950921575,
+    "its time [s]": 3.93625,
+    "greatest lift coefficient": 0.47795,
+    "its time [s] ": 5.693125,
+    "pressure difference at 8 s": -0.1116,
+}
+
+
+def dfg_unsteady() -> None:
+    """Schäfer & Turek's benchmark 2D-3: an inflow that rises and falls, on two meshes and with three steps."""
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+    drag, lift = figure.subplots(2, 1, sharex=True)
+    drag.set(ylabel="drag coefficient")
+    lift.set(xlabel="time [s]", ylabel="lift coefficient")
+    rows = []
+    for name, overrides in UNSTEADY.items():
+        history, seconds = run("dfg_2d3.toml", overrides)
+        time_of, (of_drag, of_lift, _) = history.bodies["time"], unsteady_coefficients(history)
+        drag.plot(time_of[1:], of_drag[1:], label=name)
+        lift.plot(time_of[1:], of_lift[1:])
+        found = unsteady_figures(history)
+        off = [
+            f"{value:.6g} ({value / exact - 1.0:+.2%})" for value, exact in zip(found, JOHN_2004.values(), strict=True)
+        ]
+        rows.append((name, *off, f"{history.summary['unknowns']}", f"{seconds:.0f}"))
+    drag.plot(3.93625, 2.950921575, "k+", markersize=12, label="John 2004")
+    lift.plot(5.693125, 0.47795, "k+", markersize=12)
+    drag.legend()
+    figure.savefig(OUT / "dfg_unsteady.png", dpi=120)
+    reference = ("John 2004", *(f"{value:.10g}" for value in JOHN_2004.values()), "", "")
+    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "wall time [s]"), [reference, *rows]) + ABOUT_UNSTEADY
+    write_page("dfg_unsteady", "DFG cylinder 2D-3", "python docs/make_validation.py dfg_unsteady", text)
+
+
+ABOUT_UNSTEADY = """
+
+The inflow is 1.5 sin(πt/8) at its peak, with Reynolds numbers up to 100 and down to 0 again at 8 s
+(`scenes/dfg_2d3.toml`). The wake becomes unsteady while the inflow is greatest. The drag follows the inflow, and its
+acceleration: it is greatest before 4 s. The lift is that of vortices which grow from small disturbances, and is the
+figure that asks for short steps. References: V. John, Int. J. Numer. Methods Fluids 44 (2004) 777, doi:10.1002/fld.679.
+"""
+
+
+def unsteady_coefficients(history: History) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Over time, of a greatest mean inflow of 1 m/s: drag and lift coefficient, and the pressure difference."""
+    front, back = (history.probes["pressure"][i::2] for i in (0, 1))
+    return 20.0 * history.bodies["fx"], 20.0 * history.bodies["fy"], front - back
+
+
+def unsteady_figures(history: History) -> tuple[float, ...]:
+    """Those of `JOHN_2004`."""
+    time_of, (drag, lift, difference) = history.bodies["time"], unsteady_coefficients(history)
+    strongest, highest = int(np.argmax(drag)), int(np.argmax(lift))
+    return drag[strongest], time_of[strongest], lift[highest], time_of[highest], difference[-1]
+
+
 SETTLING: dict[float, list[str]] = {
     1.5: [],
     3.0: ["body.0.density=3.0", "time.step=0.0025", "time.end=7.8", "output.every=0.5"],
@@ -715,6 +780,7 @@ CASES = {
     "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,
     "dfg_cylinder": dfg_cylinder,
+    "dfg_unsteady": dfg_unsteady,
     "settling_cylinder": settling_cylinder,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),

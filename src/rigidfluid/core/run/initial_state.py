@@ -5,7 +5,7 @@ from __future__ import annotations
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
-from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
@@ -38,9 +38,15 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored),
+        ledger=Ledger(kinetic, stored, kinetic + stored, power=_power(system)),
         free=_free_motions(system),
     )
+
+
+def _power(system: System) -> Power | None:
+    """None where the fluid starts in motion: nobody has solved for its stresses yet."""
+    problem = system.backend.problem
+    return Power() if problem is None or problem.initial == "rest" else None
 
 
 def _free_motions(system: System) -> FreeMotions | None:

@@ -83,6 +83,11 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
+        default="rest",
+        description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
+        "their velocities, or expressions of its velocity [length/time]",
+    )
 
 
 class WindowTable(_Table):
@@ -348,6 +353,8 @@ class Scene(_Table):
         scene."""
         # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
+        if self.fluid.initial == "rest":
+            left_out["fluid"] = {"initial"}
         if self.mesh is not None and not self.mesh.refine:
             left_out["mesh"] = {"refine"}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
