@@ -256,6 +256,8 @@ class FluidBackend(Part):
     needs_mesh: ClassVar[bool] = True
     curved_cells: ClassVar[bool] = False
     """Whether it takes meshes with curved edges; else it gets straight ones."""
+    oblique_faces: ClassVar[bool] = False
+    """Whether it takes slip and pressure conditions on faces that lie across no axis."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 

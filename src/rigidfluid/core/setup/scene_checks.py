@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.setup.boundary_checks import check_inflow
+from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
@@ -80,6 +80,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     if scene.mesh is None:
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
     check_cells(scene.mesh, domain)
+    check_oblique(scene, backend, domain)
     check_inflow(scene, domain)
 
 
@@ -98,6 +99,8 @@ def _vectors(scene: Scene) -> Vectors:
     yield "fluid.gravity", scene.fluid.gravity, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d
+        yield f"boundary.{i}.angular_velocity", boundary.angular_velocity, k
+        yield f"boundary.{i}.centre", boundary.centre, d
     for i, body in enumerate(scene.body):
         yield f"body.{i}.position", body.position, d
         yield f"body.{i}.velocity", body.velocity, d
