@@ -25,18 +25,21 @@ def face_power(
     inert_density: float,
     node_points: FloatArray,
     velocity: FloatArray,
+    mesh_velocity: FloatArray,
     pressure_load: FloatArray,
     reaction: FloatArray,
 ) -> float:
     """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
-    The normal points into the fluid, so u·n > 0 is inflow; the mesh does not move across a face. With several processes
-    the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
+    The normal n points into the fluid: what flows in is (u - w)·n, with the ``mesh_velocity`` w (nodes, d) of a face
+    that moves. With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have
+    there.
     """
     held = surfaces.dirichlet_nodes
     power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))
     energy = 0.5 * inert_density * np.sum(velocity**2, axis=1)
     for face in surfaces.faces:
         if inert_density > 0.0 and face.condition.type in ("pressure", "velocity"):
-            power += float(np.sum(energy[face.facet_nodes] * face.inflow(node_points, velocity)))
+            inflow = face.inflow(node_points, velocity - mesh_velocity)
+            power += float(np.sum(energy[face.facet_nodes] * inflow))
     return float(surfaces.ranks.sum(power))

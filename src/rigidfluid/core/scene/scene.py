@@ -85,10 +85,25 @@ class FluidTable(_OpenTable):
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
 
 
+class WindowTable(_Table):
+    """The part of a long domain that is meshed, which goes with a body.
+
+    Its end behind is open; the fluid ahead is as the domain's end there says: at rest at a wall.
+    """
+
+    follow: str = Field(description="Name of the body")
+    direction: Literal["x", "y", "z", "-x", "-y", "-z"] = Field(
+        description="Where the body goes; the window never goes back"
+    )
+    ahead: Positive = Field(description="How far it reaches ahead of the body's centre at the start [length]")
+    behind: Positive = Field(description="How far it reaches behind the body's centre at the start [length]")
+
+
 class DomainTable(_OpenTable):
     """The region that fluid and bodies share."""
 
     type: str = Field(default="box", description="Name of a domain")
+    window: WindowTable | None = Field(default=None, description="The part that is meshed; all if not given")
 
 
 class TimeFileTable(_Table):
@@ -341,19 +356,20 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     Where a table has a key ``file``, its path is relative to the file it stands in.
     """
     try:
-        tables: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+        return _beside(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
-    return _beside(tables, path.resolve().parent)
 
 
-def _beside(value: Any, folder: Path) -> Any:
-    """Tables with every ``file`` in them as an absolute path, seen from a folder."""
-    if isinstance(value, list):
-        return [_beside(inner, folder) for inner in value]
-    if not isinstance(value, dict):
-        return value
-    found = {key: _beside(inner, folder) for key, inner in value.items()}
+def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """A table with every ``file`` in it, and in the tables within, as an absolute path, seen from a folder."""
+    found = {key: _each_beside(inner, folder) for key, inner in table.items()}
     return found | {"file": str(folder / found["file"])} if isinstance(found.get("file"), str) else found
+
+
+def _each_beside(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [_each_beside(inner, folder) for inner in value]
+    return _beside(value, folder) if isinstance(value, dict) else value
