@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING, ClassVar, final
 
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, FluidState, Mesh
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 class SparseBackend(TaylorHoodBackend):
     """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
+
+    oblique_faces: ClassVar[bool] = True
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from rigidfluid.taylor_hood.lagged_factors import LaggedFactors

@@ -127,7 +127,7 @@ class BoundaryTable(_Table):
     on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
         description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
-        "a surface that is not flat is a wall"
+        "on `slip` no fluid passes, on `pressure` none moves along the surface"
     )
     velocity: tuple[Formula, ...] | None = Field(
         default=None,
@@ -138,6 +138,12 @@ class BoundaryTable(_Table):
         description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
         "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
         "other",
+    )
+    angular_velocity: Angular | None = Field(
+        default=None, description="Angular velocity of a `wall` that turns in itself; a number in 2D [rad/time]"
+    )
+    centre: Vector | None = Field(
+        default=None, description="Point that such a wall turns about; the origin if not given [length]"
     )
     pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
     over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
