@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.mesh.regions import RefinedBox, Wake
+from rigidfluid.core.mesh.regions import RefinedBox, Wake, curved_walls
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
@@ -377,7 +377,8 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
     assert scene.mesh is not None
     m = scene.mesh
     boxes = tuple(RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in m.refine)
-    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements, m.order, boxes)
+    walls = curved_walls(system.domain, m.size, m.size_wall)
+    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements, m.order, (*boxes, *walls))
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
