@@ -316,12 +316,11 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     Where a table has a key ``file``, its path is relative to the file it stands in.
     """
     try:
-        tables: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+        return _beside(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
-    return _beside(tables, path.resolve().parent)
 
 
 def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
