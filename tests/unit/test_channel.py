@@ -78,7 +78,7 @@ def test_what_cannot_be_is_refused(domain: dict[str, Any], message: str) -> None
 
 def test_a_stenosis_in_space_is_refused() -> None:
     body = [{"type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.0, 0.0, 0.0]}]
-    with pytest.raises(RigidfluidError, match="domain.type: found 'stenosis' in 3D"):
+    with pytest.raises(RigidfluidError, match=r"domain.type: found 'stenosis' in 3D"):
         scene_from_dict(scene(THROAT, scene={"name": "x", "dimension": 3}, body=body))
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.scene.scene import BodyTable, Scene
 
-    Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
+    Vectors = Iterator[tuple[str, tuple[float | str, ...] | None, int]]
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
