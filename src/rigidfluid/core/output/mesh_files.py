@@ -20,14 +20,17 @@ _GMSH = {2: 1, 3: 2, 4: 4}
 
 
 def write_mesh_vtu(path: Path, mesh: Mesh, names: Sequence[str]) -> None:
-    """Write cells and boundary facets; ``surface`` is the number of a facet's surface, -1 of cells, and the strings
-    ``surface_names`` are their names in the order of the numbers."""
+    """Write cells and boundary facets; ``surface`` is the number of a facet's surface, -1 of cells; beside them the
+    name of each surface has its number."""
     blocks = [mesh.cells, mesh.facets]
     root = ET.Element(
         "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
     )
     grid = ET.SubElement(root, "UnstructuredGrid")
-    _name_array(ET.SubElement(grid, "FieldData"), "surface_names", names)
+    numbers = ET.SubElement(grid, "FieldData")
+    for number, name in enumerate(names):
+        data_array(numbers, name, np.array([number], dtype="<i8"))
+        numbers[-1].set("NumberOfTuples", "1")
     count = sum(map(len, blocks))
     piece = ET.SubElement(grid, "Piece", NumberOfPoints=str(len(mesh.points)), NumberOfCells=str(count))
     data_array(ET.SubElement(piece, "Points"), "points", in_space(mesh.points).astype("<f8"))
@@ -66,10 +69,3 @@ def _elements(simplices: IntArray, groups: IntArray, first: int) -> list[str]:
         f"{first + k} {kind} 2 {group[k]} {group[k]} {' '.join(map(str, vertices))}"
         for k, vertices in enumerate((simplices + 1).tolist())
     ]
-
-
-def _name_array(parent: ET.Element, name: str, values: Sequence[str]) -> None:
-    """Strings as VTK has them: the codes of their bytes, a zero after each."""
-    element = ET.SubElement(parent, "DataArray", type="String", Name=name, NumberOfTuples=str(len(values)))
-    element.set("format", "ascii")
-    element.text = " ".join(str(code) for value in values for code in (*value.encode("utf-8"), 0))
