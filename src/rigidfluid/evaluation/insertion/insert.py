@@ -61,10 +61,10 @@ def insert(
     seconds: dict[str, float] = {}
     with _timed(seconds, "scene"):
         progress("checking the scene")
-        system, sizes, inserter = build_system(scene), sizes_of(table), inserter_of(table)
+        system, inserter = build_system(scene), inserter_of(table)
         domain = system.meshed(system.pose)
         way = inserter.chosen(system.bodies, domain)
-    around = system.bodies, system.pose, domain, system.walls, sizes
+    around = system.bodies, system.pose, domain, system.walls, sizes_of(table, system.domain)
     with _timed(seconds, "insertion"):
         progress(_WAYS[way])
         mesh = inserted_mesh(*around, inserter)
