@@ -13,6 +13,7 @@ import numpy as np
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.regions import Wake
@@ -48,6 +49,8 @@ class MeshUpdater:
         A mesh of so many ticks is re-made; None for any age.
     wake : Wake or None
         Finer cells behind moving bodies, on each mesh but the first.
+    inserter : Inserter
+        How the bodies come into the first mesh.
     """
 
     def __init__(
@@ -58,6 +61,7 @@ class MeshUpdater:
         pause: int,
         oldest: int | None = None,
         wake: Wake | None = None,
+        inserter: Inserter = BY_SHAPE,
     ) -> None:
         self._system = system
         self._sizes = sizes
@@ -65,6 +69,7 @@ class MeshUpdater:
         self._pause = pause
         self._oldest = oldest
         self._wake = wake
+        self._inserter = inserter
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
@@ -77,7 +82,7 @@ class MeshUpdater:
             return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
-            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes
+            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes, self._inserter
             mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
         return distributed(mesh, ranks)
 

@@ -274,6 +274,15 @@ class MeshTable(_Table):
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
     )
+    inserter: Literal["cad", "fill", "level_set"] | None = Field(
+        default=None,
+        description="How bodies come into the first mesh. cad: Netgen meshes the domain less the bodies; fill: it "
+        "fills between facets of both, which stay; level_set: MMG cuts bodies out of a mesh of the domain, for "
+        "comparison. If not given, fill where a shape is made of facets, else cad",
+    )
+    mesher_timeout: Positive = Field(
+        default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"
+    )
     remesh_every: Positive | None = Field(
         default=None, description="Age at which a mesh is made anew in any case; never if not given [time]"
     )
