@@ -69,10 +69,12 @@ def form_of_face(surface: Any) -> Form | None:
     vZ, a ball O + R cos v e(u) + R sin v Z and a torus O + (R + r cos v) e(u) + r sin v Z, where e(u) = cos u X + sin u
     Y. So derivatives at u = v = 0 say what each would be, and other points whether it is.
     """
+    from netgen import occ
+
     try:
         start, du, dv = (_components(one) for one in surface.D1(0.0, 0.0))
         samples = np.array([_components(surface.Value(u, v)) for u, v in _SAMPLES])
-    except Exception:  # noqa: BLE001 - Open CASCADE raises what it likes where a surface has no such parameters
+    except (occ.OCCException, RuntimeError):  # the surface has no such parameters
         return None
     size = float(np.ptp(samples, axis=0).max())
     for form in _guesses(start, du, dv):

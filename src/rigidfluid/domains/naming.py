@@ -60,7 +60,7 @@ def _by_file(parts: Sequence[Part]) -> list[str]:
     nameless = [part for part in parts if not part.name]
     if nameless:
         remedy = "Give all of them names: `faces = { wall = [1, 2], inflow = 3 }`."
-        raise SceneError(AT, f"nothing, and no names in the file for {_list(nameless)}", "a name for each", remedy)
+        raise SceneError(AT, f"nothing, and no names in the file for {listed(nameless)}", "a name for each", remedy)
     return [part.name or "" for part in parts]
 
 
@@ -71,7 +71,7 @@ def _by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
         if not chosen:
             known = [part.name for part in parts if part.name] if isinstance(label, str) else []
             remedy = suggestion(str(label), known) or "Correct it."
-            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", _list(parts), remedy)
+            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", listed(parts), remedy)
         for i in chosen:
             if names[i] not in ("", name):
                 found = f"{label!r}, which belongs to {names[i]!r} already"
@@ -79,7 +79,7 @@ def _by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
             names[i] = name
     missing = [part for part, name in zip(parts, names, strict=True) if not name]
     if missing:
-        raise SceneError(AT, f"no surface for {_list(missing)}", "all parts of the boundary", "Add them to a surface.")
+        raise SceneError(AT, f"no surface for {listed(missing)}", "all parts of the boundary", "Add them to a surface.")
     return names
 
 
@@ -89,6 +89,7 @@ def _labels(faces: Mapping[str, Labels]) -> Iterator[tuple[str, int | str]]:
             yield name, label
 
 
-def _list(parts: Sequence[Part]) -> str:
+def listed(parts: Sequence[Part]) -> str:
+    """The parts as messages show them."""
     shown = "; ".join(f"{part.number}{f' {part.name!r}' if part.name else ''} ({part.look})" for part in parts[:_SHOWN])
     return shown + (f"; and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else "")
