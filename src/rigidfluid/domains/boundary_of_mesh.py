@@ -38,9 +38,7 @@ class Boundary:
 
     def _look(self, number: int) -> str:
         chosen = self.facets.vertices[self.facets.markers == number]
-        return (
-            f"{len(chosen)} facets about {place(self.facets.points[chosen].reshape(-1, self.facets.points.shape[1]))}"
-        )
+        return f"{len(chosen)} facets about {place(self.facets.points[chosen.ravel()])}"
 
 
 def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: float) -> Boundary:
@@ -130,7 +128,8 @@ def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArr
     found = [number_of.get(key) for key in row.ravel()[: len(outer)].tolist()]
     bare = [i for i, number in enumerate(found) if number is None]
     if bare:
-        text = f"{len(bare)} facets of the fluid's boundary without a number, the first about {place(points[outer[bare[0]]])}"
+        first = place(points[outer[bare[0]]])
+        text = f"{len(bare)} facets of the fluid's boundary without a number, the first about {first}"
         raise SceneError(FIELD, text, "a number or name for every facet", "Give all of the boundary physical groups.")
     return outer, np.array(found, dtype=np.int64)
 

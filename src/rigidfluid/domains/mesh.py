@@ -27,7 +27,8 @@ class MeshOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
     not used.
 
-    Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`; Netgen's and STL without.
+    Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`, those of Netgen and STL
+    without.
     """
 
     file: str = Field(
