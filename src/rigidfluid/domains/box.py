@@ -108,6 +108,12 @@ class Box(Domain):
             side.name = self.names[int(np.argmin(distance))]
         return shape
 
+    def between(self, axis: int, lower: float, upper: float) -> Box:
+        """The box with these coordinates along an axis instead of its own."""
+        low, high = self._lower.tolist(), self._upper.tolist()
+        low[axis], high[axis] = lower, upper
+        return Box(BoxOptions(lower=tuple(low), upper=tuple(high)), self.dimension)
+
     def _face(self, axis: int, side: int) -> Piece:
         lower, upper = self._lower.copy(), self._upper.copy()
         lower[axis] = upper[axis] = (self._lower, self._upper)[side][axis]

@@ -53,6 +53,10 @@ def advance(
         "position_previous": fluid["position"],
     }
     at = matrix.node_points
+    d0, _, d2 = step.derivative
+    # Written so that it is zero to the last bit where nothing moves.
+    moved, moved_before = points - before, before - fluid["points_previous"]
+    mesh_velocity = discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,
@@ -61,7 +65,9 @@ def advance(
         kinetic_energy=kinetic_energy(discretisation, points, velocity),
         dissipation=dissipation(discretisation, points, velocity),
         dissipation_midway=dissipation(discretisation, 0.5 * (before + points), 0.5 * (fluid["velocity"] + velocity)),
-        boundary_power=face_power(surfaces, problem.inert_density, at, velocity, on_faces, solution.reaction),
+        boundary_power=face_power(
+            surfaces, problem.inert_density, at, velocity, mesh_velocity, on_faces, solution.reaction
+        ),
     )
 
 

@@ -77,7 +77,7 @@ class MeshUpdater:
             return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
-            args = s.bodies, s.pose, s.domain, s.walls, self._sizes
+            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes
             mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
         return distributed(mesh, ranks)
 
@@ -85,6 +85,7 @@ class MeshUpdater:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         if state.reference is None:
             return None
+        _refuse_to_leave(self._system, pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
@@ -123,7 +124,7 @@ class MeshUpdater:
         if self._wake is not None:
             sizes = replace(sizes, regions=(*sizes.regions, *self._wake.behind(s.bodies, pose, twist)))
         with ranks.raise_on_all():
-            args = s.bodies, pose, s.domain, s.walls, sizes
+            args = s.bodies, pose, s.meshed(pose), s.walls, sizes
             made = None if present is None else self._curved(remesh(present, *args), pose)
         return distributed(made, ranks)
 
@@ -133,7 +134,7 @@ class MeshUpdater:
         assert self._sizes is not None
         if self._sizes.order == 1 or not s.backend.curved_cells:
             return mesh
-        return with_curved_edges(mesh, s.bodies, pose, s.domain)
+        return with_curved_edges(mesh, s.bodies, pose, s.meshed(pose))
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
@@ -179,9 +180,25 @@ class MeshUpdater:
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._motion is None or self._reference is not reference:
             s = self._system
-            motion = MeshMotion(reference.mesh, s.bodies, s.domain, reference.pose, s.backend.extension)
+            surroundings = s.bodies, s.domain, reference.pose
+            motion = MeshMotion(reference.mesh, *surroundings, s.backend.extension, s.window)
             self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
         return self._motion
+
+
+def _refuse_to_leave(system: System, pose: Pose) -> None:
+    """Reject a step in which a body comes through an end of the window."""
+    if system.window is None:
+        return
+    left = system.window.left_by(pose, np.array([body.bounding_radius for body in system.bodies]))
+    if left is not None:
+        lower, upper = system.window.interval(pose)
+        raise StepRejected(
+            f"body {system.surfaces[left]!r}",
+            f"it at {pose.position[left].tolist()}, where it leaves the window",
+            f"a place between {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}, all of the body",
+            "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
+        )
 
 
 def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:

@@ -14,6 +14,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.window import Window
 
 MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
 
@@ -42,6 +43,8 @@ class MeshMotion:
         Where they are on the reference mesh.
     extension : callable
         Makes the solver from the mesh, its stiffness matrix and the held vertices of one component.
+    window : Window, optional
+        The part of the domain that the mesh fills, where it is not all: the mesh's ends go with it.
 
     Notes
     -----
@@ -55,6 +58,7 @@ class MeshMotion:
         domain: Domain,
         reference_pose: Pose,
         extension: MakeExtension = factorised,
+        window: Window | None = None,
     ) -> None:
         self._points = mesh.points
         self._curved = mesh.curved
@@ -64,6 +68,9 @@ class MeshMotion:
         self._on_bodies = np.concatenate([*surfaces, np.empty(0, np.int64)])
         self._body = np.repeat(np.arange(len(bodies)), [len(on_body) for on_body in surfaces])
         self._held = held_components(mesh, len(bodies), domain)
+        self._window = window
+        ends = [] if window is None else [surface_vertices(mesh, len(bodies) + piece) for piece in window.ends]
+        self._on_ends = np.concatenate([*ends, np.empty(0, np.int64)])
         matrix = stiffness(mesh)
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
 
@@ -82,6 +89,9 @@ class MeshMotion:
         """
         displacement = np.zeros_like(self._points)
         displacement[self._on_bodies] = self._rigid_displacement(pose, self._body, self._points[self._on_bodies])
+        if self._window is not None:
+            gone = self._window.displacement(pose) - self._window.displacement(self._pose)
+            displacement[self._on_ends, self._window.axis] = gone
         for k, extension in enumerate(self._solves):
             extension.fill(displacement[:, k])
         moved: FloatArray = self._points + displacement

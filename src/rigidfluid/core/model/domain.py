@@ -76,6 +76,11 @@ class Domain(SpatialPart):
         `cad_shape`."""
         return None
 
+    def between(self, axis: int, lower: float, upper: float) -> Domain | None:
+        """The part with ``lower`` ≤ x ≤ ``upper`` along an ``axis`` [length], with pieces of the same names in the same
+        order, two of them flat across the axis; None of a domain that is not the same all along it."""
+        return None
+
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the pieces, in the order of their surface numbers."""

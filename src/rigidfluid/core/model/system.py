@@ -11,6 +11,7 @@ from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.window import Window
 
 
 class Mechanisms(Protocol):
@@ -56,6 +57,7 @@ class System:
     ``controlled_pose(time)``.
     ``mechanisms``: which motions carry the bodies, None where each moves by itself; twists and poses that are given are
     then the motions'.
+    ``window``: the part of the domain that is meshed, None where all is.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``interactions``: the laws with the contacts that they act in; ``law``: all of them together, None where there are
     none. ``loads``: what contacts must hold; its smallest gap is the least of all laws', and 0 without any.
@@ -91,8 +93,13 @@ class System:
     substeps: int | None
     implicit: bool
     mechanisms: Mechanisms | None = None
+    window: Window | None = None
 
     @property
     def controlled_motions(self) -> BoolArray:
         """Which of the motions are given (N,)."""
         return self.controlled if self.mechanisms is None else self.mechanisms.controlled
+
+    def meshed(self, pose: Pose) -> Domain:
+        """The part of the domain that is meshed while the bodies are at ``pose``."""
+        return self.domain if self.window is None else self.window.at(pose)

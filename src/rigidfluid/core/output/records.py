@@ -106,5 +106,8 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
     if len(probes) == 0 or state.mesh is None:
         return
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
+    if system.window is not None:  # nothing is known of the fluid outside
+        outside = ~system.window.at(state.pose).contains(probes)
+        velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
         yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))

@@ -33,6 +33,7 @@ from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
+from rigidfluid.core.setup.window import build_window, opened
 
 _MOST_PAIRS = 1000
 
@@ -69,6 +70,8 @@ def build_system(scene: Scene) -> System:
     carried = CarriedBodies(mechanisms, mass, inertia, controlled, start, started) if mechanisms else None
     pose = start if carried is None else carried.poses(start, 0.0)
     check_geometry(scene, parts, pose)
+    window = build_window(scene, parts, pose)
+    held = opened(conditions(scene, domain), window)
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = _together(carried, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
@@ -95,7 +98,7 @@ def build_system(scene: Scene) -> System:
         controlled=controlled,
         controlled_twist=motion,
         controlled_pose=motion.pose_at,
-        backend=parts.backend.part(parts.backend.options, _problem(scene, conditions(scene, domain), carried)),
+        backend=parts.backend.part(parts.backend.options, _problem(scene, held, carried)),
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
@@ -106,6 +109,7 @@ def build_system(scene: Scene) -> System:
         substeps=scene.contact.substeps,
         implicit=scene.contact.stepping == "implicit",
         mechanisms=carried,
+        window=window,
     )
 
 

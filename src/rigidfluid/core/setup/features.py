@@ -66,12 +66,19 @@ def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     if backend.needs_mesh:
         turning = np.array([body.radius is None for body in system.bodies])
         yield _count("rotation of the mesh", turning, "no balls")
+        yield _window(system)
     if backend.needs_mesh and mesh is not None:
         yield Feature("boxes of finer cells", bool(mesh.refine), f"[[mesh.refine]] names {len(mesh.refine) or 'none'}")
         yield _wake(mesh)
         age = mesh.remesh_every
         why = "mesh.remesh_every is not given" if age is None else f"mesh.remesh_every is {age:g}"
         yield Feature("re-meshing by age", age is not None, why)
+
+
+def _window(system: System) -> Feature:
+    window = system.window
+    why = "no table [domain.window]" if window is None else f"it goes with {system.surfaces[window.body]!r}"
+    return Feature("window in the domain", window is not None, why)
 
 
 def _wake(mesh: MeshTable) -> Feature:

@@ -1,0 +1,76 @@
+"""The part of a long domain that is meshed: it goes along an axis with one of the bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.types import FloatArray, Pose
+
+
+@dataclass(frozen=True)
+class Window:
+    """The part of a ``domain`` between two planes across an ``axis``.
+
+    At the start it reaches from ``behind`` to ``ahead`` (coordinates along the axis) [length]. It has the displacement
+    of the ``body``, which was at ``start`` [length], towards ``ahead``: no farther than to the end of the domain, and
+    never back behind where it was at the start. So where it is follows from the bodies' pose alone.
+    """
+
+    domain: Domain
+    body: int
+    axis: int
+    start: float
+    behind: float
+    ahead: float
+
+    @property
+    def sign(self) -> float:
+        """Of the direction ahead along the axis."""
+        return float(np.sign(self.ahead - self.behind))
+
+    @property
+    def way(self) -> float:
+        """How far it can go until it reaches the end of the domain [length]."""
+        lower, upper = self.domain.extent
+        end = (upper if self.sign > 0.0 else lower)[self.axis]
+        return self.sign * float(end - self.ahead)
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """The pieces of the domain's boundary that are its ends, behind and ahead: numbers among the pieces."""
+        planes = [piece.shape.plane for piece in self.domain.pieces]
+        across = {
+            float(plane.unit_normal[self.axis]): number
+            for number, plane in enumerate(planes)
+            if plane is not None and plane.axis == self.axis
+        }
+        return across[self.sign], across[-self.sign]
+
+    def displacement(self, pose: Pose) -> float:
+        """Along the axis since the start, while the bodies are at ``pose`` [length]."""
+        gone = self.sign * float(pose.position[self.body, self.axis] - self.start)
+        return self.sign * min(max(gone, 0.0), self.way)
+
+    def interval(self, pose: Pose) -> tuple[float, float]:
+        """Lower and upper coordinate along the axis, while the bodies are at ``pose`` [length]."""
+        moved = self.displacement(pose)
+        lower, upper = sorted((self.behind, self.ahead))
+        return lower + moved, upper + moved
+
+    def at(self, pose: Pose) -> Domain:
+        """The part of the domain that is meshed while the bodies are at ``pose``."""
+        part = self.domain.between(self.axis, *self.interval(pose))
+        assert part is not None, "no window is made of a domain that has no parts"
+        return part
+
+    def left_by(self, pose: Pose, radius: FloatArray) -> int | None:
+        """The first body, of bounding ``radius`` (n,), that is not all between the ends at ``pose``, if any; at an end
+        of the domain itself, bodies meet that."""
+        lower, upper = (float(corner[self.axis]) for corner in self.domain.extent)
+        low, high = self.interval(pose)
+        along = pose.position[:, self.axis]
+        left = ((along - radius < low) & (low > lower)) | ((along + radius > high) & (high < upper))
+        return int(np.argmax(left)) if left.any() else None
