@@ -39,6 +39,7 @@ OUT = ROOT / "docs" / "validation"
 sys.path.append(str(ROOT / "tests" / "support"))
 
 import adaptive_step as adaptive  # noqa: E402
+import curved_channels  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
@@ -466,6 +467,54 @@ def tries(case: str, stepping: str, steps: tuple[float, ...]) -> Iterable[tuple[
         yield case, stepping, f"{step:g}", *shares, CONTACT_CASES[case][1](history).replace("|", "\\|")
 
 
+def walls() -> None:
+    """Flows along curved walls and through oblique ends against their exact solutions."""
+    layers = (2, 4, 8, 16)
+    bends = [curved_channels.flow_in_bend(count) for count in layers]
+    exact = curved_channels.flux_through_bend()
+    fluxes = [abs(curved_channels.flux_of(flow) / exact - 1.0) for flow in bends]
+    speeds = [curved_channels.error_in_bend(flow) for flow in bends]
+    torques = {}
+    for name, spins in {"inner": (1.0, 0.0), "outer": (0.0, 1.0)}.items():
+        flows = [curved_channels.flow_between_cylinders(count, *spins) for count in layers]
+        expected = curved_channels.torque_between_cylinders(*spins)
+        found = [flow.advance.hydrodynamic_wrench.torque[0, 0] for flow in flows]
+        torques[name] = [abs(torque / expected - 1.0) for torque in found]
+    columns = {
+        "bend: flux": fluxes,
+        "bend: velocity": speeds,
+        **{f"cylinders, {name} turning: torque": values for name, values in torques.items()},
+    }
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    axes = figure.add_subplot(xlabel="layers of cells", ylabel="relative error", xscale="log", yscale="log")
+    for (name, values), style in zip(columns.items(), ("o-", "s-", "x-", "+--"), strict=True):
+        axes.plot(layers, values, style, label=name)
+    axes.plot(layers, [2.0 * count**-3.0 for count in layers], "k:", label="order 3")
+    axes.legend(fontsize=8)
+    figure.savefig(OUT / "walls.png", dpi=120)
+    rows = [
+        (
+            str(count),
+            *(f"{values[i]:.1e} ({order(values, i)})" if i else f"{values[i]:.1e}" for values in columns.values()),
+        )
+        for i, count in enumerate(layers)
+    ]
+    text = (
+        "Stokes flow in 2D between circles of radius 0.5 and 1, cells curved along them, from coarse to fine. The bend "
+        "turns through 2 rad, with a pressure on its two ends, which lie across no axis; errors of its flux and its "
+        "velocity (root mean square over its own) against u(r) = (G/2μ)(A r + B/r - r ln r). Between cylinders the "
+        "disk inside turns, or the wall outside (`angular_velocity` of a `wall`); error of the torque on the "
+        "disk against 4πμ(Ω₂ - Ω₁)R₁²R₂²/(R₂² - R₁²). In brackets the order of convergence.\n\n"
+    )
+    text += table(("layers", *columns), rows)
+    write_page("walls", "Curved walls and oblique ends", "python docs/make_validation.py walls", text)
+
+
+def order(errors: list[float], i: int) -> str:
+    """Of convergence by the last halving before the error of number ``i``."""
+    return f"{np.log2(errors[i - 1] / errors[i]):.1f}"
+
+
 def studied(name: str, plot: str = "") -> Results:
     """A study, run; its plot is kept, by its own name unless another is given."""
     with tempfile.TemporaryDirectory() as folder:
@@ -789,6 +838,7 @@ CASES = {
     "contacts_in_fluid": contacts_in_fluid,
     "stability": stability,
     "backends_study": backends_study,
+    "walls": walls,
 }
 
 
