@@ -53,9 +53,9 @@ def advance(
         "position_previous": fluid["position"],
     }
     at = matrix.node_points
-    d0, _, d2 = step.derivative
-    # Written so that it is zero to the last bit where nothing moves.
-    mesh_velocity = discretisation.numbering.node_points(d0 * (points - before) - d2 * (before - fluid["points_previous"]))
+    (d0, _, d2), earlier = step.derivative, fluid["points_previous"]
+    # By differences, and so zero to the last bit where nothing moves.
+    mesh_velocity = discretisation.numbering.node_points(d0 * (points - before) - d2 * (before - earlier))
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,

@@ -31,8 +31,8 @@ def face_power(
 ) -> float:
     """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
-    ``normal`` n points into the fluid: what flows in is (u - w)·n, with the ``mesh_velocity`` w (nodes, d) of a face that
-    moves. With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
+    ``normal`` n points into the fluid: (u - w)·n flows in, with the ``mesh_velocity`` w (nodes, d) of moving faces.
+    With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
     """
     held = surfaces.dirichlet_nodes
     power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))

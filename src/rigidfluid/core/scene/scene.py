@@ -84,8 +84,8 @@ class FluidTable(_OpenTable):
 
 
 class WindowTable(_Table):
-    """The part of a long domain that is meshed, which goes with a body; its end behind is open, the fluid ahead is as the
-    domain's end there says: at rest at a wall."""
+    """The part of a long domain that is meshed; it goes with a body. At its ends holds what holds at the domain's, and
+    behind it zero pressure in place of a wall."""
 
     follow: str = Field(description="Name of the body")
     direction: Literal["x", "y", "z", "-x", "-y", "-z"] = Field(

@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import BoundaryCondition, Pose
-from rigidfluid.core.model.window import Window
+from rigidfluid.core.model.window import CLEARANCE, Window
 from rigidfluid.core.setup.boundary import BoundaryPressure, boundary_table
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
@@ -99,7 +99,7 @@ def _check_parts(parts: Parts) -> None:
 
 
 def _check_place(scene: Scene, parts: Parts, window: Window, table: WindowTable) -> None:
-    """The end behind is open, so that it may not start at the domain's own end, nor the one ahead where it must stop."""
+    """The end behind is open, so that it is not the domain's own; the one ahead may not be where the window stops."""
     behind, ahead = (parts.domain.names[end] for end in window.ends)
     lower, upper = (float(corner[window.axis]) for corner in parts.domain.extent)
     room = window.sign * (window.behind - (lower if window.sign > 0.0 else upper))
@@ -119,8 +119,8 @@ def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> Non
         low, high = window.interval(pose)
         raise SceneError(
             f"body.{left}.position",
-            f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not all in the window",
-            f"a place between {low:.6g} and {high:.6g} along {'xyz'[window.axis]}, all of the body",
+            f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not well in the window",
+            f"{CLEARANCE:g} of its radii from {low:.6g} and {high:.6g} along {'xyz'[window.axis]}",
             "Move it, or lengthen domain.window.ahead or domain.window.behind.",
         )
 
