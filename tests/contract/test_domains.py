@@ -8,6 +8,9 @@ from wedge import wedge
 from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.channel import Channel, ChannelOptions
+from rigidfluid.domains.obstacles import ObstacleTable
+from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.testing import DomainContract
 
 
@@ -16,6 +19,46 @@ class TestBox(DomainContract):
     def domain(self, request):
         corners = {"lower": (-1.0, 0.5, 2.0)[: request.param], "upper": (1.0, 1.5, 2.7)[: request.param]}
         return Box(BoxOptions(**corners), request.param)
+
+
+DISK = {"type": "sphere", "radius": 0.2, "position": (0.4, 1.0)}
+EGG = {"name": "egg", "type": "ellipsoid", "semi_axes": (0.3, 0.15), "angle": 0.5, "position": (-0.4, 0.9)}
+TURNED = {
+    "type": "ellipsoid",
+    "semi_axes": (0.3, 0.25, 0.25),
+    "orientation": (0.9, 0.1, 0.2, 0.4),
+    "position": (-0.4, 1.0, 2.5),
+}
+
+
+def channel(*obstacles):
+    d = len(obstacles[0]["position"])
+    corners = {"lower": (-1.0, 0.5, 2.0)[:d], "upper": (1.0 if d == 2 else 0.2, 1.5, 3.0)[:d]}
+    return Channel(ChannelOptions(**corners, obstacle=tuple(ObstacleTable(**one) for one in obstacles)), d)
+
+
+class TestChannel(DomainContract):
+    coarse = 0.02
+
+    @pytest.fixture
+    def domain(self):
+        return channel(DISK, EGG)
+
+
+class TestChannelInSpace(DomainContract):
+    coarse = 0.09
+
+    @pytest.fixture
+    def domain(self):
+        return channel(TURNED)
+
+
+class TestStenosis(DomainContract):
+    coarse = 0.02
+
+    @pytest.fixture(params=[{}, {"throat": 0.6}, {"throat": 0.2}], ids=["half disks", "flatter", "rounder"])
+    def domain(self, request):
+        return Stenosis(StenosisOptions(length=4.0, width=1.0, radius=0.3, **request.param), 2)
 
 
 class TestDish(DomainContract):

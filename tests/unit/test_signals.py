@@ -12,6 +12,14 @@ from falling import SCENES
 import rigidfluid
 
 
+@pytest.fixture(autouse=True)
+def _ctrl_c_is_heard():
+    """Programs in a shell's background ignore it, and so would these tests and what they start."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def test_ctrl_c_is_reported_and_leaves_a_summary(tmp_path):
     """The handler that Python knows of may differ from the system's: only a real signal tells."""
     command = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml"), "--out", str(tmp_path)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
+from rigidfluid.bodies.polygon import Polygon
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.hookspecs import hookimpl
@@ -11,4 +12,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_bodies() -> list[type[Body]]:
     """The built-in body types."""
-    return [Sphere, Ellipsoid]
+    return [Sphere, Ellipsoid, Polygon]

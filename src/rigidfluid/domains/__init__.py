@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.domains.box import Box
+from rigidfluid.domains.channel import Channel
+from rigidfluid.domains.stenosis import Stenosis
 from rigidfluid.hookspecs import hookimpl
 
 
 @hookimpl
 def rigidfluid_domains() -> list[type[Domain]]:
     """The built-in domains."""
-    return [Box]
+    return [Box, Channel, Stenosis]

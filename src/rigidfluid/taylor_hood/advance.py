@@ -53,9 +53,10 @@ def advance(
         "position_previous": fluid["position"],
     }
     at = matrix.node_points
-    (d0, _, d2), earlier = step.derivative, fluid["points_previous"]
-    # By differences, and so zero to the last bit where nothing moves.
-    mesh_velocity = discretisation.numbering.node_points(d0 * (points - before) - d2 * (before - earlier))
+    d0, _, d2 = step.derivative
+    # Written so that it is zero to the last bit where nothing moves.
+    moved, moved_before = points - before, before - fluid["points_previous"]
+    mesh_velocity = discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,

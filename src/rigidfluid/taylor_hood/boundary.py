@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.taylor_hood.surfaces import Surfaces, facet_weights
+from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
     """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d)."""
     load = np.zeros_like(node_points)
-    for face in surfaces.faces:
-        if face.condition.type == "pressure" and face.condition.value is not None:
-            nodes = face.facet_nodes
-            pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
-            weight = facet_weights(node_points, face.facets)
-            np.add.at(load, nodes, (weight * pressure)[..., None] * face.normal)
+    with surfaces.ranks.raise_on_all():
+        for face in surfaces.faces:
+            if face.condition.type == "pressure" and face.condition.value is not None:
+                nodes = face.facet_nodes
+                pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
+                np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
     return load
 
 
@@ -31,15 +31,15 @@ def face_power(
 ) -> float:
     """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
-    ``normal`` n points into the fluid: (u - w)·n flows in, with the ``mesh_velocity`` w (nodes, d) of moving faces.
-    With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
+    The normal n points into the fluid: what flows in is (u - w)·n, with the ``mesh_velocity`` w (nodes, d) of a face
+    that moves. With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have
+    there.
     """
     held = surfaces.dirichlet_nodes
     power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))
     energy = 0.5 * inert_density * np.sum(velocity**2, axis=1)
     for face in surfaces.faces:
         if inert_density > 0.0 and face.condition.type in ("pressure", "velocity"):
-            weight, nodes = facet_weights(node_points, face.facets), face.facet_nodes
-            inflow = (velocity[nodes] - mesh_velocity[nodes]) @ face.normal
-            power += float(np.sum(weight * energy[nodes] * inflow))
+            inflow = face.inflow(node_points, velocity - mesh_velocity)
+            power += float(np.sum(energy[face.facet_nodes] * inflow))
     return float(surfaces.ranks.sum(power))

@@ -1,7 +1,8 @@
 """The paper's operator P: every velocity on a body is its twist's, every prescribed velocity leaves the unknowns.
 
 All unknowns = P · (free velocities, twists of the free motions, pressures) + given values, where on all bodies that a
-motion carries u = U + ω × r, r from its centre of mass. The coupled system is Pᵀ K P with the inertia of what the
+motion carries u = U + ω × r, r from its centre of mass, and free velocities of nodes with axes of their own are along
+these. The coupled system is Pᵀ K P with the inertia of what the
 motions carry added on the twists.
 """
 
@@ -57,8 +58,9 @@ class Constraint:
         nodes, self._carrier = joined([self.surfaces.motion_nodes[motion] for motion in free_motions])
         self._carried, self._free_motions = nodes, free_motions
         first = velocities + size * self._carrier
-        rows = [self.free_unknowns, *(nodes * d + a for a in range(d)), *(nodes * d + a for a, *_ in CROSS[d])]
-        columns = [self.free_columns, *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])]
+        spread, which, self._along_axes = self.surfaces.frames.spread(self.free_unknowns)
+        rows = [spread, *(nodes * d + a for a in range(d)), *(nodes * d + a for a, *_ in CROSS[d])]
+        columns = [self.free_columns[which], *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])]
         row, column = np.concatenate(rows), np.concatenate(columns)
         shape = (self._numbering.unknowns, self.unknowns)
         numbering = sparse.coo_array((np.arange(1.0, len(row) + 1), (row, column)), shape=shape)
@@ -70,7 +72,8 @@ class Constraint:
         """Fill P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
         d = self._numbering.dimension
         arm = node_points[self._carried] - position[self._free_motions][self._carrier]
-        ones = np.ones(len(self.free_unknowns) + d * len(arm))
-        flat = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])
+        flat = np.concatenate(
+            [self._along_axes, np.ones(d * len(arm)), *(sign * arm[:, c] for _, _, c, sign in CROSS[d])]
+        )
         self.operator.data = flat[self._order]
         self.transposed.data = flat[self._transposed_order]

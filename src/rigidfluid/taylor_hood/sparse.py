@@ -218,6 +218,7 @@ class SparseDiscretisation:
         if constraint.pressure_pin is not None:
             pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)
-        guess[constraint.free_columns] = np.concatenate([system.velocity.ravel(), pressure])[constraint.free_unknowns]
+        velocity = self.surfaces.frames.into(system.velocity)
+        guess[constraint.free_columns] = np.concatenate([velocity.ravel(), pressure])[constraint.free_unknowns]
         guess[twists] = system.twist[~system.matrix.controlled].ravel()
         return guess

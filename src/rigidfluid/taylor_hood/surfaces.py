@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
@@ -11,35 +10,9 @@ from scipy.spatial import cKDTree
 
 from rigidfluid.core.mechanics.rigid import cross, moment
 from rigidfluid.core.model.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.taylor_hood.face import Face
+from rigidfluid.taylor_hood.frames import local_frames
 from rigidfluid.taylor_hood.numbering import Numbering
-
-# ∫ φᵢ over a straight quadratic facet of measure 1: Simpson's weights on an edge, the midpoints' on a triangle.
-_WEIGHTS = {2: np.array([1.0, 1.0, 4.0]) / 6.0, 3: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 3.0}
-
-
-def facet_weights(points: FloatArray, facets: IntArray) -> FloatArray:
-    """∫ φᵢ over each facet for its nodes i, (F, 3 | 6), for vertices at ``points`` and ``facets`` (F, d)."""
-    edges = points[facets[:, 1:]] - points[facets[:, :1]]
-    gram = edges @ np.swapaxes(edges, 1, 2)
-    measure = np.sqrt(np.linalg.det(gram)) / (1.0 if facets.shape[1] == 2 else 2.0)
-    return np.outer(measure, _WEIGHTS[facets.shape[1]])
-
-
-@dataclass(frozen=True)
-class Face:
-    """A piece of the domain's boundary on one topology: its ``condition``, ``facets`` (F, d) with their ``facet_nodes``
-    (F, 3 | 6), and all ``nodes`` on it, also those of facets that other processes hold."""
-
-    condition: BoundaryCondition
-    facets: IntArray
-    facet_nodes: IntArray
-    nodes: IntArray
-
-    @property
-    def normal(self) -> FloatArray:
-        """Of a flat piece, into the fluid (d,)."""
-        assert self.condition.normal is not None
-        return self.condition.normal
 
 
 class Surfaces:
@@ -75,14 +48,16 @@ class Surfaces:
         self.body_nodes: list[IntArray] = nodes[:bodies]
         self.motion_nodes = self.body_nodes if carrier is None else _of_motions(self.body_nodes, carrier)
         """What moves with each motion; of one body, its nodes."""
-        self.faces = [
-            Face(c, on[c.surface], numbering.facet_nodes(on[c.surface]), nodes[c.surface]) for c in conditions
-        ]
+        self.faces = [Face.of(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
         self.velocity_free: BoolArray = np.ones((numbering.nodes, d), dtype=bool)
         for face in self.faces:
-            self.velocity_free[face.nodes] &= _free_components(face.condition, d)
+            self.velocity_free[face.nodes] &= _free_components(face, d)
         for body in self.body_nodes:
             self.velocity_free[body] = False
+        held = np.logical_not(self.velocity_free.any(axis=1))
+        self.frames = local_frames(self.faces, numbering.node_points(mesh.geometry), numbering.vertices, held)
+        """Of nodes on oblique and curved faces; ``velocity_free`` is of components along a node's own axes there."""
+        self.velocity_free[self.frames.nodes] = self.frames.free
         self.dirichlet_nodes = np.setdiff1d(
             np.flatnonzero(~self.velocity_free.any(axis=1)), np.concatenate([*self.body_nodes, np.empty(0, np.int64)])
         )
@@ -96,9 +71,10 @@ class Surfaces:
         ``twist`` (n, d+k) is read for the ``controlled`` (n,) bodies alone.
         """
         velocity = np.zeros_like(node_points)
-        for face in self.faces:
-            if face.condition.type == "velocity" and face.condition.value is not None:
-                velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
+        with self.ranks.raise_on_all():
+            for face in self.faces:
+                if face.condition.type == "velocity" and face.condition.value is not None:
+                    velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
         walls = [face for face in self.faces if face.condition.type == "wall"]
         # where two meet, the one at rest holds the fluid
         for face in sorted(walls, key=lambda wall: wall.condition.value is None):
@@ -108,6 +84,10 @@ class Surfaces:
             self._balance(velocity, node_points)
         self.move_with_bodies(velocity, node_points, position, twist, controlled)
         return velocity
+
+    def held_part(self, velocity: FloatArray) -> FloatArray:
+        """The part of a ``velocity`` (nodes, d) that is not free."""
+        return self.frames.out_of(np.where(self.velocity_free, 0.0, self.frames.into(velocity)))
 
     def move_with_bodies(
         self, velocity: FloatArray, node_points: FloatArray, position: FloatArray, twist: FloatArray, chosen: BoolArray
@@ -125,14 +105,7 @@ class Surfaces:
         held = [face for face in self.faces if face.condition.type == "velocity"]
         if not held:
             return
-        flow = self.ranks.sum(
-            np.array(
-                [
-                    np.sum(facet_weights(node_points, face.facets) * (velocity[face.facet_nodes] @ face.normal))
-                    for face in held
-                ]
-            )
-        )
+        flow = self.ranks.sum(np.array([np.sum(face.inflow(node_points, velocity)) for face in held]))
         passed = np.abs(flow).sum()
         for face, part in zip(held, flow, strict=True):
             if part != 0.0:
@@ -186,8 +159,10 @@ def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
     return local if int(np.argmax(ranks.allgather(preference[local]))) == ranks.rank else None
 
 
-def _free_components(condition: BoundaryCondition, dimension: int) -> BoolArray:
-    if condition.normal is None or condition.type not in ("slip", "pressure"):
+def _free_components(face: Face, dimension: int) -> BoolArray:
+    """Those free on a whole face (d,); of nodes with axes of their own these say which."""
+    kind, axis = face.condition.type, face.axis
+    if kind not in ("slip", "pressure"):
         return np.zeros(dimension, dtype=bool)
-    across: BoolArray = np.abs(condition.normal) > 0.5
-    return ~across if condition.type == "slip" else across
+    across: BoolArray = np.arange(dimension) == axis
+    return ~across if kind == "slip" or axis is None else across

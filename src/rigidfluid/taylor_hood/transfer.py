@@ -52,7 +52,7 @@ def transfer(
         every = np.ones(len(twist), dtype=bool)
         target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
         projected = project(target, tolerance, velocity, points, position)
-        at_boundary = np.where(target.surfaces.velocity_free, 0.0, projected)
+        at_boundary = target.surfaces.held_part(projected)
         potential = project(target, tolerance, at_boundary, points, position)
         moved["velocity" + suffix] = _with_energy(target, points, projected, potential, energy)
     forget()
@@ -95,7 +95,7 @@ def project(
         matrix,
         load=target.mass_times(points, velocity),
         body_load=np.zeros((bodies, width)),
-        given=np.where(target.surfaces.velocity_free, 0.0, velocity),
+        given=target.surfaces.held_part(velocity),
         velocity=velocity,
         pressure=np.zeros(numbering.vertices),
         twist=np.zeros((bodies, width)),

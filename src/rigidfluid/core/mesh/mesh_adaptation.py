@@ -197,7 +197,7 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
         raise StepRejected(
             f"body {system.surfaces[left]!r}",
             f"it at {pose.position[left].tolist()}, where it leaves the window",
-            f"{CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
+            f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
         )
 

@@ -22,6 +22,9 @@ from rigidfluid.core.model.types import FloatArray
 LEAF = 4
 """Facets in a leaf."""
 
+_NEXT_TO_NOTHING = 1e-300
+"""A squared distance that only boxes that meet are below."""
+
 
 class Tree(NamedTuple):
     """``order`` of the facets along the curve, ``boxes`` (nodes, 2, d), the lower and upper corner of each [length]."""
@@ -92,6 +95,20 @@ def nearest_facets(points, facets, tree, queries):
         nearest[row] = facet
         _, bits[row], weights[row, 0], weights[row, 1], weights[row, 2] = vertex_to_facet(extended, last, facets, facet)
     return nearest, bits, weights
+
+
+@njit(cache=True, nogil=True)
+def leaves_beside(points, corners, tree):
+    """The facets in leaves whose boxes meet that of some corners."""
+    order, boxes = tree.order, tree.boxes
+    found = [order[0] for _ in range(0)]
+    node = _leaf(points, corners, boxes, 1, _NEXT_TO_NOTHING)
+    while node > 0:
+        first = (node - len(boxes) // 2) * LEAF
+        for row in range(first, min(first + LEAF, len(order))):
+            found.append(order[row])
+        node = _leaf(points, corners, boxes, _after(node), _NEXT_TO_NOTHING)
+    return found
 
 
 @njit(cache=True, nogil=True)

@@ -36,6 +36,8 @@ InitialAngularVelocity = Annotated[
     Angular | None,
     Field(description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"),
 ]
+# A component that is a number, or an expression of place and time.
+Formula = float | str
 Condition = Annotated[
     Literal["wall", "velocity", "pressure", "slip", "symmetry"],
     AfterValidator(lambda value: "slip" if value == "symmetry" else value),
@@ -84,8 +86,10 @@ class FluidTable(_OpenTable):
 
 
 class WindowTable(_Table):
-    """The part of a long domain that is meshed; it goes with a body. At its ends holds what holds at the domain's, and
-    behind it zero pressure in place of a wall."""
+    """The part of a long domain that is meshed, which goes with a body.
+
+    Its end behind is open; the fluid ahead is as the domain's end there says: at rest at a wall.
+    """
 
     follow: str = Field(description="Name of the body")
     direction: Literal["x", "y", "z", "-x", "-y", "-z"] = Field(
@@ -102,21 +106,43 @@ class DomainTable(_OpenTable):
     window: WindowTable | None = Field(default=None, description="The part that is meshed; all if not given")
 
 
+class TimeFileTable(_Table):
+    """A table over time in a text file; it is read when the scene is loaded, and kept with the scene."""
+
+    file: str = Field(description="Lines of `time, value`; lines that start with # are skipped")
+
+
 class BoundaryTable(_Table):
-    """What holds on the domain's surfaces; a later entry overrides an earlier one, unnamed surfaces are walls."""
+    """What holds on the domain's surfaces; a later entry overrides an earlier one, unnamed surfaces are walls.
+
+    Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
+    `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
+    """
 
     on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
         description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
         "a surface that is not flat is a wall"
     )
-    velocity: Vector | None = Field(
-        default=None, description="Velocity on a `velocity` surface, its peak; of a `wall` along itself [length/time]"
+    velocity: tuple[Formula, ...] | None = Field(
+        default=None,
+        description="Velocity on a `velocity` surface, its peak; of a `wall` along itself, in numbers [length/time]",
     )
-    profile: Literal["uniform", "parabolic"] = Field(
-        default="uniform", description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges"
+    profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
+        default="uniform",
+        description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
+        "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
+        "other",
     )
-    pressure: float | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
+    pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
+    over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
+        default=None,
+        description="Factor of velocity or pressure in rows [time, factor], linear between them, from 0 to `time.end`; "
+        "or a table with a `file` of such rows",
+    )
+    ramp: Positive | None = Field(
+        default=None, description="Time in which velocity or pressure rises smoothly from zero [time]"
+    )
 
 
 class PrescribedTable(_Table):
@@ -324,19 +350,20 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     Where a table has a key ``file``, its path is relative to the file it stands in.
     """
     try:
-        tables: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+        return _beside(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
-    return _beside(tables, path.resolve().parent)
 
 
-def _beside(value: Any, folder: Path) -> Any:
-    """Tables with every ``file`` in them as an absolute path, seen from a folder."""
-    if isinstance(value, list):
-        return [_beside(inner, folder) for inner in value]
-    if not isinstance(value, dict):
-        return value
-    found = {key: _beside(inner, folder) for key, inner in value.items()}
+def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """A table with every ``file`` in it, and in the tables within, as an absolute path, seen from a folder."""
+    found = {key: _each_beside(inner, folder) for key, inner in table.items()}
     return found | {"file": str(folder / found["file"])} if isinstance(found.get("file"), str) else found
+
+
+def _each_beside(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [_each_beside(inner, folder) for inner in value]
+    return _beside(value, folder) if isinstance(value, dict) else value

@@ -11,7 +11,8 @@ from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radi
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary import boundary_table
+from rigidfluid.core.setup.boundary import repelling_walls
+from rigidfluid.core.setup.boundary_samples import sample_times, sampled_inflows
 from rigidfluid.core.setup.interactions import law_tables
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
 _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 
-Vectors = Sequence[float] | None
+Vectors = Sequence[float] | FloatArray | None
 
 
 def impact_speeds(
@@ -154,8 +155,11 @@ def _own_speed(table: BodyTable, lever: float) -> float:
 
 
 def _fastest_inflow(scene: Scene, domain: Domain) -> float:
-    tables = (boundary_table(scene, name) for name in domain.names)
-    return max(_length(table.velocity) if table else 0.0 for table in tables)
+    """Of all that is prescribed on the boundary, at the points and times sampled."""
+    inflows = sampled_inflows(scene, domain)
+    times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
+    walls = [_length(wall.velocity) for wall in repelling_walls(scene, domain)]
+    return max([*walls, *(inflow.speed(time) for inflow in inflows for time in times)])
 
 
 def _lever(body: Body) -> float:

@@ -13,6 +13,7 @@ from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
+from rigidfluid.core.setup.time_factor import with_time_tables
 
 
 def scene_from_dict(data: Mapping[str, Any]) -> Scene:
@@ -35,7 +36,7 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     PluginError
         If it names a part that is not there.
     """
-    scene = read_table(Scene, data)
+    scene = with_time_tables(read_table(Scene, data))
     check_tables(scene)
     parts = known_parts(scene)
     check_boundary(parts.scene, parts.domain)

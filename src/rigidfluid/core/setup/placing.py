@@ -3,16 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.scene.scene import BodyTable, MechanismTable
+from rigidfluid.errors import SceneError
 
 Tables = Sequence[BodyTable | MechanismTable]
 
 
-def initial_pose(tables: Tables, dimension: int) -> Pose:
+class Placement(Protocol):
+    """What a table says of a place; an angle in 2D, a quaternion in 3D, or neither."""
+
+    @property
+    def position(self) -> tuple[float, ...]:
+        """Of the centre of mass [length]."""
+
+    @property
+    def angle(self) -> float | None:
+        """Counter-clockwise [rad]."""
+
+    @property
+    def orientation(self) -> tuple[float, float, float, float] | None:
+        """A quaternion, scalar first [1]."""
+
+
+def check_orientation(table: Placement, dimension: int, at: str) -> None:
+    """Raise SceneError for an orientation that the ``dimension`` does not have; ``at`` is the table's place."""
+    if dimension == 3 and table.angle is not None:
+        raise SceneError(f"{at}.angle", table.angle, "no angle in 3D", "Give `orientation`, a quaternion.")
+    if dimension == 2 and table.orientation is not None:
+        raise SceneError(
+            f"{at}.orientation", list(table.orientation), "no quaternion in 2D", "Give `angle` in radians."
+        )
+    if table.orientation is not None and not np.linalg.norm(table.orientation) > 0:
+        raise SceneError(
+            f"{at}.orientation", list(table.orientation), "a quaternion of length above 0", "[1, 0, 0, 0]."
+        )
+
+
+def initial_pose(tables: Sequence[Placement], dimension: int) -> Pose:
     """Positions of the centres of mass and orientations, as many as there are ``tables``."""
     position = np.array([table.position for table in tables]).reshape(-1, dimension)
     if dimension == 2:

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rigidfluid.core.setup.boundary_checks import check_inflow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
-    from rigidfluid.core.scene.scene import BodyTable, MechanismTable, Scene
+    from rigidfluid.core.scene.scene import BodyTable, Scene
 
-    Vectors = Iterator[tuple[str, tuple[float, ...] | None, int]]
+    Vectors = Iterator[tuple[str, tuple[float | str, ...] | None, int]]
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -40,9 +39,9 @@ def check_tables(scene: Scene) -> None:
     if not (scene.body or scene.mechanism):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
     for number, mechanism in enumerate(scene.mechanism):
-        _check_orientation(scene, mechanism, f"mechanism.{number}")
+        check_orientation(mechanism, scene.dimension, f"mechanism.{number}")
     for number, body in enumerate(scene.body):
-        _check_orientation(scene, body, f"body.{number}")
+        check_orientation(body, scene.dimension, f"body.{number}")
         _check_control(body, f"body.{number}")
     _check_assemblies(scene)
     _check_contact(scene)
@@ -115,15 +114,6 @@ def _vectors(scene: Scene) -> Vectors:
         yield f"mesh.refine.{i}.upper", box.upper, d
     for i, probe in enumerate(scene.output.probes):
         yield f"output.probes.{i}", probe, d
-
-
-def _check_orientation(scene: Scene, body: BodyTable | MechanismTable, at: str) -> None:
-    if scene.dimension == 3 and body.angle is not None:
-        raise SceneError(f"{at}.angle", body.angle, "no angle in 3D", "Give `orientation`, a quaternion.")
-    if scene.dimension == 2 and body.orientation is not None:
-        raise SceneError(f"{at}.orientation", list(body.orientation), "no quaternion in 2D", "Give `angle` in radians.")
-    if body.orientation is not None and not np.linalg.norm(body.orientation) > 0:
-        raise SceneError(f"{at}.orientation", list(body.orientation), "a quaternion of length above 0", "[1, 0, 0, 0].")
 
 
 def _check_control(body: BodyTable, at: str) -> None:

@@ -11,7 +11,9 @@ import numpy as np
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import BoundaryCondition, Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
-from rigidfluid.core.setup.boundary import BoundaryPressure, boundary_table
+from rigidfluid.core.setup.boundary import boundary_table
+from rigidfluid.core.setup.boundary_values import BoundaryPressure
+from rigidfluid.core.setup.expressions import Expression
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -69,9 +71,9 @@ def opened(conditions: Sequence[BoundaryCondition], window: Window | None) -> tu
     the wake leaves through the end at zero pressure."""
     if window is None:
         return tuple(conditions)
-    behind = window.ends[0]
+    behind, none = window.ends[0], BoundaryPressure(Expression(0.0, "domain.window", window.domain.dimension))
     return tuple(
-        replace(held, type="pressure", value=BoundaryPressure(0.0)) if n == behind and held.type == "wall" else held
+        replace(held, type="pressure", value=none) if n == behind and held.type == "wall" else held
         for n, held in enumerate(conditions)
     )
 
@@ -99,7 +101,7 @@ def _check_parts(parts: Parts) -> None:
 
 
 def _check_place(scene: Scene, parts: Parts, window: Window, table: WindowTable) -> None:
-    """The end behind is open, so that it is not the domain's own; the one ahead may not be where the window stops."""
+    """The end behind is open: it may not start at the domain's own end, nor the one ahead where it must stop."""
     behind, ahead = (parts.domain.names[end] for end in window.ends)
     lower, upper = (float(corner[window.axis]) for corner in parts.domain.extent)
     room = window.sign * (window.behind - (lower if window.sign > 0.0 else upper))
@@ -120,7 +122,7 @@ def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> Non
         raise SceneError(
             f"body.{left}.position",
             f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not well in the window",
-            f"{CLEARANCE:g} of its radii from {low:.6g} and {high:.6g} along {'xyz'[window.axis]}",
+            f"at least {CLEARANCE:g} of its radii from {low:.6g} and {high:.6g} along {'xyz'[window.axis]}",
             "Move it, or lengthen domain.window.ahead or domain.window.behind.",
         )
 

@@ -1,0 +1,117 @@
+"""What polygons and polyhedra have in common: a shape that its facets say all about."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+import numpy as np
+
+from rigidfluid.bodies.facet_moments import facet_moments
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import SceneError
+
+_LEAST_VOLUME = 1e-9
+"""Of the cube around the body: what has less is flat."""
+
+_GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps of the evenest sequence of points in a square (M. Roberts, 2018)."""
+
+
+class FacetBody(Body):
+    """The inside of a closed surface of facets, moved so that its centre of mass is the origin.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The type's own keys.
+    facets : Facets
+        Closed, in any frame and of either sense.
+    key : str
+        The key that the facets are from, for messages.
+
+    Raises
+    ------
+    SceneError
+        If the surface is not closed, crosses itself or encloses nothing.
+    """
+
+    def __init__(self, options: PartOptions, facets: Facets, key: str) -> None:
+        super().__init__(options, facets.points.shape[1])
+        self._key = key
+        self._refuse_crossings(facets)
+        moments = facet_moments(facets)
+        size = float(np.max(np.ptp(facets.points, axis=0)))
+        if not abs(moments.volume) > _LEAST_VOLUME * size**self.dimension:
+            self._refuse("facets that enclose nothing", "a shape of some volume", "Check the corners.")
+        vertices = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
+        own = Facets(facets.points - moments.centre, np.ascontiguousarray(vertices), np.zeros_like(facets.markers))
+        self._surface = FacetSurface(own)
+        self._volume, self._unit_inertia = abs(moments.volume), moments.unit_inertia
+
+    @property
+    def facets(self) -> Facets:
+        """The facets, normals outwards, about the centre of mass."""
+        return self._surface.facets
+
+    @property
+    def volume(self) -> float:
+        """Σ det(x_i)/d! over all facets [length^d]."""
+        return self._volume
+
+    @property
+    def unit_inertia(self) -> FloatArray:
+        """See `facet_moments`, (k, k) [length²]."""
+        return self._unit_inertia
+
+    @property
+    def bounding_radius(self) -> float:
+        """Of the farthest vertex [length]."""
+        return float(np.linalg.norm(self.facets.points, axis=1).max())
+
+    def closest_point(self, points: FloatArray) -> FloatArray:
+        """Nearest points of the facets, (N, d) for ``points`` (N, d) [length]."""
+        return self._surface.closest_point(points)
+
+    def signed_distance(self, points: FloatArray) -> FloatArray:
+        """Distance to the nearest facet, (N,), < 0 inside, for ``points`` (N, d) [length]."""
+        return self._surface.signed_distance(points)
+
+    def normal(self, points: FloatArray) -> FloatArray:
+        """Unit normals outwards (N, d) at the closest points, see `FacetSurface.normal`."""
+        return self._surface.normal(points)
+
+    def sample_surface(self, count: int) -> FloatArray:
+        """``count`` points (count, d), as many on each facet as is due to its area [length]."""
+        corners = self.facets.points[self.facets.vertices]
+        areas = np.cumsum(np.linalg.norm(area_vectors(self.facets.points, self.facets.vertices), axis=1))
+        at = (np.arange(count) + 0.5) * areas[-1] / count
+        facet = np.searchsorted(areas, at)
+        if self.dimension == 2:
+            share = (areas[facet] - at) / np.diff(areas, prepend=0.0)[facet]
+            weights = np.stack([share, 1.0 - share], axis=1)
+        else:
+            u, v = ((np.arange(count)[:, None] + 0.5) * _GOLDEN % 1.0).T
+            weights = np.stack([1.0 - np.sqrt(u), np.sqrt(u) * (1.0 - v), np.sqrt(u) * v], axis=1)
+        return np.asarray(np.einsum("ni,nij->nj", weights, corners[facet]))
+
+    def _refuse_crossings(self, facets: Facets) -> None:
+        from rigidfluid.core.model.crossings import crossings
+        from rigidfluid.core.model.facet_tree import build_tree
+
+        points, corners = np.ascontiguousarray(facets.points), facets.vertices.astype(np.int32)
+        edges = np.concatenate([corners[:, [i, (i + 1) % self.dimension]] for i in range(self.dimension)])
+        tree = build_tree(points, corners, np.arange(len(corners), dtype=np.int32))
+        met = crossings(points, edges, corners, tree)
+        if len(met):
+            a, b = points[edges[met[0, 0]]].tolist()
+            self._refuse(
+                f"a surface that crosses itself at the edge from {a} to {b}",
+                "facets that meet at their edges alone",
+                "Move the corners, or make it several bodies.",
+            )
+
+    def _refuse(self, found: str, allowed: str, remedy: str) -> NoReturn:
+        raise SceneError(f"body.{self._key}", found, allowed, remedy)

@@ -1,0 +1,49 @@
+"""Volume, centre of mass and inertia of what a closed surface of facets encloses, exact to rounding."""
+
+from __future__ import annotations
+
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.types import FloatArray
+
+
+class FacetMoments(NamedTuple):
+    """``volume`` [length^d], negative if the normals point inwards; ``centre`` (d,) of mass [length]; ``unit_inertia``
+    (k, k) about it [length²]."""
+
+    volume: float
+    centre: FloatArray
+    unit_inertia: FloatArray
+
+
+def facet_moments(facets: Facets) -> FacetMoments:
+    """∫ 1, ∫ x and ∫ x xᵀ, each as a sum over the simplices (o, facet) of any point o, with their signs.
+
+    Of a simplex of volume V, vertices x_i and one more at o = 0, with s = Σ x_i: ∫ x = V s/(d + 1) and
+    ∫ x xᵀ = V (s sᵀ + Σ x_i x_iᵀ)/((d + 1)(d + 2)).
+
+    Parameters
+    ----------
+    facets : Facets
+        Closed, of any volume but zero.
+
+    Returns
+    -------
+    FacetMoments
+        Of the inside.
+    """
+    dimension = facets.points.shape[1]
+    origin = facets.points[np.unique(facets.vertices)].mean(axis=0)
+    corners = facets.points[facets.vertices] - origin
+    volumes = np.linalg.det(corners) / factorial(dimension)
+    volume, sums = float(volumes.sum()), corners.sum(axis=1)
+    centre = volumes @ sums / ((dimension + 1) * volume)
+    squares = np.einsum("f,fi,fj->ij", volumes, sums, sums) + np.einsum("f,fki,fkj->ij", volumes, corners, corners)
+    second = squares / ((dimension + 1) * (dimension + 2) * volume) - np.outer(centre, centre)
+    trace = np.trace(second)
+    unit_inertia = np.full((1, 1), trace) if dimension == 2 else trace * np.eye(3) - second
+    return FacetMoments(volume, origin + centre, unit_inertia)

@@ -1,0 +1,91 @@
+"""Prescribed velocities at points of a surface and at times of the run: their fluxes, and their greatest speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.setup.boundary import boundary_table, table_key
+from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
+from rigidfluid.core.setup.profiles import Disk, Rectangle, section
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import Scene
+
+_PANELS, _TIMES = 8, 65
+"""A side is integrated in so many panels of three points, and a time in the run looked at so many times."""
+
+
+@dataclass(frozen=True)
+class SampledInflow:
+    """A ``velocity`` prescribed on a ``piece``, with ``points`` (N, d) and ``weights`` (N,) of an integral over it.
+
+    Where the piece's shape is not known there is one point, and only uniform and constant velocities have a flux.
+    """
+
+    piece: Piece
+    velocity: BoundaryVelocity
+    points: FloatArray
+    weights: FloatArray
+
+    def flux(self, time: float) -> float | None:
+        """Into the domain, ∫ u·n; None where it is not known [length^d/time]."""
+        plane = self.piece.shape.plane
+        if plane is None or (len(self.points) == 1 and not self.velocity.is_uniform):
+            return None
+        return float(self.weights @ (self.velocity(time, self.points) @ plane.unit_normal))
+
+    def speed(self, time: float) -> float:
+        """The greatest at the points, where the profile is 1 [length/time]."""
+        points = self.points if self.velocity.velocity.names & {"x", "y", "z"} else self.points[:1]
+        return max(float(np.linalg.norm(velocity)) for velocity in self.velocity.peak(time, points))
+
+
+def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
+    """All velocities that the scene prescribes on surfaces that are not walls."""
+    inflows = []
+    for piece in domain.pieces:
+        table = boundary_table(scene, piece.name)
+        if table is not None and table.type == "velocity":
+            velocity = prescribed_velocity(piece, table, table_key(scene, table))
+            inflows.append(SampledInflow(piece, velocity, *quadrature(piece)))
+    return inflows
+
+
+def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
+    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady."""
+    rows = [time for table in scene.boundary if isinstance(table.over_time, tuple) for time, _ in table.over_time]
+    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), rows])
+    return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
+
+
+def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
+    """Points (N, d) and weights (N,) of an integral over a piece; of one whose shape is not known, one point."""
+    shape = section(piece)
+    nodes, weights = _composite()
+    if isinstance(shape, Rectangle):
+        grid = np.meshgrid(*[nodes] * len(shape.sides), indexing="ij")
+        products = np.prod(np.meshgrid(*[weights] * len(shape.sides), indexing="ij"), axis=0)
+        return shape.points(np.stack([axis.ravel() for axis in grid], axis=1)), products.ravel() * piece.area
+    if isinstance(shape, Disk):
+        plane = piece.shape.plane
+        assert plane is not None
+        across = np.linalg.svd(plane.unit_normal[None, :])[2][1:]
+        angle = 2.0 * np.pi * nodes
+        circle = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ across
+        points = shape.centre + shape.radius * nodes[:, None, None] * circle
+        return points.reshape(-1, 3), (2.0 * np.outer(weights * nodes, weights) * piece.area).ravel()
+    lower, upper = piece.shape.bounds
+    middle = 0.5 * (lower + upper)
+    return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+
+
+def _composite() -> tuple[FloatArray, FloatArray]:
+    """Gauss' rule of three points in each panel of [0, 1], exact for polynomials of degree 5."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    panels = np.arange(_PANELS)[:, None]
+    return ((panels + 0.5 * (nodes + 1.0)) / _PANELS).ravel(), np.tile(0.5 * weights / _PANELS, _PANELS)

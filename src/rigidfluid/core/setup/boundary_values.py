@@ -1,0 +1,132 @@
+"""Velocities and pressures prescribed on a piece of the boundary, as functions of time and place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.setup.expressions import Expression, VectorExpression
+from rigidfluid.core.setup.profiles import Rectangle, couette, poiseuille, section
+from rigidfluid.core.setup.time_factor import UNCHANGED, TimeFactor
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import BoundaryTable
+
+Profile = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class BoundaryVelocity:
+    """Velocity prescribed on a surface: u(t, x) · profile(x) · factor(t), the ``profile`` 1 where it is None."""
+
+    velocity: VectorExpression
+    profile: Profile | None = None
+    factor: TimeFactor = UNCHANGED
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) at ``points`` (N, d) [length/time]."""
+        velocity = self.peak(time, points)
+        return velocity if self.profile is None else self.profile(points)[:, None] * velocity
+
+    def peak(self, time: float, points: FloatArray) -> FloatArray:
+        """The velocity (N, d) where the profile is 1 [length/time]."""
+        return self.velocity(time, points) * self.factor(time)
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether it is the same everywhere on its surface."""
+        return self.profile is None and not self.velocity.names & {"x", "y", "z"}
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether it is the same at all times."""
+        return self.factor == UNCHANGED and "t" not in self.velocity.names
+
+
+@dataclass(frozen=True)
+class BoundaryPressure:
+    """Pressure prescribed on a surface: p(t, x) · factor(t) [force/length^(d-1)]."""
+
+    pressure: Expression
+    factor: TimeFactor = UNCHANGED
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        """Pressure (N,) at ``points`` (N, d)."""
+        return self.pressure(time, points) * self.factor(time)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether it is the same at all times."""
+        return self.factor == UNCHANGED and "t" not in self.pressure.names
+
+
+def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> BoundaryVelocity:
+    """The velocity that a table prescribes on a piece of the boundary.
+
+    Parameters
+    ----------
+    piece : Piece
+        For its shape.
+    table : BoundaryTable
+        A table with a velocity.
+    at : str
+        Where it is in the scene, for messages.
+
+    Returns
+    -------
+    BoundaryVelocity
+        A function of time and points.
+
+    Raises
+    ------
+    SceneError
+        If an expression is none, or the piece has not the shape that the profile is for.
+    """
+    assert table.velocity is not None
+    profile = _profile(piece, table.profile, f"{at}.profile")
+    velocity = VectorExpression.of(table.velocity, f"{at}.velocity", f" on {piece.name!r}")
+    return BoundaryVelocity(velocity, profile, _factor(table))
+
+
+def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
+    """The pressure that a ``table`` at ``at`` prescribes on a piece; see `prescribed_velocity`."""
+    assert table.pressure is not None
+    pressure = Expression(table.pressure, f"{at}.pressure", dimension, f" on {piece.name!r}")
+    return BoundaryPressure(pressure, _factor(table))
+
+
+def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:
+    """∏ 4 s(1 - s) over a surface's own coordinates s from 0 to 1, (N,), at ``points`` (N, d)."""
+    s = coordinates(points)
+    return np.asarray(np.prod(4 * s * (1 - s), axis=1))
+
+
+def _factor(table: BoundaryTable) -> TimeFactor:
+    assert table.over_time is None or isinstance(table.over_time, tuple), "files are read when the scene is loaded"
+    return TimeFactor(table.over_time, table.ramp)
+
+
+def _profile(piece: Piece, name: str, at: str) -> Profile | None:
+    shape = section(piece)
+    if name == "parabolic" and piece.coordinates is not None:
+        return partial(parabolic, piece.coordinates)
+    if name == "poiseuille" and shape is not None:
+        return partial(poiseuille, shape)
+    if name == "couette" and isinstance(shape, Rectangle) and len(shape.sides) == 1:
+        return partial(couette, shape)
+    if name == "uniform":
+        return None
+    needed = {
+        "parabolic": "with coordinates of its own",
+        "poiseuille": "that is a segment, a rectangle across an axis or a disk",
+        "couette": "that is a segment, in 2D",
+    }[name]
+    remedy = "Give `velocity` as expressions of x, y, z instead."
+    raise SceneError(at, f"{name!r} on {piece.name!r}", f"it on a surface {needed}", remedy)

@@ -1,0 +1,206 @@
+"""Formulas of place and time in a scene: read by Python's parser, checked against a short list, evaluated by NumPy."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+LONGEST, DEEPEST = 1000, 200
+"""A formula has at most so many characters, and operations within one another."""
+
+_OPERATORS: dict[type[ast.AST], Callable[..., FloatArray]] = {
+    ast.Add: np.add,
+    ast.Sub: np.subtract,
+    ast.Mult: np.multiply,
+    ast.Div: np.divide,
+    ast.Pow: np.power,
+    ast.USub: np.negative,
+    ast.UAdd: np.positive,
+    ast.Lt: np.less,
+    ast.LtE: np.less_equal,
+    ast.Gt: np.greater,
+    ast.GtE: np.greater_equal,
+}
+
+
+def _chosen(condition: FloatArray, then: FloatArray, otherwise: FloatArray) -> FloatArray:
+    return np.where(condition != 0.0, then, otherwise)
+
+
+_FUNCTIONS: dict[str, tuple[int, Callable[..., FloatArray]]] = {
+    "sin": (1, np.sin),
+    "cos": (1, np.cos),
+    "tan": (1, np.tan),
+    "tanh": (1, np.tanh),
+    "exp": (1, np.exp),
+    "log": (1, np.log),
+    "sqrt": (1, np.sqrt),
+    "abs": (1, np.abs),
+    "min": (2, np.minimum),
+    "max": (2, np.maximum),
+    "where": (3, _chosen),
+}
+_COORDINATES = ("x", "y", "z")
+_ALLOWED = "numbers, x, y, z, t, pi, + - * / **, < <= > >=, and " + ", ".join(_FUNCTIONS)
+
+Names = Mapping[str, FloatArray]
+Operation = Callable[[Names], FloatArray]
+
+
+class Expression:
+    """A formula f(t, x) of a scene, or a number.
+
+    Parameters
+    ----------
+    source : float or str
+        A number, or a text such as ``"0.3*sin(pi*t/8)"`` with the names x, y (z in 3D) [length], t [time], and pi.
+    at : str
+        The key that it stands under, for messages.
+    dimension : int
+        2 or 3.
+    where : str
+        What more messages say of its place (`` on 'left'``).
+
+    Raises
+    ------
+    SceneError
+        Where the text is no formula or says what is not allowed; when called, where a value is not finite.
+    """
+
+    def __init__(self, source: float | str, at: str, dimension: int, where: str = "") -> None:
+        self.source, self.at = source, f"{at}{where}"
+        self._value, self.names = _compiled(source, at, dimension)
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        """Values (N,) at ``points`` (N, d) [length]."""
+        names = dict(zip(_COORDINATES, points.T, strict=False)) | {"t": np.float64(time), "pi": np.float64(np.pi)}
+        with np.errstate(all="ignore"):
+            found = np.broadcast_to(np.asarray(self._value(names), dtype=float), len(points))
+        lost = np.flatnonzero(~np.isfinite(found))
+        if lost.size:
+            where = f"at time {time:g} and point {points[lost[0]].tolist()}"
+            remedy = "Write it so that it has a value there, as with max(…) or where(…)."
+            raise SceneError(self.at, f"{found[lost[0]]} from {self.source!r} {where}", "finite values", remedy)
+        return found
+
+
+@dataclass(frozen=True)
+class VectorExpression:
+    """A vector of formulas, one for each component."""
+
+    components: tuple[Expression, ...]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names that they use."""
+        return frozenset().union(*(component.names for component in self.components))
+
+    @classmethod
+    def of(cls, sources: Sequence[float | str], at: str, where: str = "") -> VectorExpression:
+        """From d numbers or texts under the key ``at``; see `Expression`."""
+        return cls(tuple(Expression(source, f"{at}.{i}", len(sources), where) for i, source in enumerate(sources)))
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        """Vectors (N, d) at ``points`` (N, d) [length]."""
+        return np.stack([component(time, points) for component in self.components], axis=1)
+
+
+def _compiled(source: float | str, at: str, dimension: int) -> tuple[Operation, frozenset[str]]:
+    """What a source computes, and the names that it uses."""
+    if not isinstance(source, str):
+        return _constant(source), frozenset()
+    text = " ".join(source.split())
+    if len(text) > LONGEST:
+        raise SceneError(at, f"{len(text)} characters", f"at most {LONGEST}", "Write it shorter, or as `over_time`.")
+    try:
+        tree = ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        place = f", at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
+        raise SceneError(at, f"{source!r}, which is no formula{place}", _ALLOWED, "Correct it there.") from None
+    names = frozenset(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
+    return _Reader(text, at, _COORDINATES[:dimension]).operation(tree.body), names
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Makes operations of the nodes of Python's syntax tree, of those alone that are allowed."""
+
+    text: str
+    at: str
+    coordinates: tuple[str, ...]
+
+    def operation(self, node: ast.expr, depth: int = 0) -> Operation:
+        """What a node computes."""
+        if depth > DEEPEST:
+            raise self._refusal(node, "nested too deep", "Write it as fewer operations.")
+        match node:
+            case ast.Constant(value=bool() | complex()):
+                pass
+            case ast.Constant(value=int() | float() as number):
+                return self._number(node, number)
+            case ast.Name(id=name):
+                return self._name(node, name)
+            case ast.UnaryOp(op=operator, operand=operand) if type(operator) in _OPERATORS:
+                return _applied(_OPERATORS[type(operator)], [self.operation(operand, depth + 1)])
+            case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATORS:
+                sides = [self.operation(side, depth + 1) for side in (left, right)]
+                return _applied(_OPERATORS[type(operator)], sides)
+            case ast.Compare(left=left, ops=operators, comparators=others) if all(
+                type(operator) in _OPERATORS for operator in operators
+            ):
+                sides = [self.operation(side, depth + 1) for side in (left, *others)]
+                pairs = zip(operators, sides, sides[1:], strict=False)
+                return _applied(_all, [_applied(_OPERATORS[type(op)], [a, b]) for op, a, b in pairs])
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
+                return self._call(node, name, [self.operation(argument, depth + 1) for argument in arguments])
+        powers = isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitXor)
+        remedy = "Write ** for powers." if powers else "Use what is allowed alone."
+        raise self._refusal(node, "not allowed", remedy)
+
+    def _number(self, node: ast.expr, number: float) -> Operation:
+        try:
+            return _constant(float(number))
+        except OverflowError:
+            raise self._refusal(node, "too large", "Choose units in which it is nearer to 1.") from None
+
+    def _name(self, node: ast.expr, name: str) -> Operation:
+        known = (*self.coordinates, "t", "pi")
+        if name in known:
+            return lambda names: names[name]
+        remedy = suggestion(name, [*known, *_FUNCTIONS]) or f"The names here are {', '.join(known)}."
+        raise self._refusal(node, "an unknown name", remedy)
+
+    def _call(self, node: ast.expr, name: str, arguments: list[Operation]) -> Operation:
+        count, function = _FUNCTIONS[name]
+        several = name in ("min", "max")
+        if len(arguments) != count and not (several and len(arguments) > count):
+            least = "at least " if several else ""
+            raise self._refusal(node, f"{len(arguments)} arguments", f"Give {name} {least}{count}.")
+        return _applied((lambda *values: reduce(function, values)) if several else function, arguments)
+
+    def _refusal(self, node: ast.expr, found: str, remedy: str) -> SceneError:
+        part = ast.get_source_segment(self.text, node) or self.text
+        place = f"{part!r} at character {node.col_offset + 1} of {self.text!r}"
+        return SceneError(self.at, f"{found}: {place}", _ALLOWED, remedy)
+
+
+def _constant(number: float) -> Operation:
+    value = np.float64(number)
+    return lambda names: np.asarray(value)
+
+
+def _applied(function: Callable[..., FloatArray], arguments: Sequence[Operation]) -> Operation:
+    return lambda names: function(*(argument(names) for argument in arguments))
+
+
+def _all(*conditions: FloatArray) -> FloatArray:
+    """1 where all hold, and else 0."""
+    return np.asarray(reduce(np.logical_and, conditions), dtype=float)

@@ -1,0 +1,111 @@
+"""How prescribed values change as a whole in time: a table, and a smooth rise from zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rigidfluid.core.scene.scene import Scene, TimeFileTable
+from rigidfluid.errors import SceneError
+
+Rows = tuple[tuple[float, float], ...]
+
+MOST_ROWS = 100_000
+"""A table has at most so many, since it is kept with the scene in every checkpoint."""
+
+
+@dataclass(frozen=True)
+class TimeFactor:
+    """table(t) · s³(10 - 15 s + 6 s²) with s = t/ramp from 0 to 1, each 1 where it is not given [1].
+
+    The ``table`` is linear between its rows (t, value); the rise has two continuous derivatives.
+    """
+
+    table: Rows | None = None
+    ramp: float | None = None
+
+    def __call__(self, time: float) -> float:
+        """The factor at ``time``."""
+        factor = 1.0
+        if self.table is not None:
+            times, values = zip(*self.table, strict=True)
+            factor *= float(np.interp(time, times, values))
+        if self.ramp is not None:
+            s = min(max(time / self.ramp, 0.0), 1.0)
+            factor *= s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+        return factor
+
+
+UNCHANGED = TimeFactor()
+"""1 at all times."""
+
+
+def check_rows(rows: Rows, end: float, at: str) -> None:
+    """Refuse a table that does not rise in time, or does not reach from 0 to the end: nothing is held beyond it.
+
+    Parameters
+    ----------
+    rows : sequence of pairs
+        Times [time] and values.
+    end : float
+        When the simulation ends [time].
+    at : str
+        The table's key, for the message.
+
+    Raises
+    ------
+    SceneError
+        Naming the row.
+    """
+    for number, (before, after) in enumerate(pairwise(rows), start=1):
+        if not after[0] > before[0]:
+            found = f"time {after[0]:g} after {before[0]:g}"
+            raise SceneError(f"{at}.{number}", found, "times that rise", "Sort the rows, and leave out doubled times.")
+    if not rows or rows[0][0] > 0.0 or rows[-1][0] < end:
+        found = f"times from {rows[0][0]:g} to {rows[-1][0]:g}" if rows else "no rows"
+        raise SceneError(at, found, f"times from 0 to time.end = {end:g}", "Add rows, or end the simulation earlier.")
+
+
+def with_time_tables(scene: Scene) -> Scene:
+    """A scene with the rows of all files of tables over time in their place, so that a checkpoint needs no file."""
+    tables = [
+        table.model_copy(update={"over_time": read_rows(table.over_time.file, f"boundary.{number}.over_time.file")})
+        if isinstance(table.over_time, TimeFileTable)
+        else table
+        for number, table in enumerate(scene.boundary)
+    ]
+    return scene.model_copy(update={"boundary": tuple(tables)})
+
+
+def read_rows(file: str, at: str) -> Rows:
+    """The rows of a text file, each of a time and a value with a comma between; lines that start with # are skipped.
+
+    Parameters
+    ----------
+    file : str
+        Its path.
+    at : str
+        The key that names it, for messages.
+
+    Returns
+    -------
+    sequence of pairs
+        Times [time] and values.
+
+    Raises
+    ------
+    SceneError
+        If it cannot be read, is too long, or a row is not two finite numbers.
+    """
+    allowed, remedy = "a file of lines 'time, value'", "Correct it; start lines of words with #."
+    try:
+        rows = np.loadtxt(file, delimiter=",", ndmin=2, encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        raise SceneError(at, f"{file!r}: {getattr(error, 'strerror', None) or error}", allowed, remedy) from None
+    if rows.shape[1] != 2 or not np.isfinite(rows).all():
+        raise SceneError(at, f"{file!r} with {rows.shape[1]} columns, or infinite values", allowed, remedy)
+    if len(rows) > MOST_ROWS:
+        raise SceneError(at, f"{file!r} of {len(rows)} rows", f"at most {MOST_ROWS}", "Thin it out.")
+    return tuple(map(tuple, rows.tolist()))

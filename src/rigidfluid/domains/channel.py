@@ -1,0 +1,99 @@
+"""A box with obstacles in it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.obstacles import AT, ObstacleTable, placed_obstacles, refuse_overlap
+from rigidfluid.errors import SceneError
+
+
+class ChannelOptions(BoxOptions):
+    """Keys of the ``[domain]`` table with type ``channel``: the box from ``lower`` to ``upper``, and in each table
+    ``[[domain.obstacle]]`` a body of any type that stays where it is, with a surface of its own.
+
+    The faces of the box are called ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and
+    ``front`` along z.
+    """
+
+    obstacle: tuple[ObstacleTable, ...] = Field(
+        default=(), description="`name`, `type`, `position`, `angle` or `orientation`, and the keys of the type"
+    )
+
+
+class Channel(Domain):
+    """{x : lower < x < upper} \\ ∪ K_i with obstacles K_i, of volume ∏ (upper - lower) - Σ |K_i|.
+
+    Parameters
+    ----------
+    options : ChannelOptions
+        Corners of the box [length], and the obstacles.
+    dimension : int
+        2 or 3.
+
+    Raises
+    ------
+    SceneError
+        If box or obstacles are not what they should be, have one name twice, or overlap.
+    """
+
+    name: ClassVar[str] = "channel"
+    Options: ClassVar[type[PartOptions]] = ChannelOptions
+    options: ChannelOptions
+
+    def __init__(self, options: ChannelOptions, dimension: int) -> None:
+        super().__init__(options, dimension)
+        self._box = Box(BoxOptions(lower=options.lower, upper=options.upper), dimension)
+        self._obstacles = placed_obstacles(options.obstacle, dimension)
+        for number, name in enumerate(self._obstacles):
+            if name in (taken := ("all", *self._box.names)):
+                allowed = f"a name other than {', '.join(taken)}"
+                raise SceneError(f"{AT}.{number}.name", repr(name), allowed, "Rename it.")
+        self._refuse_outside()
+        refuse_overlap(self._obstacles, {piece.name: piece.shape for piece in self._box.pieces})
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The faces of the box, then the obstacles in the scene's order."""
+        obstacles = (Piece(name, placed, placed.area) for name, placed in self._obstacles.items())
+        return (*self._box.pieces, *obstacles)
+
+    @property
+    def extent(self) -> tuple[FloatArray, FloatArray]:
+        """The corners of the box [length]."""
+        return self._box.extent
+
+    @property
+    def volume(self) -> float:
+        """That of the box without the obstacles [length^d]."""
+        return self._box.volume - sum(placed.shape.volume for placed in self._obstacles.values())
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Which of ``points`` (N, d) are in the box and in no obstacle, (N,)."""
+        inside = self._box.contains(points)
+        for placed in self._obstacles.values():
+            inside &= placed.signed_distance(points) > 0.0
+        return inside
+
+    def cad_shape(self) -> Any:
+        """The box minus the obstacles, as a ``netgen.occ`` face or solid."""
+        shape = self._box.cad_shape()
+        for name, placed in self._obstacles.items():
+            shape = shape - placed.cad_shape(name)
+        return shape
+
+    def _refuse_outside(self) -> None:
+        """A centre beyond a face overlaps it by more than a detector need see."""
+        for number, placed in enumerate(self._obstacles.values()):
+            if not self._box.contains(placed.pose.position).all():
+                lower, upper = (corner.tolist() for corner in self.extent)
+                allowed = f"inside the box from {lower} to {upper}"
+                found = placed.pose.position[0].tolist()
+                raise SceneError(f"{AT}.{number}.position", found, allowed, "Move it.")

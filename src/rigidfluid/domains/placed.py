@@ -1,0 +1,83 @@
+"""A body's shape that stays where it is: an obstacle, seen as a surface of the domain."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.special import elliprg
+
+from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mesh.meshing import in_space, sides, turned
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.types import FloatArray, Pose
+
+
+class PlacedBody(Surface):
+    """The surface {c + R ξ : ξ on the shape} of a body with its centre c and rotation R.
+
+    Parameters
+    ----------
+    shape : Body
+        The shape in its own frame.
+    pose : Pose
+        Where this one body is.
+    """
+
+    def __init__(self, shape: Body, pose: Pose) -> None:
+        self.shape, self.pose = shape, pose
+
+    @property
+    def radius(self) -> float | None:
+        """The radius if the shape is a ball, else None [length]."""
+        return self.shape.radius
+
+    @property
+    def semi_axes(self) -> FloatArray | None:
+        """Those of the shape, along the axes of its own frame [length]."""
+        return self.shape.semi_axes
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Corners of the cube around the ball of the bounding radius, (d,) each [length]."""
+        return self.pose.position[0] - self.shape.bounding_radius, self.pose.position[0] + self.shape.bounding_radius
+
+    def closest_point(self, points: FloatArray) -> FloatArray:
+        """c + R (the shape's closest point to Rᵀ(x - c)), (N, d), for ``points`` x (N, d) [length]."""
+        return to_world(self.pose, 0, self.shape.closest_point(to_body_frame(self.pose, 0, points)))
+
+    def signed_distance(self, points: FloatArray) -> FloatArray:
+        """The shape's distance at Rᵀ(x - c), (N,), for ``points`` x (N, d) [length]."""
+        return self.shape.signed_distance(to_body_frame(self.pose, 0, points))
+
+    def normal(self, points: FloatArray) -> FloatArray:
+        """R (the shape's normal at Rᵀ(x - c)), (N, d), for ``points`` x (N, d)."""
+        turn = rotation_matrices(self.pose.orientation)[0]
+        return np.asarray(self.shape.normal(to_body_frame(self.pose, 0, points)) @ turn.T)
+
+    def cad_shape(self, name: str) -> Any:
+        """The shape in its place as a ``netgen.occ`` face or solid, its sides called ``name``."""
+        from netgen import occ
+
+        placed = turned(self.shape.cad_shape(), self.pose.orientation[0])
+        placed = placed.Move(occ.Vec(*in_space(self.pose.position[0])))
+        for side in sides(placed, self.shape.dimension):
+            side.name = name
+        return placed
+
+    @cached_property
+    def area(self) -> float:
+        """Length of the outline (2D) or area of the surface [length^(d-1)].
+
+        8 R_G(0, a², b²) of an ellipse and 4π R_G(a²b², b²c², c²a²) of an ellipsoid, with Carlson's R_G (DLMF 19.30 and
+        19.33); of other smooth shapes what Open CASCADE finds, by quadrature.
+        """
+        if self.semi_axes is not None:
+            squares = self.semi_axes**2
+            if self.shape.dimension == 2:
+                return float(8.0 * elliprg(0.0, *squares))
+            return float(4.0 * np.pi * elliprg(*(squares * np.roll(squares, 1))))
+        return float(sum(side.mass for side in sides(self.shape.cad_shape(), self.shape.dimension)))

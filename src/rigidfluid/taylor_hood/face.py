@@ -1,0 +1,61 @@
+"""A piece of the domain's boundary on one topology."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.model.types import BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.taylor_hood.facet_integrals import area_vectors, facet_weights, into_fluid, normals_at_nodes
+from rigidfluid.taylor_hood.numbering import Numbering
+
+
+@dataclass(frozen=True)
+class Face:
+    """Its ``condition``, ``facets`` (F, d) with their ``facet_nodes`` (F, 3 | 6), and all ``nodes`` on it, also those
+    of facets that other processes hold."""
+
+    condition: BoundaryCondition
+    facets: IntArray
+    facet_nodes: IntArray
+    nodes: IntArray
+
+    @classmethod
+    def of(
+        cls, condition: BoundaryCondition, facets: IntArray, nodes: IntArray, mesh: Mesh, numbering: Numbering
+    ) -> Face:
+        """The face of these ``facets``; of one that is not flat they are turned so that their normals are known."""
+        if condition.normal is None:
+            facets = into_fluid(facets, mesh.cells, mesh.points)
+        return cls(condition, facets, numbering.facet_nodes(facets), nodes)
+
+    @cached_property
+    def axis(self) -> int | None:
+        """The axis that the face lies across, if it is flat and there is one."""
+        normal = self.condition.normal
+        return None if normal is None else Plane(np.zeros_like(normal), normal).axis
+
+    def area_vectors(self, node_points: FloatArray) -> FloatArray:
+        """∫ φᵢ n over each facet for its nodes i, n into the fluid, (F, 3 | 6, d) [length^(d-1)].
+
+        ``node_points`` (nodes, d) [length].
+        """
+        if self.condition.normal is None:
+            return area_vectors(node_points[self.facet_nodes])
+        return np.asarray(facet_weights(node_points, self.facets)[..., None] * self.condition.normal)
+
+    def normals(self, node_points: FloatArray) -> FloatArray:
+        """Unit normals into the fluid of each facet at its nodes, (F, 3 | 6, d), for ``node_points`` (nodes, d)."""
+        if self.condition.normal is None:
+            return normals_at_nodes(node_points[self.facet_nodes])
+        return np.broadcast_to(self.condition.normal, (*self.facet_nodes.shape, len(self.condition.normal)))
+
+    def inflow(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
+        """The part of ∫ u·n of each facet's nodes, (F, 3 | 6) [length^d/time], n into the fluid.
+
+        ``node_points``, ``velocity`` (nodes, d) [length, length/time].
+        """
+        return np.asarray(np.einsum("fid,fid->fi", self.area_vectors(node_points), velocity[self.facet_nodes]))

@@ -1,0 +1,132 @@
+"""Axes of its own for each node where a velocity is free along some directions that lie along no axis.
+
+On slip faces the velocity across the face is held, on pressure faces the velocity along it. Where a face is oblique or
+curved, these are no components, and the unknowns of its nodes are taken along axes Q of the node's own: u = Q û.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.taylor_hood.face import Face
+
+_EDGE = 0.08
+"""Facets at one node have two normals where the mean of n nᵀ has a second eigenvalue above this, at edges sharper than
+33° between two facets, and one mean normal else."""
+
+_SQUARE = 0.94
+"""Fluid passes a node of both slip and pressure faces where these meet at a right angle, give or take 20°."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """``axes`` (T, d, d), the columns of Q, at ``nodes`` (T,); along which of them the velocity is ``free`` (T, d)."""
+
+    nodes: IntArray
+    axes: FloatArray
+    free: BoolArray
+
+    def into(self, velocity: FloatArray) -> FloatArray:
+        """û of a ``velocity`` u (nodes, d): its components along each node's own axes."""
+        if not len(self.nodes):
+            return velocity
+        found = velocity.copy()
+        found[self.nodes] = np.einsum("tia,ti->ta", self.axes, velocity[self.nodes])
+        return found
+
+    def out_of(self, velocity: FloatArray) -> FloatArray:
+        """u of components û (nodes, d) along each node's own axes."""
+        if not len(self.nodes):
+            return velocity
+        found = velocity.copy()
+        found[self.nodes] = np.einsum("tia,ta->ti", self.axes, velocity[self.nodes])
+        return found
+
+    def spread(self, unknowns: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
+        """Entries of Q in the columns of ``unknowns`` (u,), d · node + component.
+
+        Returns
+        -------
+        rows, which, values : (e,) arrays
+            The row of each entry, the place of its column in ``unknowns``, and the entry.
+        """
+        d, place = self.axes.shape[1], np.arange(len(unknowns))
+        own = np.isin(unknowns // d, self.nodes)
+        turned = np.searchsorted(self.nodes, unknowns[own] // d)
+        rows = self.nodes[turned][:, None] * d + np.arange(d)
+        return (
+            np.concatenate([unknowns[~own], rows.ravel()]),
+            np.concatenate([place[~own], np.repeat(place[own], d)]),
+            np.concatenate([np.ones(len(unknowns) - len(turned)), self.axes[turned, :, unknowns[own] % d].ravel()]),
+        )
+
+
+def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, held: BoolArray) -> Frames:
+    """The axes of the nodes on slip and pressure faces that lie across no axis.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        All faces.
+    node_points : (nodes, d) array
+        Where the nodes are, the ``vertices`` first [length].
+    vertices : int
+        How many of them are vertices.
+    held : (nodes,) bool
+        Nodes whose velocity is given, which need none.
+
+    Returns
+    -------
+    Frames
+        Nodes ascending. Where faces meet, each holds what it does; but normals that are nearly equal count as one.
+    """
+    d = node_points.shape[1]
+    slip, pressure = ([face for face in faces if face.condition.type == kind] for kind in ("slip", "pressure"))
+    oblique = [face.nodes for face in [*slip, *pressure] if face.axis is None]
+    nodes = np.unique(np.concatenate([*oblique, np.empty(0, np.int64)]))
+    nodes = nodes[~held[nodes]]
+    if not len(nodes):
+        return Frames(nodes, np.empty((0, d, d)), np.empty((0, d), dtype=bool))
+    across = _normal_spaces(slip, node_points, vertices)[nodes]
+    through = _normal_spaces(pressure, node_points, vertices)[nodes]
+    values, axes = np.linalg.eigh(through)
+    opens, way = values[:, -1] > 0.5, axes[:, :, -1]
+    way = way - np.einsum("tij,tj->ti", across, way)
+    size = np.linalg.norm(way, axis=1)
+    passes = opens & (values[:, -2] < 0.5) & (size > _SQUARE)
+    way[passes] /= size[passes, None]
+    across[opens] = np.eye(d)
+    across[passes] -= np.einsum("ti,tj->tij", way[passes], way[passes])
+    values, axes = np.linalg.eigh(across)
+    return Frames(nodes, axes, values < 0.5)
+
+
+def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int) -> FloatArray:
+    """Projectors (nodes, d, d) onto the normals of all ``faces`` together at each node; zero away from them.
+
+    Where the facets at a node are nearly one surface, this is Σ ∫ φᵢ n: a velocity across it takes no fluid through the
+    faces (consistent normals: Engelman, Sani and Gresho 1982, doi:10.1002/fld.1650020302). No fluid passes a triangle
+    by its vertices; their normals are means of the facets'.
+    """
+    count, d = node_points.shape
+    total, squares, facets = np.zeros((count, d)), np.zeros((count, d, d)), np.zeros(count)
+    for face in faces:
+        vectors, normals = face.area_vectors(node_points), face.normals(node_points)
+        if d == 3:
+            area = np.linalg.norm(vectors.sum(axis=1), axis=1)
+            vectors = np.where((face.facet_nodes < vertices)[..., None], area[:, None, None] * normals, vectors)
+        np.add.at(total, face.facet_nodes, vectors)
+        np.add.at(squares, face.facet_nodes, normals[..., :, None] * normals[..., None, :])
+        np.add.at(facets, face.facet_nodes, 1.0)
+    on = np.flatnonzero(facets)
+    mean = total[on] / np.linalg.norm(total[on], axis=1, keepdims=True)
+    found = np.zeros((count, d, d))
+    values, vectors = np.linalg.eigh(squares[on] / facets[on, None, None])
+    sharp = values > _EDGE
+    edges = np.einsum("tia,ta,tja->tij", vectors, sharp, vectors)
+    found[on] = np.where((sharp.sum(axis=1) > 1)[:, None, None], edges, mean[:, :, None] * mean[:, None, :])
+    return found
