@@ -351,6 +351,83 @@ The step is .01 at density 1.5 and .0025 at density 3. With .005 at density 3, t
 unaccounted for."""
 
 
+def window() -> None:
+    """A disk falls through a long channel, all of it meshed and in windows of several lengths."""
+    runs = {ends: in_window(ends) for ends in WINDOWS}
+    whole = runs[None]
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
+    speed, off = figure.subplots(1, 2)
+    speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    for ends, history in runs.items():
+        bodies = history.bodies
+        label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
+        speed.plot(bodies["time"], -bodies["vy"], style, label=label)
+        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+    speed.legend()
+    figure.savefig(OUT / "window.png", dpi=120)
+    head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
+    ways = [("whole channel", "") if ends is None else tuple(f"{end:g}" for end in ends) for ends in runs]
+    rows = [(*way, *window_figures(run, whole).values()) for way, run in zip(ways, runs.values(), strict=True)]
+    text = WINDOW.format(figures=table(head, rows))
+    write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
+
+
+WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
+20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
+meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
+difference of the speeds is over the final one. CPU times, of one thread, are over that of the whole channel in the same
+run.
+
+{figures}
+
+Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
+less."""
+
+
+def in_window(ends: tuple[float, float] | None) -> History:
+    """The fall with so much ahead and behind in the window, or in the whole channel; with its CPU time."""
+    tables = rigidfluid.load_scene(ROOT / "scenes" / "falling_disk_window.toml").to_dict()
+    if ends is None:
+        del tables["domain"]["window"]
+    else:
+        tables["domain"]["window"] |= {"ahead": ends[0], "behind": ends[1]}
+    start = time.process_time()
+    history = rigidfluid.run(rigidfluid.scene_from_dict(tables))
+    history.summary["cpu"] = time.process_time() - start
+    return history
+
+
+def off_the_whole(history: History, whole: History) -> np.ndarray:
+    """Speed less that in the whole channel, over its final speed, at each step [1]."""
+    found, expected = history.bodies, whole.bodies
+    return (expected["vy"] - found["vy"]) / final_speed(whole)
+
+
+def final_speed(history: History) -> float:
+    """Mean of the last tenth of a second."""
+    bodies = history.bodies
+    return float(-np.mean(bodies["vy"][bodies["time"] > bodies["time"][-1] - 0.1]))
+
+
+def window_figures(history: History, whole: History) -> dict[str, str]:
+    """What the page tells of one run."""
+    summary, speed = history.summary, final_speed(history)
+    energy, put = history.energy, summary["energy"]["put_in"]
+    return {
+        "final speed [cm/s]": f"{speed:.4f}",
+        "off the whole channel's": f"{speed / final_speed(whole) - 1:+.3%}",
+        "off it at any time": f"{np.abs(off_the_whole(history, whole)).max():.3%}",
+        "unknowns": f"{summary['unknowns']} ({summary['unknowns'] / whole.summary['unknowns']:.0%})",
+        "CPU": f"{summary['cpu'] / whole.summary['cpu']:.0%}",
+        "meshes": f"{1 + summary['remeshes']}",
+        "energy out through the ends, of all put in": f"{-energy['boundary'][-1] / put:.2%}",
+        "residual, lowest … highest": f"{energy['residual'].min() / put:.1e} … {energy['residual'].max() / put:.1e}",
+        "created, lost": "{created:.1e}, {lost:.1e}".format(**summary["energy"]),
+    }
+
+
 def lammps() -> None:
     """200 spheres in a box here and in LAMMPS: until chaos parts them, and in the mean."""
     start = time.perf_counter()
@@ -831,6 +908,7 @@ CASES = {
     "dfg_cylinder": dfg_cylinder,
     "dfg_unsteady": dfg_unsteady,
     "settling_cylinder": settling_cylinder,
+    "window": window,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
     "lammps": lammps,
