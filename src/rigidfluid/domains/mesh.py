@@ -84,6 +84,8 @@ class MeshDomain(Domain):
         super().__init__(options, dimension)
         file = read_mesh(Path(options.file), dimension)
         boundary = boundary_of(file, dimension, options.fluid, options.scale)
+        self.doubled_points = boundary.doubled
+        """Points of the file that were joined with others, as they were as good as equal."""
         parts = boundary.parts
         names = surface_names(parts, options.faces)
         self._names = in_order(names, options.faces)
