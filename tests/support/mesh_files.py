@@ -15,6 +15,11 @@ from rigidfluid.domains.mesh import MeshDomain, MeshOptions
 FLUID = 7
 """The number of the cells."""
 
+CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)])
+SIDES = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+TRIANGLES = np.array([corners for a, b, c, d in SIDES for corners in ((a, b, c), (a, c, d))])
+"""Of a cube, turned as they come."""
+
 
 def write_by_meshio(path: Path, mesh: Mesh, names: list[str]) -> None:
     """Facets numbered from 1 by their marker, cells FLUID; with names where the kind of file has them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from mesh_tools import ball, upright
@@ -53,7 +54,7 @@ def wall_drift(remeshings: int = 50) -> Iterator[Drift]:
     around = domain, list(surfaces_of(domain, 1)), Sizes(0.5, 0.08)
     mesh = initial_mesh([body], poses[0], *around)
     yield _seen(0, mesh, poses[0], domain)
-    for number, (before, after) in enumerate(zip(poses[:-1], poses[1:], strict=True), start=1):
+    for number, (before, after) in enumerate(pairwise(poses), start=1):
         moved = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(after))
         mesh = remesh(moved, [body], after, *around)
         yield _seen(number, mesh, after, domain)

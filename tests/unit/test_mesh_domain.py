@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drawn import ball_in_a_box, bent_tube, drawn, plate
-from mesh_files import FLUID, meshed, write_by_meshio, write_gmsh41, write_stl, write_vol
+from mesh_files import CUBE, FLUID, TRIANGLES, meshed, write_by_meshio, write_gmsh41, write_stl, write_vol
 from mesh_tools import ball, nobody, upright
 
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
@@ -21,11 +21,6 @@ from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.errors import SceneError
-
-CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)])
-SIDES = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
-TRIANGLES = np.array([corners for a, b, c, d in SIDES for corners in ((a, b, c), (a, c, d))])
-"""Of a cube, turned as they come."""
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +96,10 @@ def test_points_that_are_there_twice_are_joined(tmp_path: Path) -> None:
     write_stl(tmp_path / "loose.stl", loose, np.arange(36).reshape(12, 3))
     domain = meshed(tmp_path / "loose.stl", faces={"wall": 1})
     assert domain.volume == pytest.approx(1.0, rel=1e-10)
-    assert domain.doubled_points == len(np.unique(loose, axis=0)) - len(CUBE)
+    joined = len(np.unique(loose, axis=0)) - len(CUBE)
+    assert domain.remarks == (
+        f"{joined} points of the file were joined with others less than 1e-09 of the domain away",
+    )
 
 
 def test_only_the_region_that_is_fluid_counts(tmp_path: Path, tube: tuple[Mesh, list[str]]) -> None:
