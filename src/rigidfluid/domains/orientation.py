@@ -111,7 +111,7 @@ def _enclosed(points: FloatArray, vertices: IntArray) -> float:
     """Volume that facets with normals outwards enclose, negative of normals inwards, ∮ x·n / d [length^d]."""
     normals = area_vectors(points, vertices)
     middles = points[vertices].mean(axis=1) - points[vertices[0, 0]]
-    return float(np.sum(middles * normals)) / points.shape[1]
+    return float(np.sum(middles * normals) / points.shape[1])
 
 
 def _depth(facets: Facets, surface: IntArray, point: FloatArray, others: BoolArray) -> int:

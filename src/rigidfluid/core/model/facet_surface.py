@@ -96,6 +96,10 @@ class FacetSurface(Surface):
         """Infinite where all facets lie in a plane, else None [length]."""
         return None if self.plane is None else np.inf
 
+    def nearest_facets(self, points: FloatArray) -> IntArray:
+        """Rows of the nearest facets, (N,), for ``points`` (N, d) [length]."""
+        return self._nearest(points)[0]
+
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the facets, (N, d) for ``points`` (N, d) [length]."""
         return self._measured(points, *self._nearest(points)).foot
