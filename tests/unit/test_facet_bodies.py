@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import struct
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from facet_shapes import CUBE, TRIANGLES, binary_stl, polygon, polyhedron
 
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
@@ -16,27 +16,9 @@ from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import most_leverage
 from rigidfluid.errors import SceneError
 
-CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-SQUARES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-TRIANGLES = [[a, b, c] for a, b, c, _ in SQUARES] + [[a, c, d] for a, _, c, d in SQUARES]
-
-
-def polygon(*corners: tuple[float, float]) -> Polygon:
-    return Polygon(PolygonOptions(points=[list(corner) for corner in corners]), 2)
-
-
-def binary_stl(path: Path, points: Any, triangles: Any) -> Path:
-    rows = [struct.pack("<12fH", 0, 0, 0, *np.ravel(np.asarray(points)[corners]), 0) for corners in triangles]
-    path.write_bytes(bytes(80) + struct.pack("<I", len(rows)) + b"".join(rows))
-    return path
-
-
-def polyhedron(path: Path, scale: float = 1.0) -> Polyhedron:
-    return Polyhedron(PolyhedronOptions(file=str(path), scale=scale), 3)
-
 
 def test_an_l_has_the_moments_of_its_two_rectangles() -> None:
-    found = polygon((9.0, 5.0), (11.0, 5.0), (11.0, 5.5), (9.5, 5.5), (9.5, 7.0), (9.0, 7.0))
+    found = polygon([(9.0, 5.0), (11.0, 5.0), (11.0, 5.5), (9.5, 5.5), (9.5, 7.0), (9.0, 7.0)])
     areas, centres = np.array([1.0, 0.75]), np.array([[10.0, 5.25], [9.25, 6.25]])
     centre = areas @ centres / 1.75
     own = areas * np.array([2.0**2 + 0.5**2, 0.5**2 + 1.5**2]) / 12.0
@@ -55,7 +37,7 @@ def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) 
 
 
 def test_added_mass_and_leverage_of_a_thin_bar_follow_its_length() -> None:
-    bar = polygon((0.0, 0.0), (4.0, 0.0), (4.0, 0.04), (0.0, 0.04))
+    bar = polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 0.04), (0.0, 0.04)])
     along, across = np.diag(added_mass(bar))
     assert across == pytest.approx(pi * 2.0**2, rel=0.3)  # of a plate, πl²/4
     assert along < 0.1 * bar.volume
@@ -65,8 +47,8 @@ def test_added_mass_and_leverage_of_a_thin_bar_follow_its_length() -> None:
 def test_a_turned_bar_has_the_same_added_mass_turned() -> None:
     bar = [(0.0, 0.0), (2.0, 0.0), (2.0, 0.3), (0.0, 0.3)]
     turn = np.array([[0.8, -0.6], [0.6, 0.8]])
-    turned = polygon(*(tuple(turn @ corner) for corner in bar))
-    np.testing.assert_allclose(added_mass(turned), turn @ added_mass(polygon(*bar)) @ turn.T, atol=1e-14)
+    turned = polygon(np.array(bar) @ turn.T)
+    np.testing.assert_allclose(added_mass(turned), turn @ added_mass(polygon(bar)) @ turn.T, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -83,7 +65,7 @@ def test_a_turned_bar_has_the_same_added_mass_turned() -> None:
 )
 def test_lines_that_are_no_polygon_are_refused(corners: Any, words: str) -> None:
     with pytest.raises(SceneError, match=rf"body\.points: found .*{words}"):
-        polygon(*corners)
+        polygon(corners)
 
 
 def test_dimensions_are_refused_by_name() -> None:

@@ -52,8 +52,8 @@ class FacetSurface(Surface):
     facets : Facets
         All of a closed surface, or a part of one. Markers are not looked at but by `piece`.
     whole : FacetSurface, optional
-        The closed surface that this is a part of. Points that are on its fluid side are at positive distances from the
-        part, too; all others have the sign that the part itself gives them.
+        The closed surface that this is a part of, between the same points. Points that are on its fluid side are at
+        positive distances from the part, too; all others have the sign that the part itself gives them.
 
     Notes
     -----
@@ -76,6 +76,11 @@ class FacetSurface(Surface):
         return FacetSurface(part, whole=self)
 
     @property
+    def whole(self) -> FacetSurface:
+        """The closed surface that this is a part of, or itself."""
+        return self._whole or self
+
+    @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Corners of the box around all facets, (d,) each [length]."""
         return self._bounds
@@ -95,6 +100,11 @@ class FacetSurface(Surface):
     def radius(self) -> float | None:
         """Infinite where all facets lie in a plane, else None [length]."""
         return None if self.plane is None else np.inf
+
+    @property
+    def facet_normals(self) -> FloatArray:
+        """Unit normals into the fluid of all facets, (F, d)."""
+        return self._faces.normals[:, -1]
 
     def nearest_facets(self, points: FloatArray) -> IntArray:
         """Rows of the nearest facets, (N,), for ``points`` (N, d) [length]."""
@@ -139,7 +149,7 @@ class FacetSurface(Surface):
         first = self._measured(points, facet, bits, weights)
         within = np.where(first.distance > 0, np.minimum(reach, first.distance + spread), 0.0)
         query, others, their_bits, their_weights = facets_within(
-            self._points, self._vertices, self._tree, np.ascontiguousarray(points, dtype=float), within
+            self._points, self._vertices, self.tree, np.ascontiguousarray(points, dtype=float), within
         )
         face, total = self._faces.numbers[others, their_bits - 1], len(self._faces.facets_at)
         place, row, times = np.unique(query * total + face, return_index=True, return_counts=True)
@@ -162,7 +172,7 @@ class FacetSurface(Surface):
         from rigidfluid.core.model.facet_tree import nearest_facets
 
         queries = np.ascontiguousarray(points, dtype=float)
-        nearest, bits, weights = nearest_facets(self._points, self._vertices, self._tree, queries)
+        nearest, bits, weights = nearest_facets(self._points, self._vertices, self.tree, queries)
         return nearest, bits, weights[:, : self._points.shape[1]]
 
     def _measured(self, points: FloatArray, facet: IntArray, bits: IntArray, weights: FloatArray) -> _Measured:
@@ -183,7 +193,8 @@ class FacetSurface(Surface):
         return np.asarray(np.einsum("nj,nj->n", points - self._points[corner], self._faces.normals[facet, bits - 1]))
 
     @cached_property
-    def _tree(self) -> Tree:
+    def tree(self) -> Tree:
+        """Of all facets."""
         from rigidfluid.core.model.facet_tree import Tree, build_tree
 
         return Tree(*build_tree(self._points, self._vertices, np.arange(len(self._vertices), dtype=np.int32)))

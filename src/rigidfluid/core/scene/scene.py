@@ -83,6 +83,11 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
+        default="rest",
+        description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
+        "their velocities, or expressions of its velocity [length/time]",
+    )
 
 
 class WindowTable(_Table):
@@ -122,7 +127,7 @@ class BoundaryTable(_Table):
     on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
         description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
-        "a surface that is not flat is a wall"
+        "on `slip` no fluid passes, on `pressure` none moves along the surface"
     )
     velocity: tuple[Formula, ...] | None = Field(
         default=None,
@@ -133,6 +138,12 @@ class BoundaryTable(_Table):
         description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
         "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
         "other",
+    )
+    angular_velocity: Angular | None = Field(
+        default=None, description="Angular velocity of a `wall` that turns in itself; a number in 2D [rad/time]"
+    )
+    centre: Vector | None = Field(
+        default=None, description="Point that such a wall turns about; the origin if not given [length]"
     )
     pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
     over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
@@ -353,6 +364,8 @@ class Scene(_Table):
         scene."""
         # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
+        if self.fluid.initial == "rest":
+            left_out["fluid"] = {"initial"}
         if self.mesh is not None and not self.mesh.refine:
             left_out["mesh"] = {"refine"}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
