@@ -7,7 +7,9 @@ from rigidfluid.testing.fluid.balances import BalancesContract
 from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
+from rigidfluid.testing.fluid.initial import InitialFlowContract
 from rigidfluid.testing.fluid.memory import MemoryContract
+from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
 from rigidfluid.testing.fluid.responses import ResponsesContract
 from rigidfluid.testing.fluid.transfer import TransferContract
@@ -19,6 +21,8 @@ class FluidBackendContract(
     CarriedContract,
     CurvedContract,
     CylinderContract,
+    InitialFlowContract,
+    ObliqueContract,
     ResponsesContract,
     TransferContract,
     MemoryContract,

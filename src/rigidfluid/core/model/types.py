@@ -166,8 +166,7 @@ class BoundaryCondition:
 
     ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
     along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
-    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat, which holds
-    for walls alone.
+    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat.
     """
 
     surface: int
@@ -198,7 +197,8 @@ class FluidProblem:
 
     With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
     mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions. ``carrier`` (bodies,):
-    the motion that carries each body, None where each moves by itself.
+    the motion that carries each body, None where each moves by itself. ``initial``: the flow at the start, at rest but
+    for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
     """
 
     dimension: int
@@ -209,6 +209,7 @@ class FluidProblem:
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None
     carrier: tuple[int, ...] | None = None
+    initial: Literal["rest", "steady"] | Callable[[float, FloatArray], FloatArray] = "rest"
 
     @property
     def motions(self) -> int:

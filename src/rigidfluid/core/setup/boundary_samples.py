@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
@@ -82,6 +83,12 @@ def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
     lower, upper = piece.shape.bounds
     middle = 0.5 * (lower + upper)
     return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+
+
+def points_of(shape: Surface, domain: Domain) -> FloatArray:
+    """Points all over a surface of the domain, (100, d) [length]."""
+    lower, upper = (np.clip(corner, *domain.extent) for corner in shape.bounds)
+    return shape.closest_point(np.random.default_rng(0).uniform(lower, upper, (100, domain.dimension)))
 
 
 def _composite() -> tuple[FloatArray, FloatArray]:
