@@ -168,6 +168,14 @@ def test_the_fastest_inflow_is_found_between_start_and_end() -> None:
     assert system.loads.speed[0] == pytest.approx(30.0, rel=1e-3)
 
 
+def test_the_greatest_value_of_a_long_table_is_seen() -> None:
+    rows = [[0.001 * number, 30.0 if number == 1234 else 0.1] for number in range(2001)]
+    table = {"on": "left", **inflow(velocity=[1.0, 0.0], over_time=rows)}
+    scene = tables([table, OPEN], contact={"law": "centre", "range": 0.1, "epsilon": 1.0})
+    scene["body"][0]["fixed"] = False
+    assert build_system(scene_from_dict(scene)).loads.speed[0] == pytest.approx(30.0)
+
+
 LEFT, THROUGH = {"on": "left", **inflow()}, [{"on": "left", **inflow()}, {"on": "right", **inflow()}]
 BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
     "components": ([LEFT | {"velocity": ["y"]}, OPEN], "boundary.0.velocity: found ['y'], 1 of them", "2 dimensions"),

@@ -16,8 +16,8 @@ from rigidfluid.core.setup.profiles import Disk, Rectangle, section
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
 
-_PANELS, _TIMES = 8, 65
-"""A side is integrated in so many panels of three points, and a time in the run looked at so many times."""
+_PANELS, _TIMES, _ROWS = 8, 65, 500
+"""A side is integrated in so many panels of three points; so many times in a run, and rows of a table, are looked at."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,13 @@ def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
 
 
 def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
-    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady."""
-    rows = [time for table in scene.boundary if isinstance(table.over_time, tuple) for time, _ in table.over_time]
-    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), rows])
+    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady.
+
+    Of a long table some rows, and the one of the greatest value.
+    """
+    tables = [table.over_time for table in scene.boundary if isinstance(table.over_time, tuple) and table.over_time]
+    rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
+    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), [time for time, _ in rows]])
     return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
 
 
@@ -82,6 +86,10 @@ def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
     lower, upper = piece.shape.bounds
     middle = 0.5 * (lower + upper)
     return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+
+
+def _size(row: tuple[float, float]) -> float:
+    return abs(row[1])
 
 
 def _composite() -> tuple[FloatArray, FloatArray]:
