@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
 
 _PANELS, _TIMES, _ROWS = 8, 65, 500
-"""A side is integrated in so many panels of three points; so many times in a run, and rows of a table, are looked at."""
+"""Panels of a side, each with three points of its integral; times in a run; rows of a table."""
 
 
 @dataclass(frozen=True)
