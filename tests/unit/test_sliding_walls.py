@@ -95,7 +95,9 @@ def test_a_wall_that_slides_moves_fluid_and_ball_along() -> None:
 
 def test_the_system_knows_the_velocity_by_surface_number() -> None:
     system = build_system(scene([BELT]))
-    np.testing.assert_array_equal(system.wall_velocity, [[0, 0], [0, 0], [0, 0], [0.5, 0], [0, 0]])
+    assert system.wall_velocity is not None
+    velocity = system.wall_velocity(np.arange(5), np.ones((5, 2)))
+    np.testing.assert_array_equal(velocity, [[0, 0], [0, 0], [0, 0], [0.5, 0], [0, 0]])
     assert build_system(scene([])).wall_velocity is None
     told = {feature.name: (feature.on, feature.why) for feature in features(system, None)}
     assert told["walls that slide"] == (True, "bottom")

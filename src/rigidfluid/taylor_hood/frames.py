@@ -18,17 +18,31 @@ _EDGE = 0.08
 """Facets at one node have two normals where the mean of n nᵀ has a second eigenvalue above this, at edges sharper than
 33° between two facets, and one mean normal else."""
 
+_ROUNDING = 1e-12
+"""Relative size of what flows through a face by rounding alone."""
+
 _SQUARE = 0.94
 """Fluid passes a node of both slip and pressure faces where these meet at a right angle, give or take 20°."""
 
 
 @dataclass(frozen=True)
 class Frames:
-    """``axes`` (T, d, d), the columns of Q, at ``nodes`` (T,); along which of them the velocity is ``free`` (T, d)."""
+    """``axes`` (T, d, d), the columns of Q, at ``nodes`` (T,); along which of them the velocity is ``free`` (T, d).
+
+    ``taken`` by nodes from others: rows, unknowns and values (e,) each, what is added to the velocity ``rows`` per free
+    velocity ``unknowns``, both numbered d · node + component.
+    """
 
     nodes: IntArray
     axes: FloatArray
     free: BoolArray
+    taken: tuple[IntArray, IntArray, FloatArray]
+
+    @classmethod
+    def none(cls, dimension: int) -> Frames:
+        """Where no face is oblique or curved."""
+        d, nothing = dimension, np.empty(0, np.int64)
+        return cls(nothing, np.empty((0, d, d)), np.empty((0, d), bool), (nothing, nothing, np.empty(0)))
 
     def into(self, velocity: FloatArray) -> FloatArray:
         """û of a ``velocity`` u (nodes, d): its components along each node's own axes."""
@@ -38,16 +52,8 @@ class Frames:
         found[self.nodes] = np.einsum("tia,ti->ta", self.axes, velocity[self.nodes])
         return found
 
-    def out_of(self, velocity: FloatArray) -> FloatArray:
-        """u of components û (nodes, d) along each node's own axes."""
-        if not len(self.nodes):
-            return velocity
-        found = velocity.copy()
-        found[self.nodes] = np.einsum("tia,ta->ti", self.axes, velocity[self.nodes])
-        return found
-
     def spread(self, unknowns: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
-        """Entries of Q in the columns of ``unknowns`` (u,), d · node + component.
+        """Entries of u = Q û in the columns of the free ``unknowns`` (u,), ascending.
 
         Returns
         -------
@@ -58,10 +64,11 @@ class Frames:
         own = np.isin(unknowns // d, self.nodes)
         turned = np.searchsorted(self.nodes, unknowns[own] // d)
         rows = self.nodes[turned][:, None] * d + np.arange(d)
+        takers, givers, shares = self.taken
         return (
-            np.concatenate([unknowns[~own], rows.ravel()]),
-            np.concatenate([place[~own], np.repeat(place[own], d)]),
-            np.concatenate([np.ones(len(unknowns) - len(turned)), self.axes[turned, :, unknowns[own] % d].ravel()]),
+            np.concatenate([unknowns[~own], rows.ravel(), takers]),
+            np.concatenate([place[~own], np.repeat(place[own], d), np.searchsorted(unknowns, givers)]),
+            np.concatenate([np.ones(np.count_nonzero(~own)), self.axes[turned, :, unknowns[own] % d].ravel(), shares]),
         )
 
 
@@ -90,7 +97,7 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     nodes = np.unique(np.concatenate([*oblique, np.empty(0, np.int64)]))
     nodes = nodes[~held[nodes]]
     if not len(nodes):
-        return Frames(nodes, np.empty((0, d, d)), np.empty((0, d), dtype=bool))
+        return Frames.none(d)
     across = _normal_spaces(slip, node_points, vertices)[nodes]
     through = _normal_spaces(pressure, node_points, vertices)[nodes]
     values, axes = np.linalg.eigh(through)
@@ -102,15 +109,16 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     across[opens] = np.eye(d)
     across[passes] -= np.einsum("ti,tj->tij", way[passes], way[passes])
     values, axes = np.linalg.eigh(across)
-    return Frames(nodes, axes, values < 0.5)
+    free = values < 0.5
+    return Frames(nodes, axes, free, _taken(slip, node_points, vertices, nodes, axes, free))
 
 
 def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int) -> FloatArray:
     """Projectors (nodes, d, d) onto the normals of all ``faces`` together at each node; zero away from them.
 
     Where the facets at a node are nearly one surface, this is Σ ∫ φᵢ n: a velocity across it takes no fluid through the
-    faces (consistent normals: Engelman, Sani and Gresho 1982, doi:10.1002/fld.1650020302). No fluid passes a triangle
-    by its vertices; their normals are means of the facets'.
+    faces (consistent normals: Engelman, Sani and Gresho 1982, doi:10.1002/fld.1650020302). Next to nothing passes a
+    triangle by its vertices; their normals are means of the facets'.
     """
     count, d = node_points.shape
     total, squares, facets = np.zeros((count, d)), np.zeros((count, d, d)), np.zeros(count)
@@ -130,3 +138,35 @@ def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int
     edges = np.einsum("tia,ta,tja->tij", vectors, sharp, vectors)
     found[on] = np.where((sharp.sum(axis=1) > 1)[:, None, None], edges, mean[:, :, None] * mean[:, None, :])
     return found
+
+
+def _taken(
+    slip: Sequence[Face], node_points: FloatArray, vertices: int, nodes: IntArray, axes: FloatArray, free: BoolArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """What nodes let through ``slip`` faces although they move along them, taken back by midpoints of edges nearby.
+
+    At a vertex of curved triangles the vector ∫ φᵢ n is small, and has another direction than the normal. Each edge's
+    midpoint in the same triangles takes an equal part by a velocity along its own normal: so no free velocity takes
+    fluid through the faces, and an even pressure moves nothing.
+    """
+    count, d = node_points.shape
+    flux = np.zeros((count, d))
+    for face in slip:
+        np.add.at(flux, face.facet_nodes, face.area_vectors(node_points))
+    through = np.einsum("ti,tia->ta", flux[nodes], axes)
+    size = np.linalg.norm(flux[nodes], axis=1)
+    leaks = (np.abs(np.where(free, through, 0.0)) > _ROUNDING * np.max(size, initial=0.0)).any(axis=1)
+    takes = (nodes >= vertices) & (free.sum(axis=1) == d - 1) & (size > 0.0) & ~leaks
+    place = np.full(count, -1)
+    place[nodes] = np.arange(len(nodes))
+    at = place[np.concatenate([face.facet_nodes for face in slip])] if slip else np.empty((0, 3), np.int64)
+    giver, taker = (each.ravel() for each in np.broadcast_arrays(at[:, :, None], at[:, None, :]))
+    chosen = (giver >= 0) & (taker >= 0) & leaks[giver] & takes[taker]
+    giver, taker = np.unique(np.column_stack([giver[chosen], taker[chosen]]), axis=0).T
+    way = axes[taker, :, -1] / through[taker, -1:]  # the one held comes last
+    shared = through[giver] / np.bincount(giver, minlength=len(nodes))[giver, None]
+    values = np.where(free[giver][:, None, :], -way[:, :, None] * shared[:, None, :], 0.0)
+    rows = np.broadcast_to((nodes[taker][:, None] * d + np.arange(d))[:, :, None], values.shape)
+    unknowns = np.broadcast_to((nodes[giver][:, None] * d + np.arange(d))[:, None, :], values.shape)
+    moving = np.broadcast_to(free[giver][:, None, :], values.shape)
+    return rows[moving], unknowns[moving], values[moving]

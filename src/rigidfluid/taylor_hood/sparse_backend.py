@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import replace
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING, ClassVar, final
 
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, FluidState, Mesh
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
 class SparseBackend(TaylorHoodBackend):
     """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
 
+    oblique_faces: ClassVar[bool] = True
+
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
         from rigidfluid.taylor_hood.pardiso import Orderings
@@ -27,7 +28,7 @@ class SparseBackend(TaylorHoodBackend):
         dimension, orderings = self.problem.dimension, Orderings()
         self._solver, self._inviscid_solver = (LaggedFactors(dimension, orderings) for _ in range(2))
         self._assembly: Assembly | None = None
-        self._points: FloatArray
+        self._geometry: FloatArray
 
     @abstractmethod
     def assembly(self, numbering: Numbering) -> Assembly:
@@ -39,7 +40,7 @@ class SparseBackend(TaylorHoodBackend):
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
-        self._points = mesh.points  # they say which pressure is fixed
+        self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
         solvers = self._solver, self._inviscid_solver
         return SparseDiscretisation(self.problem, self._assembly, *solvers, mesh, controlled)
 
@@ -52,7 +53,7 @@ class SparseBackend(TaylorHoodBackend):
             return {}
         controlled, discretisation = self._latest
         assert isinstance(discretisation, SparseDiscretisation)
-        return {"controlled": controlled.astype(float), "points": self._points} | discretisation.memory()
+        return {"controlled": controlled.astype(float), "geometry": self._geometry} | discretisation.memory()
 
     @final
     def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
@@ -60,7 +61,7 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory and mesh is not None:
-            discretisation = self._on(replace(mesh, points=memory["points"]), memory["controlled"].astype(bool))
+            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool))
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

@@ -90,8 +90,10 @@ class Surfaces:
         return velocity
 
     def held_part(self, velocity: FloatArray) -> FloatArray:
-        """The part of a ``velocity`` (nodes, d) that is not free."""
-        return self.frames.out_of(np.where(self.velocity_free, 0.0, self.frames.into(velocity)))
+        """The part of a ``velocity`` (nodes, d) that is not free; on oblique and curved faces that is zero."""
+        held = np.where(self.velocity_free, 0.0, velocity)
+        held[self.frames.nodes] = 0.0
+        return held
 
     def move_with_bodies(
         self, velocity: FloatArray, node_points: FloatArray, position: FloatArray, twist: FloatArray, chosen: BoolArray

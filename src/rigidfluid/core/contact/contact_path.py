@@ -12,7 +12,7 @@ from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
-from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
+from rigidfluid.core.contact.substep import Plan, Reach, middle, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
@@ -372,7 +372,7 @@ def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: B
     if driven.any():
         actuator_work = -float(power(wrench, _given_twist(system, movement))[driven].sum())
     if system.wall_velocity is not None:
-        actuator_work += float(np.sum(force * system.wall_velocity[contacts.body_b]))
+        actuator_work += float(np.sum(force * system.wall_velocity(contacts.body_b, middle(contacts))))
     return _ContactLoad(wrench, loss, actuator_work)
 
 

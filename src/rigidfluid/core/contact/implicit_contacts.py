@@ -10,11 +10,12 @@ import numpy as np
 
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
-from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.contact.substep import middle, relative_motion
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Wrench
+from rigidfluid.core.model.wall import WallVelocities
 from rigidfluid.errors import StepRejected
 
 MOST_UPDATES = 40
@@ -51,7 +52,7 @@ def implicit_contact_step(
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     size: float,
-    wall_velocity: FloatArray | None = None,
+    wall_velocity: WallVelocities | None = None,
 ) -> Crossing[M]:
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
 
@@ -73,8 +74,8 @@ def implicit_contact_step(
         The same contacts, in the same order, at another pose.
     size : float
         Δt [time].
-    wall_velocity : (s, d) array, optional
-        At which walls slide, by surface number; they rest if not given [length/time].
+    wall_velocity : callable, optional
+        At which walls slide, as in `relative_motion`; they rest if not given [length/time].
 
     Returns
     -------
@@ -111,7 +112,9 @@ def implicit_contact_step(
             :, None
         ] * iterate.middle.normal + dampers.along
         if _converged(law, iterate, gap, wanted - push):
-            driven = 0.0 if wall_velocity is None else size * float(np.sum(push * wall_velocity[start.body_b]))
+            driven = 0.0
+            if wall_velocity is not None:
+                driven = size * float(np.sum(push * wall_velocity(start.body_b, middle(iterate.middle))))
             return _crossing(iterate, used, size, driven)
         gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
@@ -144,7 +147,7 @@ class _Dampers(NamedTuple):
     along: FloatArray
 
 
-def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: FloatArray | None) -> _Iterate[M]:
+def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: WallVelocities | None) -> _Iterate[M]:
     """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
@@ -163,7 +166,7 @@ def _evaluate(
     wrench: Wrench,
     place: Kinematics | None,
     size: float,
-    wall_velocity: FloatArray | None,
+    wall_velocity: WallVelocities | None,
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)

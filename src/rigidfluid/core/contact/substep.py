@@ -15,6 +15,7 @@ from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
+from rigidfluid.core.model.wall import WallVelocities
 
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
@@ -198,7 +199,7 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     return greatest_stiffness(law, contacts, deepest), damping
 
 
-def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: FloatArray | None = None) -> Motion:
+def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: WallVelocities | None = None) -> Motion:
     """Velocity of a relative to b half-way between the contact points, and the effective mass of the pair,
     zero where both are driven.
 
@@ -208,8 +209,8 @@ def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: F
         m contacts.
     movement : BodyDynamics
         The n bodies as they move now; walls are heavy beyond measure.
-    wall_velocity : (s, d) array, optional
-        At which walls slide, by surface number; they rest if not given [length/time].
+    wall_velocity : callable, optional
+        At which walls slide, (m, d) of surface numbers (m,) and points (m, d); they rest if not given [length/time].
 
     Returns
     -------
@@ -218,7 +219,7 @@ def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: F
     """
     velocity = relative_velocity(contacts, movement.pose, movement.twist)
     if wall_velocity is not None:
-        velocity -= wall_velocity[contacts.body_b]
+        velocity -= wall_velocity(contacts.body_b, middle(contacts))
     on_body = contacts.body_b < len(movement.pose.position)
     inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
     inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
@@ -241,11 +242,16 @@ def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArra
 
     Walls count as at rest, since no approach depends on how they slide in themselves.
     """
-    point = 0.5 * (contacts.point_a + contacts.point_b)
+    point = middle(contacts)
     velocity = _point_velocity(pose, twist, contacts.body_a, point)
     on_body = contacts.body_b < len(pose.position)
     velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
     return velocity
+
+
+def middle(contacts: Contacts) -> FloatArray:
+    """Half-way between the contact points, (m, d) [length]."""
+    return np.asarray(0.5 * (contacts.point_a + contacts.point_b))
 
 
 def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray) -> FloatArray:

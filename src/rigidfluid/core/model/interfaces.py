@@ -258,6 +258,8 @@ class FluidBackend(Part):
     """Whether it takes meshes with curved edges; else it gets straight ones."""
     initial_flows: ClassVar[bool] = False
     """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
+    oblique_faces: ClassVar[bool] = False
+    """Whether it takes slip and pressure conditions on faces that lie across no axis."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 

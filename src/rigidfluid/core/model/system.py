@@ -10,7 +10,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Loads, Pose, Twist
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.wall import Wall, WallVelocities
 from rigidfluid.core.model.window import Window
 
 
@@ -49,7 +49,7 @@ class System:
     """Everything that stays the same while a scene runs.
 
     ``surfaces``: names of the bodies, then of the domain's pieces; ``walls``: those pieces that repel.
-    ``wall_velocity`` (s, d): at which these slide, by surface number, zero for all others; None if all rest
+    ``wall_velocity(surfaces, points)`` (m, d): at which these slide, zero for all other surfaces; None if all rest
     [length/time].
     ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
     fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
@@ -71,7 +71,7 @@ class System:
     surfaces: tuple[str, ...]
     domain: Domain
     walls: tuple[Wall, ...]
-    wall_velocity: FloatArray | None
+    wall_velocity: WallVelocities | None
     mass: FloatArray
     added_mass: FloatArray
     inertia: FloatArray

@@ -166,8 +166,7 @@ class BoundaryCondition:
 
     ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
     along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
-    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat, which holds
-    for walls alone.
+    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat.
     """
 
     surface: int

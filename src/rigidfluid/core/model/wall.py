@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,16 +11,19 @@ from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
+WallVelocities = Callable[[IntArray, FloatArray], FloatArray]
+"""At which walls slide in themselves, (m, d), of surface numbers (m,) at points (m, d) [length/time]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """A wall that repels: its ``surface`` number, its name, the ``shape`` of its surface, and the ``velocity`` (d,) at
-    which it slides in itself, None at rest [length/time]."""
+    """A wall that repels: its ``surface`` number, its name, the ``shape`` of its surface, and the ``velocity`` at
+    which it slides in itself, (N, d) at points (N, d), None at rest [length/time]."""
 
     surface: int
     name: str
     shape: Surface
-    velocity: FloatArray | None = None
+    velocity: Callable[[FloatArray], FloatArray] | None = None
 
 
 def radius_of(shape: Surface) -> float:

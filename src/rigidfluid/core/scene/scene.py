@@ -127,7 +127,7 @@ class BoundaryTable(_Table):
     on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
         description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
-        "a surface that is not flat is a wall"
+        "on `slip` no fluid passes, on `pressure` none moves along the surface"
     )
     velocity: tuple[Formula, ...] | None = Field(
         default=None,
@@ -138,6 +138,12 @@ class BoundaryTable(_Table):
         description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
         "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
         "other",
+    )
+    angular_velocity: Angular | None = Field(
+        default=None, description="Angular velocity of a `wall` that turns in itself; a number in 2D [rad/time]"
+    )
+    centre: Vector | None = Field(
+        default=None, description="Point that such a wall turns about; the origin if not given [length]"
     )
     pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
     over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
@@ -265,6 +271,11 @@ class MeshTable(_Table):
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: Positive = Field(description="Edge length on the bodies [length]")
+    size_wall: Positive | None = Field(
+        default=None,
+        description="Edge length on walls that are not flat; a quarter of the least radius of curvature, where that is "
+        "known, if not given [length]",
+    )
     growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
     cells_per_gap: int = Field(
         default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
@@ -273,6 +284,15 @@ class MeshTable(_Table):
     refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
+    )
+    inserter: Literal["cad", "fill", "level_set"] | None = Field(
+        default=None,
+        description="How bodies come into the first mesh. cad: Netgen meshes the domain less the bodies; fill: it "
+        "fills between facets of both, which stay; level_set: MMG cuts bodies out of a mesh of the domain, for "
+        "comparison. If not given, fill where a shape is made of facets, else cad",
+    )
+    mesher_timeout: Positive = Field(
+        default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"
     )
     remesh_every: Positive | None = Field(
         default=None, description="Age at which a mesh is made anew in any case; never if not given [time]"

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.setup.boundary_values import prescribed_pressure, prescribed_velocity
+from rigidfluid.core.setup.boundary_values import prescribed_pressure, prescribed_velocity, wall_velocity
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BoundaryTable, Scene
@@ -42,8 +41,8 @@ def repelling_walls(scene: Scene, domain: Domain) -> tuple[Wall, ...]:
     for wall in surfaces_of(domain, len(scene.body)):
         table = boundary_table(scene, wall.name)
         if table is None or table.type == "wall":
-            velocity = None if table is None or table.velocity is None else np.array(table.velocity, dtype=float)
-            walls.append(Wall(wall.surface, wall.name, wall.shape, velocity))
+            velocity = None if table is None else wall_velocity(table, scene.dimension)
+            walls.append(replace(wall, velocity=velocity))
     return tuple(walls)
 
 
@@ -53,7 +52,10 @@ def _condition(scene: Scene, surface: int, piece: Piece) -> BoundaryCondition:
     if table is None:
         return BoundaryCondition(surface, piece.name, "wall", normal)
     value: Callable[[float, FloatArray], FloatArray] | None = None
-    if table.velocity is not None:
+    if table.type == "wall":
+        sliding = wall_velocity(table, scene.dimension)
+        value = None if sliding is None else sliding.steadily
+    elif table.velocity is not None:
         value = prescribed_velocity(piece, table, table_key(scene, table))
     elif table.pressure is not None:
         value = prescribed_pressure(piece, table, scene.dimension, table_key(scene, table))

@@ -8,22 +8,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.setup.boundary import boundary_table, table_key
-from rigidfluid.core.setup.boundary_samples import quadrature, sample_times, sampled_inflows
+from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
 from rigidfluid.core.setup.boundary_values import (
     BoundaryPressure,
     BoundaryVelocity,
     prescribed_pressure,
     prescribed_velocity,
+    wall_velocity,
 )
 from rigidfluid.core.setup.time_factor import check_rows
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain, Piece
+    from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.scene.scene import BoundaryTable, Scene
 
 ACROSS = 1e-12
 """A wall may slide with so much of its speed across itself, by rounding [1]."""
+
+ACROSS_CURVED = 1e-6
+"""The same where normals are taken by differences of distances [1]."""
 
 ROUNDING, EXPRESSIONS = 1e-12, 1e-3
 """Net inflow over all flow through the boundary that is allowed for numbers, by rounding, and for expressions [1]."""
@@ -51,7 +56,7 @@ def check_boundary(scene: Scene, domain: Domain) -> None:
     for piece in domain.pieces:
         held = boundary_table(scene, piece.name)
         if held is not None:
-            _check_shape(piece, held, table_key(scene, held))
+            _check_sliding(domain, piece, held, table_key(scene, held))
             _check_values(scene, piece, held, table_key(scene, held))
     _check_names(scene, domain)
     outside = ~domain.contains(np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension))
@@ -91,6 +96,18 @@ def check_inflow(scene: Scene, domain: Domain) -> None:
         )
 
 
+def check_oblique(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
+    """Raise SceneError where a ``backend`` is asked for slip or pressure on a surface that it cannot take them on."""
+    for piece in domain.pieces:
+        table, plane = boundary_table(scene, piece.name), piece.shape.plane
+        if table is None or table.type not in ("slip", "pressure") or backend.oblique_faces:
+            continue
+        if plane is None or plane.axis is None:
+            found = f"{table.type!r} on {piece.name!r}, which does not lie across an axis"
+            allowed = f"'wall' or 'velocity' there with backend {backend.name!r}"
+            raise SceneError(f"{table_key(scene, table)}.type", found, allowed, "Use backend = 'scikit-fem'.")
+
+
 def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
     if table.on not in allowed:
@@ -108,6 +125,12 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
         if getattr(table, key) is not None and table.type not in ("velocity", "pressure"):
             found = f"it on a {table.type!r} surface"
             raise SceneError(f"{at}.{key}", found, "it with type = 'velocity' or 'pressure'", "Leave it out.")
+    if table.angular_velocity is not None and table.type != "wall":
+        found = f"it on a {table.type!r} surface"
+        remedy = "Give the velocity as expressions of x, y, z instead."
+        raise SceneError(f"{at}.angular_velocity", found, "it with type = 'wall'", remedy)
+    if table.centre is not None and table.angular_velocity is None:
+        raise SceneError(f"{at}.centre", list(table.centre), "it with `angular_velocity`", "Leave it out.")
     if table.type == "wall" and any(isinstance(component, str) for component in table.velocity or ()):
         remedy = "Give numbers, or set type = 'velocity'."
         raise SceneError(
@@ -115,25 +138,24 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
         )
 
 
-def _check_shape(piece: Piece, table: BoundaryTable, at: str) -> None:
-    plane = piece.shape.plane
-    if table.type in ("slip", "pressure") and (plane is None or plane.axis is None):
-        found = f"{table.type!r} on {piece.name!r}, which does not lie across an axis"
-        raise SceneError(f"{at}.type", found, "'wall' there", "Make it a wall, or a flat surface across an axis.")
-    if table.velocity is None:
+def _check_sliding(domain: Domain, piece: Piece, table: BoundaryTable, at: str) -> None:
+    """Refuse a wall whose velocity leads out of itself somewhere."""
+    velocity = wall_velocity(table, domain.dimension) if table.type == "wall" else None
+    if velocity is None:
         return
-    if plane is None:
-        found = f"{list(table.velocity)} on {piece.name!r}, which is not flat"
-        raise SceneError(f"{at}.velocity", found, "none there", "Leave it out, or make the surface flat.")
-    if table.type != "wall":
-        return
-    velocity = np.array(table.velocity, dtype=float)
-    across = float(velocity @ plane.unit_normal)
-    if abs(across) > ACROSS * float(np.linalg.norm(velocity)):
-        along = (velocity - across * plane.unit_normal).tolist()
-        found = f"{list(table.velocity)}, of which {across:.6g} across the wall {piece.name!r}"
-        remedy = f"Keep what is along it, {along}, or set type = 'velocity'."
-        raise SceneError(f"{at}.velocity", found, "a velocity along the wall", remedy)
+    points = points_of(piece.shape, domain)
+    moving, normal = velocity(points), piece.shape.normal(points)
+    across = np.sum(moving * normal, axis=1)
+    worst = int(np.argmax(np.abs(across)))
+    allowed = ACROSS if piece.shape.plane is not None else ACROSS_CURVED
+    if abs(across[worst]) > allowed * float(np.linalg.norm(moving, axis=1).max()):
+        key = "velocity" if table.angular_velocity is None else "angular_velocity"
+        remedy = "Set type = 'velocity', or let it move along itself"
+        if piece.shape.plane is not None and table.angular_velocity is None:
+            along = (moving[worst] - across[worst] * normal[worst]).tolist()
+            remedy = f"Keep what is along it, {along}, or set type = 'velocity'"
+        found = f"{list(getattr(table, key))}, of which {across[worst]:.6g} across the wall {piece.name!r}"
+        raise SceneError(f"{at}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
 def _check_values(scene: Scene, piece: Piece, table: BoundaryTable, at: str) -> None:

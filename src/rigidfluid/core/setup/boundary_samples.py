@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
@@ -90,6 +91,12 @@ def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
 
 def _size(row: tuple[float, float]) -> float:
     return abs(row[1])
+
+
+def points_of(shape: Surface, domain: Domain) -> FloatArray:
+    """Points all over a surface of the domain, (100, d) [length]."""
+    lower, upper = (np.clip(corner, *domain.extent) for corner in shape.bounds)
+    return shape.closest_point(np.random.default_rng(0).uniform(lower, upper, (100, domain.dimension)))
 
 
 def _composite() -> tuple[FloatArray, FloatArray]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.expressions import Expression, VectorExpression
@@ -100,6 +101,15 @@ def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: 
     assert table.pressure is not None
     pressure = Expression(table.pressure, f"{at}.pressure", dimension, f" on {piece.name!r}")
     return BoundaryPressure(pressure, _factor(table))
+
+
+def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
+    """That of a wall by its ``table``, None where it rests."""
+    if table.velocity is None and table.angular_velocity is None:
+        return None
+    still = [0.0] * dimension
+    velocity = np.array(table.velocity or still, dtype=float)
+    return WallVelocity(velocity, np.array(table.angular_velocity or [0.0]), np.array(table.centre or still))
 
 
 def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.system import System
@@ -23,7 +24,6 @@ from rigidfluid.core.model.types import (
     Loads,
     Twist,
 )
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
@@ -88,7 +88,7 @@ def build_system(scene: Scene) -> System:
         surfaces=surfaces,
         domain=domain,
         walls=walls,
-        wall_velocity=_wall_velocity(walls, len(parts.bodies) + len(domain.pieces)),
+        wall_velocity=None if all(wall.velocity is None for wall in walls) else SlidingWalls(walls),
         mass=mass,
         added_mass=added,
         inertia=inertia,
@@ -112,17 +112,6 @@ def build_system(scene: Scene) -> System:
         mechanisms=carried,
         window=window,
     )
-
-
-def _wall_velocity(walls: Sequence[Wall], surfaces: int) -> FloatArray | None:
-    """By surface number (surfaces, d), zero where nothing slides; None if nothing does at all [length/time]."""
-    sliding = [(wall.surface, wall.velocity) for wall in walls if wall.velocity is not None]
-    if not sliding:
-        return None
-    velocity = np.zeros((surfaces, len(sliding[0][1])))
-    for surface, given in sliding:
-        velocity[surface] = given
-    return velocity
 
 
 def _assemblies(scene: Scene) -> IntArray:

@@ -12,7 +12,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import repelling_walls
-from rigidfluid.core.setup.boundary_samples import sample_times, sampled_inflows
+from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.initial_flow import fastest_at_start
 from rigidfluid.core.setup.interactions import law_tables
 
@@ -159,8 +159,13 @@ def _fastest_flow(scene: Scene, domain: Domain) -> float:
     """Of all that is prescribed on the boundary and at the start, at the points and times sampled."""
     inflows = sampled_inflows(scene, domain)
     times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
-    walls = [_length(wall.velocity) for wall in repelling_walls(scene, domain)]
-    return max([fastest_at_start(scene, domain), *walls, *(inflow.speed(time) for inflow in inflows for time in times)])
+    sliding = [
+        float(np.linalg.norm(wall.velocity(points_of(wall.shape, domain)), axis=1).max())
+        for wall in repelling_walls(scene, domain)
+        if wall.velocity is not None
+    ]
+    inflowing = [inflow.speed(time) for inflow in inflows for time in times]
+    return max([fastest_at_start(scene, domain), *sliding, *inflowing])
 
 
 def _lever(body: Body) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rigidfluid.core.setup.boundary_checks import check_inflow
+from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.placing import check_orientation
@@ -81,6 +81,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     if scene.mesh is None:
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
     check_cells(scene.mesh, domain)
+    check_oblique(scene, backend, domain)
     check_inflow(scene, domain)
 
 
@@ -100,6 +101,8 @@ def _vectors(scene: Scene) -> Vectors:
     yield "fluid.initial", None if isinstance(scene.fluid.initial, str) else scene.fluid.initial, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d
+        yield f"boundary.{i}.angular_velocity", boundary.angular_velocity, k
+        yield f"boundary.{i}.centre", boundary.centre, d
     for i, body in enumerate(scene.body):
         yield f"body.{i}.position", body.position, d
         yield f"body.{i}.velocity", body.velocity, d

@@ -1,0 +1,48 @@
+"""Walls that slide in themselves: straight on, or turning about a point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.mechanics.rigid import cross
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.model.wall import Wall
+
+
+@dataclass(frozen=True)
+class WallVelocity:
+    """v + ω × (x - c): ``velocity`` v (d,) [length/time], ``angular_velocity`` ω (k,) [rad/time], ``centre`` c (d,)
+    [length]."""
+
+    velocity: FloatArray
+    angular_velocity: FloatArray
+    centre: FloatArray
+
+    def __call__(self, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) at ``points`` (N, d) [length/time]."""
+        if not self.angular_velocity.any():
+            return np.tile(self.velocity, (len(points), 1))
+        spin = np.tile(self.angular_velocity, (len(points), 1))
+        return np.asarray(self.velocity + cross(spin, points - self.centre))
+
+    def steadily(self, time: float, points: FloatArray) -> FloatArray:
+        """The same at any time."""
+        return self(points)
+
+
+class SlidingWalls:
+    """The velocities of all walls that slide, by surface number."""
+
+    def __init__(self, walls: Sequence[Wall]) -> None:
+        self._sliding = [(wall.surface, wall.velocity) for wall in walls if wall.velocity is not None]
+
+    def __call__(self, surfaces: IntArray, points: FloatArray) -> FloatArray:
+        """Velocity (m, d) of ``surfaces`` (m,) at ``points`` (m, d) of theirs, zero of all others [length/time]."""
+        velocity = np.zeros_like(points)
+        for surface, at in self._sliding:
+            on = surfaces == surface
+            velocity[on] = at(points[on])
+        return velocity
