@@ -25,7 +25,7 @@ _PANELS, _TIMES, _ROWS = 8, 65, 500
 class SampledInflow:
     """A ``velocity`` prescribed on a ``piece``, with ``points`` (N, d) and ``weights`` (N,) of an integral over it.
 
-    Where the piece's shape is not known there is one point, and only uniform and constant velocities have a flux.
+    Where the section of a flat piece is not known there is one point, and only a uniform velocity has a flux.
     """
 
     piece: Piece
@@ -53,7 +53,7 @@ def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
         table = boundary_table(scene, piece.name)
         if table is not None and table.type == "velocity":
             velocity = prescribed_velocity(piece, table, table_key(scene, table))
-            inflows.append(SampledInflow(piece, velocity, *quadrature(piece)))
+            inflows.append(SampledInflow(piece, velocity, *quadrature(piece, domain)))
     return inflows
 
 
@@ -68,8 +68,11 @@ def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
     return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
 
 
-def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
-    """Points (N, d) and weights (N,) of an integral over a piece; of one whose shape is not known, one point."""
+def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:
+    """Points (N, d) and weights (N,) of an integral over a piece of the domain.
+
+    Of a curved piece, points all over it; of a flat one whose section is not known, one.
+    """
     shape = section(piece)
     nodes, weights = _composite()
     if isinstance(shape, Rectangle):
@@ -84,9 +87,9 @@ def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ across
         points = shape.centre + shape.radius * nodes[:, None, None] * circle
         return points.reshape(-1, 3), (2.0 * np.outer(weights * nodes, weights) * piece.area).ravel()
-    lower, upper = piece.shape.bounds
-    middle = 0.5 * (lower + upper)
-    return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+    points = points_of(piece.shape, domain)
+    points = points if piece.shape.plane is None else points.mean(axis=0, keepdims=True)
+    return points, np.full(len(points), piece.area / len(points))
 
 
 def _size(row: tuple[float, float]) -> float:
