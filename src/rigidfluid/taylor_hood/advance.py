@@ -123,6 +123,7 @@ def _system(
         velocity=extrapolated(fluid, step.extrapolation),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),
+        pressure_jump=surfaces.pressure_jump(step.time, matrix.points[: discretisation.numbering.vertices]),
         scale=step.load_scale,
     )
 

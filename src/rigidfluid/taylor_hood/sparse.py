@@ -110,7 +110,7 @@ class SparseDiscretisation:
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
         assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
-        given, load = np.concatenate([s.given.ravel(), zero]), np.concatenate([s.load.ravel(), zero])
+        given, load = np.concatenate([s.given.ravel(), s.pressure_jump]), np.concatenate([s.load.ravel(), zero])
         known = assembled.stiffness @ given if given.any() else 0.0
         right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
@@ -214,7 +214,7 @@ class SparseDiscretisation:
         return self._reduced
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
-        constraint, pressure = self._constraint, system.pressure
+        constraint, pressure = self._constraint, system.pressure - system.pressure_jump
         if constraint.pressure_pin is not None:
             pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)

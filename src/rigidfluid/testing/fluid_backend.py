@@ -10,6 +10,7 @@ from rigidfluid.testing.fluid.cylinder import CylinderContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
+from rigidfluid.testing.fluid.periodic import PeriodicContract
 from rigidfluid.testing.fluid.responses import ResponsesContract
 from rigidfluid.testing.fluid.transfer import TransferContract
 
@@ -21,6 +22,7 @@ class FluidBackendContract(
     CurvedContract,
     CylinderContract,
     ObliqueContract,
+    PeriodicContract,
     ResponsesContract,
     TransferContract,
     MemoryContract,

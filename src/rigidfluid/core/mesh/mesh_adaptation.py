@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -86,6 +87,7 @@ class MeshUpdater:
         if state.reference is None:
             return None
         _refuse_to_leave(self._system, pose)
+        _refuse_to_cross(self._system, pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
@@ -199,6 +201,22 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
             f"a place between {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}, all of the body",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
         )
+
+
+def _refuse_to_cross(system: System, pose: Pose) -> None:
+    """Reject a step in which a body reaches a periodic surface: it would have to be in two places of the mesh."""
+    for number in chain(*system.domain.periodic):
+        piece = system.domain.pieces[number]
+        radius = np.array([body.bounding_radius for body in system.bodies])
+        reaches = piece.shape.signed_distance(pose.position) <= radius
+        if reaches.any():
+            body = int(np.argmax(reaches))
+            raise StepRejected(
+                f"body {system.surfaces[body]!r}",
+                f"it at {pose.position[body].tolist()}, where it reaches the periodic surface {piece.name!r}",
+                "bodies that stay away from periodic surfaces, as far as their bounding radius",
+                "Lengthen the domain, end the run before, or hold the body.",
+            )
 
 
 def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:

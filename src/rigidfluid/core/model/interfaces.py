@@ -258,6 +258,8 @@ class FluidBackend(Part):
     """Whether it takes meshes with curved edges; else it gets straight ones."""
     oblique_faces: ClassVar[bool] = False
     """Whether it takes slip and pressure conditions on faces that lie across no axis."""
+    periodic_faces: ClassVar[bool] = False
+    """Whether it takes periodic conditions."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 
