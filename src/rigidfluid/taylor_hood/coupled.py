@@ -79,10 +79,13 @@ class Solution:
     given.
 
     ``reaction`` (nodes, d), by which the fluid's own equations are not met: the force on the fluid where its velocity
-    is not free; with several processes a node's is the sum of what they have there.
+    is not free; with several processes a node's is the sum of what they have there. ``jump_load`` (nodes, d): (Δp, ∇·v)
+    of the pressure's jumps at periodic faces, whose power is not zero, since ∇·u = 0 is meant for pressures without
+    jumps; None without any.
     """
 
     velocity: FloatArray
     pressure: FloatArray
     twist: FloatArray
     reaction: FloatArray
+    jump_load: FloatArray | None = None

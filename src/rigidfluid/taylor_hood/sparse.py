@@ -125,7 +125,11 @@ class SparseDiscretisation:
         twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
         velocity, pressure = np.split(everything, [s.given.size])
         reaction = (assembled.stiffness @ everything - load)[: s.given.size]
-        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape))
+        jump_load = None
+        if s.pressure_jump.any():
+            of_jump = assembled.stiffness @ np.concatenate([np.zeros(s.given.size), s.pressure_jump])
+            jump_load = -of_jump[: s.given.size].reshape(s.given.shape)
+        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape), jump_load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.controlled
