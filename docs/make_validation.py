@@ -187,6 +187,71 @@ def coarser_cylinders() -> Iterable[tuple[str, ...]]:
             yield f"{size_body:g}", str(order), str(history.summary["unknowns"]), *off
 
 
+UNSTEADY: dict[str, list[str]] = {
+    "step 0.01": ["time.step=0.01"],
+    "step 0.005": ["time.step=0.005"],
+    "step 0.0025": [],
+    "step 0.0025, size_body 0.00245": ["mesh.size_body=0.00245"],
+}
+"""What differs from the scene as shipped."""
+
+JOHN_2004 = {
+    "greatest drag coefficient": 2.950921575,
+    "its time [s]": 3.93625,
+    "greatest lift coefficient": 0.47795,
+    "its time [s] ": 5.693125,
+    "pressure difference at 8 s": -0.1116,
+}
+
+
+def dfg_unsteady() -> None:
+    """Schäfer & Turek's benchmark 2D-3: an inflow that rises and falls, on two meshes and with three steps."""
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+    drag, lift = figure.subplots(2, 1, sharex=True)
+    drag.set(ylabel="drag coefficient")
+    lift.set(xlabel="time [s]", ylabel="lift coefficient")
+    rows = []
+    for name, overrides in UNSTEADY.items():
+        history, seconds = run("dfg_2d3.toml", overrides)
+        time_of, (of_drag, of_lift, _) = history.bodies["time"], unsteady_coefficients(history)
+        drag.plot(time_of[1:], of_drag[1:], label=name)
+        lift.plot(time_of[1:], of_lift[1:])
+        found = unsteady_figures(history)
+        off = [
+            f"{value:.6g} ({value / exact - 1.0:+.2%})" for value, exact in zip(found, JOHN_2004.values(), strict=True)
+        ]
+        rows.append((name, *off, f"{history.summary['unknowns']}", f"{seconds:.0f}"))
+    drag.plot(3.93625, 2.950921575, "k+", markersize=12, label="John 2004")
+    lift.plot(5.693125, 0.47795, "k+", markersize=12)
+    drag.legend()
+    figure.savefig(OUT / "dfg_unsteady.png", dpi=120)
+    reference = ("John 2004", *(f"{value:.10g}" for value in JOHN_2004.values()), "", "")
+    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "wall time [s]"), [reference, *rows]) + ABOUT_UNSTEADY
+    write_page("dfg_unsteady", "DFG cylinder 2D-3", "python docs/make_validation.py dfg_unsteady", text)
+
+
+ABOUT_UNSTEADY = """
+
+The inflow is 1.5 sin(πt/8) at its peak, with Reynolds numbers up to 100 and down to 0 again at 8 s
+(`scenes/dfg_2d3.toml`). The wake becomes unsteady while the inflow is greatest. The drag follows the inflow, and its
+acceleration: it is greatest before 4 s. The lift is that of vortices which grow from small disturbances, and is the
+figure that asks for short steps. References: V. John, Int. J. Numer. Methods Fluids 44 (2004) 777, doi:10.1002/fld.679.
+"""
+
+
+def unsteady_coefficients(history: History) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Over time, of a greatest mean inflow of 1 m/s: drag and lift coefficient, and the pressure difference."""
+    front, back = (history.probes["pressure"][i::2] for i in (0, 1))
+    return 20.0 * history.bodies["fx"], 20.0 * history.bodies["fy"], front - back
+
+
+def unsteady_figures(history: History) -> tuple[float, ...]:
+    """Those of `JOHN_2004`."""
+    time_of, (drag, lift, difference) = history.bodies["time"], unsteady_coefficients(history)
+    strongest, highest = int(np.argmax(drag)), int(np.argmax(lift))
+    return drag[strongest], time_of[strongest], lift[highest], time_of[highest], difference[-1]
+
+
 SETTLING: dict[float, list[str]] = {
     1.5: [],
     3.0: ["body.0.density=3.0", "time.step=0.0025", "time.end=7.8", "output.every=0.5"],
@@ -284,6 +349,83 @@ off by a factor, it may be too coarse or too fine.
 
 The step is .01 at density 1.5 and .0025 at density 3. With .005 at density 3, tried first, 2.3 % of the energy were
 unaccounted for."""
+
+
+def window() -> None:
+    """A disk falls through a long channel, all of it meshed and in windows of several lengths."""
+    runs = {ends: in_window(ends) for ends in WINDOWS}
+    whole = runs[None]
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
+    speed, off = figure.subplots(1, 2)
+    speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    for ends, history in runs.items():
+        bodies = history.bodies
+        label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
+        speed.plot(bodies["time"], -bodies["vy"], style, label=label)
+        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+    speed.legend()
+    figure.savefig(OUT / "window.png", dpi=120)
+    head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
+    ways = [("whole channel", "") if ends is None else tuple(f"{end:g}" for end in ends) for ends in runs]
+    rows = [(*way, *window_figures(run, whole).values()) for way, run in zip(ways, runs.values(), strict=True)]
+    text = WINDOW.format(figures=table(head, rows))
+    write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
+
+
+WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
+20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
+meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
+difference of the speeds is over the final one. CPU times, of one thread, are over that of the whole channel in the same
+run.
+
+{figures}
+
+Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
+less."""
+
+
+def in_window(ends: tuple[float, float] | None) -> History:
+    """The fall with so much ahead and behind in the window, or in the whole channel; with its CPU time."""
+    tables = rigidfluid.load_scene(ROOT / "scenes" / "falling_disk_window.toml").to_dict()
+    if ends is None:
+        del tables["domain"]["window"]
+    else:
+        tables["domain"]["window"] |= {"ahead": ends[0], "behind": ends[1]}
+    start = time.process_time()
+    history = rigidfluid.run(rigidfluid.scene_from_dict(tables))
+    history.summary["cpu"] = time.process_time() - start
+    return history
+
+
+def off_the_whole(history: History, whole: History) -> np.ndarray:
+    """Speed less that in the whole channel, over its final speed, at each step [1]."""
+    found, expected = history.bodies, whole.bodies
+    return (expected["vy"] - found["vy"]) / final_speed(whole)
+
+
+def final_speed(history: History) -> float:
+    """Mean of the last tenth of a second."""
+    bodies = history.bodies
+    return float(-np.mean(bodies["vy"][bodies["time"] > bodies["time"][-1] - 0.1]))
+
+
+def window_figures(history: History, whole: History) -> dict[str, str]:
+    """What the page tells of one run."""
+    summary, speed = history.summary, final_speed(history)
+    energy, put = history.energy, summary["energy"]["put_in"]
+    return {
+        "final speed [cm/s]": f"{speed:.4f}",
+        "off the whole channel's": f"{speed / final_speed(whole) - 1:+.3%}",
+        "off it at any time": f"{np.abs(off_the_whole(history, whole)).max():.3%}",
+        "unknowns": f"{summary['unknowns']} ({summary['unknowns'] / whole.summary['unknowns']:.0%})",
+        "CPU": f"{summary['cpu'] / whole.summary['cpu']:.0%}",
+        "meshes": f"{1 + summary['remeshes']}",
+        "energy out through the ends, of all put in": f"{-energy['boundary'][-1] / put:.2%}",
+        "residual, lowest … highest": f"{energy['residual'].min() / put:.1e} … {energy['residual'].max() / put:.1e}",
+        "created, lost": "{created:.1e}, {lost:.1e}".format(**summary["energy"]),
+    }
 
 
 def lammps() -> None:
@@ -764,7 +906,9 @@ CASES = {
     "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,
     "dfg_cylinder": dfg_cylinder,
+    "dfg_unsteady": dfg_unsteady,
     "settling_cylinder": settling_cylinder,
+    "window": window,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
     "lammps": lammps,

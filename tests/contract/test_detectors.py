@@ -9,6 +9,7 @@ from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+from rigidfluid.detectors.facets import FacetDetector
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
@@ -38,6 +39,15 @@ class TestEllipsoidDetector(DetectorContract):
 
     def make_detector(self, arrangement: Arrangement) -> Detector:
         return EllipsoidDetector(PartOptions(), arrangement.bodies, arrangement.walls)
+
+
+class TestFacetDetector(DetectorContract):
+    gap_tolerance = 1e-14
+    point_tolerance = 1e-13
+    balls_only = True
+
+    def make_detector(self, arrangement: Arrangement) -> Detector:
+        return FacetDetector(PartOptions(), arrangement.bodies, arrangement.walls)
 
 
 class TestNarrowBandDetector(DetectorContract):

@@ -140,3 +140,26 @@ def test_area_vectors_point_into_the_fluid_and_add_up_to_nothing() -> None:
         flux = np.einsum("fj,fj->", vectors, facets.points[facets.vertices].mean(axis=1))
         volume = {2: 1.25, 3: 1.0 - 0.7 / 3}[facets.points.shape[1]]
         assert flux / facets.points.shape[1] == pytest.approx(volume, rel=1e-14)
+
+
+def test_places_are_the_sides_of_a_hollow_and_those_of_the_whole_shape_outside() -> None:
+    inner = FacetSurface(polygon(L_SHAPE))
+    found = inner.nearby(np.array([[0.8, 0.7], [3.0, 0.7], [0.25, 0.25]]), np.inf, np.inf)
+    order = np.lexsort((found.distance, found.point))
+    np.testing.assert_array_equal(found.point[order], [0, 0, 1, 1, 2])
+    np.testing.assert_allclose(found.distance[order], [0.2, 0.3, np.hypot(1.0, 0.2), 2.5, -0.25], rtol=1e-14)
+    np.testing.assert_allclose(found.foot[order][:3], [[0.8, 0.5], [0.5, 0.7], [2.0, 0.5]], atol=1e-15)
+    np.testing.assert_allclose(found.normal[order][:2], [[0.0, 1.0], [1.0, 0.0]], atol=1e-15)
+    assert len(inner.nearby(np.array([[0.8, 0.7]]), 0.25, np.inf).point) == 1
+    assert len(inner.nearby(np.array([[0.8, 0.7]]), np.inf, 0.05).point) == 1
+    assert len(inner.nearby(np.array([[0.8, 0.7]]), 0.1, np.inf).point) == 0
+
+
+def test_a_point_in_the_notch_of_a_cube_is_near_its_four_sides_and_not_its_edges() -> None:
+    surface = FacetSurface(notched_cube())
+    found = surface.nearby(np.array([[0.5, 0.5, 0.8]]), np.inf, np.inf)
+    slope = 0.5 / np.hypot(0.5, 0.7)
+    np.testing.assert_allclose(found.distance, 0.5 * slope, rtol=1e-14)
+    assert len(found.distance) == 4
+    above = surface.nearby(np.array([[0.5, 0.5, 3.0]]), np.inf, np.inf)
+    np.testing.assert_allclose(above.distance, np.hypot(2.0, 0.5), rtol=1e-14)  # the middles of the rim's edges

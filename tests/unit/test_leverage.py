@@ -20,7 +20,7 @@ from rigidfluid.core.run.simulation import Simulation
 def shape(dimension: int, points: Any, unit_inertia: Any) -> Any:
     """A shape that is no ellipsoid, of these surface points."""
     farthest = float(np.linalg.norm(points, axis=1).max())
-    known = {"dimension": dimension, "radius": None, "semi_axes": None, "volume": 1.0}
+    known = {"dimension": dimension, "radius": None, "semi_axes": None, "facets": None, "volume": 1.0}
     return SimpleNamespace(
         **known,
         unit_inertia=np.asarray(unit_inertia),

@@ -6,7 +6,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from rigidfluid.bodies.facet_moments import facet_moments
+from rigidfluid.core.mechanics.facet_moments import facet_moments, unit_inertia
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body, PartOptions
@@ -49,7 +49,7 @@ class FacetBody(Body):
         vertices = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
         own = Facets(facets.points - moments.centre, np.ascontiguousarray(vertices), np.zeros_like(facets.markers))
         self._surface = FacetSurface(own)
-        self._volume, self._unit_inertia = abs(moments.volume), moments.unit_inertia
+        self._volume, self._unit_inertia = abs(moments.volume), unit_inertia(moments.second)
 
     @property
     def facets(self) -> Facets:
@@ -63,7 +63,7 @@ class FacetBody(Body):
 
     @property
     def unit_inertia(self) -> FloatArray:
-        """See `facet_moments`, (k, k) [length²]."""
+        """∫ (|r|² I - r rᵀ) / volume by `facet_moments`, (k, k) [length²]."""
         return self._unit_inertia
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.detectors.brute_force import BruteForceDetector
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+from rigidfluid.detectors.facets import FacetDetector
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.detectors.sphere import SphereDetector
@@ -14,4 +15,11 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_detectors() -> list[type[Detector]]:
     """The built-in detectors."""
-    return [SphereDetector, EllipsoidDetector, NarrowBandDetector, FastMarchingDetector, BruteForceDetector]
+    return [
+        SphereDetector,
+        EllipsoidDetector,
+        FacetDetector,
+        NarrowBandDetector,
+        FastMarchingDetector,
+        BruteForceDetector,
+    ]

@@ -46,7 +46,7 @@ def advance(
     state = {
         "velocity": velocity,
         "velocity_previous": fluid["velocity"],
-        "pressure": _centred(discretisation, points, solution.pressure),
+        "pressure": centred(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": before,
         "twist": flat(component_twist(step.kinematics, twist)),
@@ -136,7 +136,7 @@ def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
     return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
 
 
-def _centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
+def centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
     """In an enclosed flow the pressure's constant is free: take the one with zero mean."""
     surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
     if not surfaces.enclosed:

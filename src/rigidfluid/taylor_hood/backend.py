@@ -51,6 +51,7 @@ class TaylorHoodBackend(FluidBackend):
 
     Options: ClassVar[type[PartOptions]] = TaylorHoodOptions
     curved_cells: ClassVar[bool] = True
+    initial_flows: ClassVar[bool] = True
 
     options: TaylorHoodOptions
     problem: FluidProblem
@@ -75,9 +76,17 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        from rigidfluid.taylor_hood.discretisation import kinetic_energy
+        from rigidfluid.taylor_hood.initial_flow import formula_flow, steady_flow
         from rigidfluid.taylor_hood.transfer import initial
 
-        made = initial(self._for_projection(_given(mesh)), self.options.tolerance, _given(mesh), pose, twist)
+        target, start = self._for_projection(_given(mesh)), self.problem.initial
+        given = target, self.options.tolerance, _given(mesh), pose, twist
+        if start == "rest":
+            made = initial(*given)
+        else:
+            flow = steady_flow(*given) if start == "steady" else formula_flow(*given, start)
+            made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
         self.drop_factors()
         return made
 

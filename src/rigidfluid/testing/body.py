@@ -7,6 +7,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.mechanics.facet_moments import facet_moments, unit_inertia
+from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
@@ -116,6 +118,9 @@ class BodyContract:
         """The CAD shape has the exact volume and centre, and its mesh has its boundary on the surface."""
         occ = pytest.importorskip("netgen.occ")
         shape = body.cad_shape()
+        if shape is None:
+            assert body.facets is not None, "neither a cad_shape nor facets: no mesh can be made around it"
+            return
         assert shape.mass == pytest.approx(body.volume, rel=self.cad_tolerance)
         assert np.linalg.norm(list(shape.center)) < self.cad_tolerance * body.bounding_radius
         mesh = occ.OCCGeometry(shape, dim=body.dimension).GenerateMesh(maxh=0.5 * body.bounding_radius)
@@ -123,6 +128,27 @@ class BodyContract:
         used = np.unique(boundary.NumPy()["nodes"][:, : body.dimension]) - 1
         distance = body.signed_distance(mesh.Coordinates()[used])
         np.testing.assert_allclose(distance, 0.0, rtol=0, atol=1e-6 * body.bounding_radius)
+
+    def test_facets_are_the_same_shape(self, body: Body) -> None:
+        """They are closed, in one frame with the distances, and enclose the exact volume with normals outwards."""
+        if body.facets is None:
+            return
+        points, vertices = body.facets.points, body.facets.vertices
+        moments = facet_moments(body.facets)
+        areas = area_vectors(points, vertices)
+        assert np.abs(areas.sum(axis=0)).max() < self.tolerance * np.abs(areas).sum()
+        assert moments.volume == pytest.approx(body.volume, rel=self.tolerance)
+        assert np.abs(moments.centre).max() < self._length(body)
+        largest = np.abs(body.unit_inertia).max()
+        np.testing.assert_allclose(unit_inertia(moments.second), body.unit_inertia, atol=self.tolerance * largest)
+        assert np.linalg.norm(points, axis=1).max() == pytest.approx(body.bounding_radius, rel=self.tolerance)
+        middles = points[vertices].mean(axis=1)
+        np.testing.assert_allclose(body.signed_distance(middles), 0.0, rtol=0, atol=self._length(body))
+        step = 1e-6 * body.bounding_radius * areas / np.linalg.norm(areas, axis=1, keepdims=True)
+        assert np.all(body.signed_distance(middles + step) > 0)
+        assert np.all(body.signed_distance(middles - step) < 0)
+        assert body.radius is None
+        assert body.semi_axes is None
 
     def _length(self, body: Body) -> float:
         return self.tolerance * body.bounding_radius

@@ -7,6 +7,7 @@ from rigidfluid.testing.fluid.balances import BalancesContract
 from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
+from rigidfluid.testing.fluid.initial import InitialFlowContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
@@ -21,6 +22,7 @@ class FluidBackendContract(
     CarriedContract,
     CurvedContract,
     CylinderContract,
+    InitialFlowContract,
     ObliqueContract,
     PeriodicContract,
     ResponsesContract,

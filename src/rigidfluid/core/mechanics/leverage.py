@@ -36,7 +36,10 @@ def most_leverage(body: Body) -> float:
 
 
 def surface_points(body: Body) -> FloatArray:
-    """Points (N, d) spread over the surface, as far out as it reaches [length]."""
+    """Points (N, d) spread over the surface, as far out as it reaches; of facets their vertices, since nothing between
+    them gives way more easily [length]."""
+    if body.facets is not None:
+        return body.facets.points
     points = body.sample_surface(_SAMPLES)
     farthest = np.linalg.norm(points, axis=1).max()
     return np.asarray(points * (body.bounding_radius / farthest))  # samples may miss the farthest one

@@ -14,6 +14,7 @@ import numpy as np
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.regions import Wake
@@ -22,6 +23,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose, Twist
+from rigidfluid.core.model.window import CLEARANCE
 from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02
@@ -49,6 +51,8 @@ class MeshUpdater:
         A mesh of so many ticks is re-made; None for any age.
     wake : Wake or None
         Finer cells behind moving bodies, on each mesh but the first.
+    inserter : Inserter
+        How the bodies come into the first mesh.
     """
 
     def __init__(
@@ -59,6 +63,7 @@ class MeshUpdater:
         pause: int,
         oldest: int | None = None,
         wake: Wake | None = None,
+        inserter: Inserter = BY_SHAPE,
     ) -> None:
         self._system = system
         self._sizes = sizes
@@ -66,6 +71,7 @@ class MeshUpdater:
         self._pause = pause
         self._oldest = oldest
         self._wake = wake
+        self._inserter = inserter
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
@@ -78,7 +84,7 @@ class MeshUpdater:
             return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
-            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes
+            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes, self._inserter
             mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
         return distributed(mesh, ranks)
 
@@ -207,7 +213,7 @@ class MeshUpdater:
 
 
 def _refuse_to_leave(system: System, pose: Pose) -> None:
-    """Reject a step in which a body comes through an end of the window."""
+    """Reject a step in which a body comes near an end of the window."""
     if system.window is None:
         return
     left = system.window.left_by(pose, np.array([body.bounding_radius for body in system.bodies]))
@@ -216,7 +222,7 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
         raise StepRejected(
             f"body {system.surfaces[left]!r}",
             f"it at {pose.position[left].tolist()}, where it leaves the window",
-            f"a place between {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}, all of the body",
+            f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
         )
 

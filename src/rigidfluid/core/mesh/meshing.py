@@ -128,26 +128,48 @@ def run_netgen(
     size: float,
     size_body: FloatArray,
     growth: float,
-    finer: Sequence[tuple[FloatArray, float]],
+    finer: Sequence[tuple[FloatArray, float]] = (),
     surfaces_alone: bool = False,
 ) -> Any:
     """Netgen's mesh; ``size_body`` (n,) is the target edge length on each body [length]."""
+    from netgen import occ
+
+    try:
+        shape = fluid_shape(bodies, pose, domain, size_body)
+    except (occ.OCCException, RuntimeError) as error:
+        raise _netgen_failed(error) from error
+    return netgen_mesh(shape, domain.dimension, size, growth, finer, surfaces_alone)
+
+
+def netgen_mesh(
+    shape: Any,
+    dimension: int,
+    size: float,
+    growth: float,
+    finer: Sequence[tuple[FloatArray, float]] = (),
+    surfaces_alone: bool = False,
+) -> Any:
+    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone."""
     from netgen import meshing, occ
 
-    surfaces = meshing.MeshingStep.MESHEDGES if domain.dimension == 2 else meshing.MeshingStep.MESHSURFACE
+    surfaces = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
     until = {"perfstepsend": surfaces} if surfaces_alone else {}
     verbosity = meshing.SetMessageImportance(0)
     try:
-        geometry = occ.OCCGeometry(fluid_shape(bodies, pose, domain, size_body), dim=domain.dimension)
+        geometry = occ.OCCGeometry(shape, dim=dimension)
         parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **until)
         for point, length in finer:
             parameters.RestrictH(*in_space(point), h=float(length))
         return geometry.GenerateMesh(parameters)
     except (occ.OCCException, meshing.NgException, RuntimeError) as error:
-        found = f"Netgen failed ({str(error).strip()})"
-        raise MeshError("mesh", found, "bodies that neither overlap nor leave the domain", REMEDY) from error
+        raise _netgen_failed(error) from error
     finally:
         meshing.SetMessageImportance(verbosity)
+
+
+def _netgen_failed(error: Exception) -> MeshError:
+    found = f"Netgen failed ({str(error).strip()})"
+    return MeshError("mesh", found, "bodies that neither overlap nor leave the domain", REMEDY)
 
 
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:

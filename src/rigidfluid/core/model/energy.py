@@ -35,7 +35,7 @@ class Ledger:
     ``dissipation``, ``contact_loss`` (by dampers of contacts), ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
     step explains so much at most, since the fluid's own solutions see some of it.
-    ``initial`` was stored at the start; ``power`` is now's.
+    ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
     """
 
     kinetic: float
@@ -48,7 +48,7 @@ class Ledger:
     contact_loss: float = 0.0
     transfer_loss: float = 0.0
     path_friction: float = 0.0
-    power: Power = Power()
+    power: Power | None = Power()
 
     @property
     def residual(self) -> float:
@@ -72,13 +72,15 @@ class Ledger:
         """The ledger one step later, rates integrated by the trapezoidal rule.
 
         Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign.
+        What is not known at the start is taken from the end of the first step.
         """
+        before = self.power or power
 
         def total(name: str) -> float:
-            mean: float = 0.5 * (getattr(self.power, name) + getattr(power, name))
+            mean: float = 0.5 * (getattr(before, name) + getattr(power, name))
             return float(getattr(self, name)) + step * mean
 
-        dissipated = (self.power.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
+        dissipated = (before.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
         return replace(
             self,
             kinetic=kinetic,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.model.facet_faces import Faces, faces_of
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.surface import Plane, Surface
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.model.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
@@ -20,13 +21,24 @@ _FLAT = 1e-10
 _TOUCHING = 1e-8
 """Over the size of the surface: nearer points have no direction from an edge or a corner."""
 
-_VERTICES = np.array([0, 1, 3])
-_EDGES = np.array([2, 4, 5])
-_EDGE_ENDS = np.array([[0, 1], [0, 2], [1, 2]])
-"""Bits (less one) of the corners of a facet's vertices and edges, and the ends of the edges."""
-
 _CORNER = np.array([0, 1, 0, 2, 0, 1, 0])
 """A corner of the vertex, edge or inside of a facet that each number of bits (less one) stands for."""
+
+
+class Nearby(NamedTuple):
+    """Places of a surface: the ``point`` (m,) each is near to, by its row, the ``foot`` (m, d), the signed ``distance``
+    (m,) and the unit ``normal`` (m, d) into the fluid."""
+
+    point: IntArray
+    foot: FloatArray
+    distance: FloatArray
+    normal: FloatArray
+
+
+class _Measured(NamedTuple):
+    foot: FloatArray
+    distance: FloatArray
+    normal: FloatArray
 
 
 class FacetSurface(Surface):
@@ -40,8 +52,8 @@ class FacetSurface(Surface):
     facets : Facets
         All of a closed surface, or a part of one. Markers are not looked at but by `piece`.
     whole : FacetSurface, optional
-        The closed surface that this is a part of. Points that are on its fluid side are at positive distances from the
-        part, too; all others have the sign that the part itself gives them.
+        The closed surface that this is a part of, between the same points. Points that are on its fluid side are at
+        positive distances from the part, too; all others have the sign that the part itself gives them.
 
     Notes
     -----
@@ -64,6 +76,11 @@ class FacetSurface(Surface):
         return FacetSurface(part, whole=self)
 
     @property
+    def whole(self) -> FacetSurface:
+        """The closed surface that this is a part of, or itself."""
+        return self._whole or self
+
+    @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Corners of the box around all facets, (d,) each [length]."""
         return self._bounds
@@ -84,15 +101,22 @@ class FacetSurface(Surface):
         """Infinite where all facets lie in a plane, else None [length]."""
         return None if self.plane is None else np.inf
 
+    @property
+    def facet_normals(self) -> FloatArray:
+        """Unit normals into the fluid of all facets, (F, d)."""
+        return self._faces.normals[:, -1]
+
+    def nearest_facets(self, points: FloatArray) -> IntArray:
+        """Rows of the nearest facets, (N,), for ``points`` (N, d) [length]."""
+        return self._nearest(points)[0]
+
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the facets, (N, d) for ``points`` (N, d) [length]."""
-        return self._foot(*self._nearest(points))
+        return self._measured(points, *self._nearest(points)).foot
 
     def signed_distance(self, points: FloatArray) -> FloatArray:
         """Distance to the nearest facet, (N,), > 0 in the fluid, for ``points`` (N, d) [length]."""
-        nearest, bits, weights = self._nearest(points)
-        away = np.linalg.norm(points - self._foot(nearest, bits, weights), axis=1)
-        return np.asarray(np.where(self._in_fluid(points, nearest, bits), away, -away))
+        return self._measured(points, *self._nearest(points)).distance
 
     def normal(self, points: FloatArray) -> FloatArray:
         """Unit normals into the fluid, (N, d), at the closest points of ``points`` (N, d).
@@ -100,70 +124,81 @@ class FacetSurface(Surface):
         At edges and corners the direction in which the distance grows at the point itself, or, of a point of the
         surface, the mean of the normals there.
         """
-        nearest, bits, weights = self._nearest(points)
-        normal = self._normals[nearest, bits - 1]
-        off = points - self._foot(nearest, bits, weights)
-        away = np.linalg.norm(off, axis=1)
-        sharp = (bits < self._normals.shape[1]) & (away > _TOUCHING * self._size)
-        side = np.where(self._in_fluid(points[sharp], nearest[sharp], bits[sharp]), 1.0, -1.0)
-        normal[sharp] = (side / away[sharp])[:, None] * off[sharp]
-        return np.asarray(normal)
+        return self._measured(points, *self._nearest(points)).normal
+
+    def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
+        """Places of the surface that are nearer to a point than all around them, as the two sides of a hollow.
+
+        Parameters
+        ----------
+        points : (N, d) array
+            Anywhere [length].
+        reach : float
+            Largest distance, may be infinite [length].
+        spread : float
+            How much farther than the nearest place others may be [length].
+
+        Returns
+        -------
+        Nearby
+            Of each point the nearest place, and of points in the fluid also the others.
+        """
+        from rigidfluid.core.model.facet_tree import facets_within
+
+        facet, bits, weights = self._nearest(points)
+        first = self._measured(points, facet, bits, weights)
+        within = np.where(first.distance > 0, np.minimum(reach, first.distance + spread), 0.0)
+        query, others, their_bits, their_weights = facets_within(
+            self._points, self._vertices, self.tree, np.ascontiguousarray(points, dtype=float), within
+        )
+        face, total = self._faces.numbers[others, their_bits - 1], len(self._faces.facets_at)
+        place, row, times = np.unique(query * total + face, return_index=True, return_counts=True)
+        # nearer than all around: the nearest point of each facet that meets there is there
+        alone = times == self._faces.facets_at[face[row]]
+        known = np.arange(len(points)) * total + self._faces.numbers[facet, bits - 1]
+        row = row[alone & np.isin(place, known, invert=True)]
+        more = self._measured(
+            points[query[row]], others[row], their_bits[row], their_weights[row][:, : points.shape[1]]
+        )
+        ahead = np.flatnonzero(self._side(points[query[row]], others[row], their_bits[row]) > 0)
+        near = np.flatnonzero(first.distance <= reach)
+        return Nearby(
+            np.concatenate([near, query[row][ahead]]),
+            *(np.concatenate([one[near], other[ahead]]) for one, other in zip(first, more, strict=True)),
+        )
 
     def _nearest(self, points: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
         """The nearest facet of each of ``points``, bits of the corners that carry weight there, and the weights."""
         from rigidfluid.core.model.facet_tree import nearest_facets
 
         queries = np.ascontiguousarray(points, dtype=float)
-        nearest, bits, weights = nearest_facets(self._points, self._vertices, self._tree, queries)
+        nearest, bits, weights = nearest_facets(self._points, self._vertices, self.tree, queries)
         return nearest, bits, weights[:, : self._points.shape[1]]
 
-    def _foot(self, nearest: IntArray, bits: IntArray, weights: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("ni,nij->nj", weights, self._points[self._vertices[nearest]]))
+    def _measured(self, points: FloatArray, facet: IntArray, bits: IntArray, weights: FloatArray) -> _Measured:
+        """Of the nearest point of one facet to each of ``points`` (N, d)."""
+        foot = np.einsum("ni,nij->nj", weights, self._points[self._vertices[facet]])
+        side = self._side(points, facet, bits)
+        in_fluid = side >= 0 if self._whole is None else (side >= 0) | (self._whole.signed_distance(points) > 0)
+        off = np.where(in_fluid[:, None], points - foot, foot - points)
+        away = np.linalg.norm(off, axis=1)
+        normal = self._faces.normals[facet, bits - 1]
+        sharp = (bits < self._faces.numbers.shape[1]) & (away > _TOUCHING * self._size)
+        normal[sharp] = off[sharp] / away[sharp, None]
+        return _Measured(foot, np.where(in_fluid, away, -away), normal)
 
-    def _in_fluid(self, points: FloatArray, nearest: IntArray, bits: IntArray) -> BoolArray:
-        # a corner that carries weight instead of the nearest point, since the normal is across what both lie on
-        corner = self._vertices[nearest, _CORNER[bits - 1]]
-        side = np.einsum("nj,nj->n", points - self._points[corner], self._normals[nearest, bits - 1])
-        if self._whole is None:
-            return np.asarray(side >= 0)
-        return np.asarray((side >= 0) | (self._whole.signed_distance(points) > 0))
+    def _side(self, points: FloatArray, facet: IntArray, bits: IntArray) -> FloatArray:
+        """(x - p)·n, (N,), with p a corner that carries weight, as n is across all that the nearest point lies on."""
+        corner = self._vertices[facet, _CORNER[bits - 1]]
+        return np.asarray(np.einsum("nj,nj->n", points - self._points[corner], self._faces.normals[facet, bits - 1]))
 
     @cached_property
-    def _tree(self) -> Tree:
+    def tree(self) -> Tree:
+        """Of all facets."""
         from rigidfluid.core.model.facet_tree import Tree, build_tree
 
         return Tree(*build_tree(self._points, self._vertices, np.arange(len(self._vertices), dtype=np.int32)))
 
     @cached_property
-    def _normals(self) -> FloatArray:
-        """On each facet's vertices, edges and inside, by the bits (less one) of their corners, (F, 2^d - 1, d)."""
-        points, vertices = self._points, self._vertices
-        normal = _unit(area_vectors(points, vertices))
-        normals = np.repeat(normal[:, None], 2 ** points.shape[1] - 1, axis=1)
-        normals[:, _VERTICES[: points.shape[1]]] = _mean_normals(vertices, normal, _angles(points[vertices]))
-        if points.shape[1] == 3:
-            edges = np.sort(vertices[:, _EDGE_ENDS], axis=2)
-            _, number = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-            normals[:, _EDGES] = _mean_normals(number.reshape(-1, 3), normal, np.ones((len(vertices), 3)))
-        return normals
-
-
-def _mean_normals(numbers: IntArray, normal: FloatArray, weight: FloatArray) -> FloatArray:
-    """Unit means (F, k, d) of the normals (F, d) of all facets that have the vertices or edges ``numbers`` (F, k)."""
-    total = np.zeros((int(numbers.max()) + 1, normal.shape[1]))
-    np.add.at(total, numbers, weight[:, :, None] * normal[:, None])
-    return _unit(total)[numbers]
-
-
-def _angles(corners: FloatArray) -> FloatArray:
-    """The angles at the corners of triangles (F, 3, 3); of edges (F, 2, 2) each end counts alike, (F, d) [rad]."""
-    if corners.shape[1] == 2:
-        return np.ones(corners.shape[:2])
-    ahead, behind = _unit(np.roll(corners, -1, axis=1) - corners), _unit(np.roll(corners, 1, axis=1) - corners)
-    return np.asarray(2.0 * np.arctan2(np.linalg.norm(ahead - behind, axis=2), np.linalg.norm(ahead + behind, axis=2)))
-
-
-def _unit(vectors: FloatArray) -> FloatArray:
-    """Of length 1 along the last axis; none where there is no direction, as between two sides of a blade."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0, length, 1.0))
+    def _faces(self) -> Faces:
+        return faces_of(self._points, self._vertices)

@@ -98,6 +98,35 @@ def nearest_facets(points, facets, tree, queries):
 
 
 @njit(cache=True, nogil=True)
+def facets_within(points, facets, tree, queries, reach):
+    """All facets within ``reach`` (N,) of each of the points ``queries`` (N, d), none at zero reach: the query, the
+    facet, bits of the corners that carry weight, the weights."""
+    last = len(points)
+    extended = np.empty((last + 1, points.shape[1]))
+    extended[:last] = points
+    order, boxes = tree.order, tree.boxes
+    pairs = [(0, 0) for _ in range(0)]
+    for row in range(len(queries)):
+        extended[last] = queries[row]
+        limit = reach[row] ** 2
+        node = _leaf(extended, (last,), boxes, 1, limit)
+        while node > 0:
+            first = (node - len(boxes) // 2) * LEAF
+            for place in range(first, min(first + LEAF, len(order))):
+                if vertex_to_facet(extended, last, facets, order[place])[0] <= limit:
+                    pairs.append((row, order[place]))
+            node = _leaf(extended, (last,), boxes, _after(node), limit)
+    query, nearest, bits = np.empty((3, len(pairs)), np.int64)
+    weights = np.empty((len(pairs), 3))
+    for row in range(len(pairs)):
+        query[row], nearest[row] = pairs[row]
+        extended[last] = queries[query[row]]
+        found = vertex_to_facet(extended, last, facets, nearest[row])
+        bits[row], weights[row, 0], weights[row, 1], weights[row, 2] = found[1], found[2], found[3], found[4]
+    return query, nearest, bits, weights
+
+
+@njit(cache=True, nogil=True)
 def leaves_beside(points, corners, tree):
     """The facets in leaves whose boxes meet that of some corners."""
     order, boxes = tree.order, tree.boxes

@@ -256,6 +256,8 @@ class FluidBackend(Part):
     needs_mesh: ClassVar[bool] = True
     curved_cells: ClassVar[bool] = False
     """Whether it takes meshes with curved edges; else it gets straight ones."""
+    initial_flows: ClassVar[bool] = False
+    """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
     oblique_faces: ClassVar[bool] = False
     """Whether it takes slip and pressure conditions on faces that lie across no axis."""
     periodic_faces: ClassVar[bool] = False
@@ -276,7 +278,10 @@ class FluidBackend(Part):
 
     @abstractmethod
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
-        """The fluid that was at rest when its bodies were set in motion with ``twist``, and its kinetic energy."""
+        """The fluid at the start, as `FluidProblem.initial` says, and its kinetic energy.
+
+        At "rest" it was so when its bodies were set in motion with ``twist``.
+        """
 
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

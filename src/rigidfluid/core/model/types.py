@@ -200,7 +200,8 @@ class FluidProblem:
 
     With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
     mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions. ``carrier`` (bodies,):
-    the motion that carries each body, None where each moves by itself.
+    the motion that carries each body, None where each moves by itself. ``initial``: the flow at the start, at rest but
+    for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
     """
 
     dimension: int
@@ -211,6 +212,7 @@ class FluidProblem:
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None
     carrier: tuple[int, ...] | None = None
+    initial: Literal["rest", "steady"] | Callable[[float, FloatArray], FloatArray] = "rest"
 
     @property
     def motions(self) -> int:

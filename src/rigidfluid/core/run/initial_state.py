@@ -5,7 +5,7 @@ from __future__ import annotations
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
-from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
@@ -38,9 +38,15 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored),
+        ledger=Ledger(kinetic, stored, kinetic + stored, power=_power(system)),
         free=_free_motions(system),
     )
+
+
+def _power(system: System) -> Power | None:
+    """None where the fluid starts in motion: nobody has solved for its stresses yet."""
+    problem = system.backend.problem
+    return Power() if problem is None or problem.initial == "rest" else None
 
 
 def _free_motions(system: System) -> FreeMotions | None:
@@ -54,13 +60,14 @@ def _level(system: System, clock: Clock, stored: float) -> int | None:
     """The level that the first step may be twice as long as; any where the motion starts smoothly.
 
     Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
-    contacts that let go, and weight where the fluid has no inertia.
+    contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that hold it.
     """
     problem = system.backend.problem
     if not system.backend.needs_mesh or problem is None:
         return None
     moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
-    at_once = moves or stored > 0.0 or (not problem.inertia and system.weight.any())
+    given = not isinstance(problem.initial, str)
+    at_once = moves or given or stored > 0.0 or (not problem.inertia and system.weight.any())
     return start_level(clock) if at_once else None
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.mesh.regions import RefinedBox, Wake
+from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.ranks import Ranks
@@ -25,6 +25,7 @@ from rigidfluid.core.output.records import least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state, start_level
+from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
@@ -107,6 +108,7 @@ class Simulation:
             pause=self.clock.ticks(0),
             oldest=None if every is None else self.clock.tick_from(every),
             wake=None if wake is None else Wake(wake.time, wake.size),
+            inserter=inserter_of(scene.mesh),
         )
         self.watch = Stopwatch()
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
@@ -375,9 +377,7 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
     if not system.backend.needs_mesh:
         return None
     assert scene.mesh is not None
-    m = scene.mesh
-    boxes = tuple(RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in m.refine)
-    return Sizes(m.size, m.size_body, m.growth, m.cells_per_gap, m.refinements, m.order, boxes)
+    return sizes_of(scene.mesh, system.domain)
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:

@@ -83,6 +83,11 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
+        default="rest",
+        description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
+        "their velocities, or expressions of its velocity [length/time]",
+    )
 
 
 class WindowTable(_Table):
@@ -271,6 +276,11 @@ class MeshTable(_Table):
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: Positive = Field(description="Edge length on the bodies [length]")
+    size_wall: Positive | None = Field(
+        default=None,
+        description="Edge length on walls that are not flat; a quarter of the least radius of curvature, where that is "
+        "known, if not given [length]",
+    )
     growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
     cells_per_gap: int = Field(
         default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
@@ -279,6 +289,15 @@ class MeshTable(_Table):
     refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
+    )
+    inserter: Literal["cad", "fill", "level_set"] | None = Field(
+        default=None,
+        description="How bodies come into the first mesh. cad: Netgen meshes the domain less the bodies; fill: it "
+        "fills between facets of both, which stay; level_set: MMG cuts bodies out of a mesh of the domain, for "
+        "comparison. If not given, fill where a shape is made of facets, else cad",
+    )
+    mesher_timeout: Positive = Field(
+        default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"
     )
     remesh_every: Positive | None = Field(
         default=None, description="Age at which a mesh is made anew in any case; never if not given [time]"
@@ -350,6 +369,8 @@ class Scene(_Table):
         scene."""
         # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
+        if self.fluid.initial == "rest":
+            left_out["fluid"] = {"initial"}
         if self.mesh is not None and not self.mesh.refine:
             left_out["mesh"] = {"refine"}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)

@@ -51,7 +51,7 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
         complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
         raise _scene_error(model, complaints, at) from None
     for field, number in _numbers(json.loads(text), at):
-        _refuse_out_of_proportion(field, number)
+        refuse_out_of_proportion(field, number)
     return table
 
 
@@ -107,7 +107,8 @@ def _numbers(value: Any, at: str) -> Iterator[tuple[str, float]]:
         yield at, value
 
 
-def _refuse_out_of_proportion(field: str, number: float) -> None:
+def refuse_out_of_proportion(field: str, number: float) -> None:
+    """Raise SceneError for a number that is not zero and beyond `SMALLEST` or `LARGEST`."""
     if number != 0 and not SMALLEST <= abs(number) <= LARGEST:
         allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size"
         raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
@@ -115,7 +116,7 @@ def _refuse_out_of_proportion(field: str, number: float) -> None:
 
 def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
     """The error of the first complaint."""
-    complaint, location = complaints[0], complaints[0]["loc"]
+    complaint, location = complaints[0], _keys(model, complaints[0])
     field = ".".join([*filter(None, [at]), *map(str, location)])
     if complaint["type"] == "extra_forbidden":
         return unknown_key(field, _model_at(model, location[:-1]).model_fields)
@@ -126,13 +127,27 @@ def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at:
     return SceneError(field or "scene", shown(complaint["input"]), _allowed(complaint), _remedy(model, location))
 
 
+def _keys(model: type[BaseModel], complaint: ErrorDetails) -> Location:
+    """Where it is in the scene; pydantic also names which of a key's types it has tried."""
+    keys: list[int | str] = []
+    table: type[BaseModel] | None = model
+    *inner, last = complaint["loc"] or ("",)
+    for part in (*inner, *([] if complaint["type"] == "extra_forbidden" else [last])):
+        if isinstance(part, int):
+            keys.append(part)
+        elif table is not None and part in table.model_fields:
+            keys.append(part)
+            table = _table_in(table.model_fields[part].annotation)
+    return (*keys, last) if complaint["type"] == "extra_forbidden" else tuple(keys)
+
+
 def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
     """Of a list that must have a certain length, pydantic says which of its places are empty."""
-    place = complaints[0]["loc"][:-1]
-    field = ".".join([*filter(None, [at]), *map(str, place)])
+    place, keys = complaints[0]["loc"][:-1], _keys(model, complaints[0])[:-1]
+    field = ".".join([*filter(None, [at]), *map(str, keys)])
     empty = sum(complaint["type"] == "missing" and complaint["loc"][:-1] == place for complaint in complaints)
     given = complaints[0]["input"]
-    return SceneError(field, shown(given), f"{len(given) + empty} entries", _remedy(model, place))
+    return SceneError(field, shown(given), f"{len(given) + empty} entries", _remedy(model, keys))
 
 
 def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:

@@ -28,6 +28,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
+from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
@@ -178,6 +179,7 @@ def _problem(
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
         carrier=None if carried is None else tuple(carried.carrier.tolist()),
+        initial=initial_flow(scene),
     )
 
 

@@ -13,6 +13,7 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import repelling_walls
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
+from rigidfluid.core.setup.initial_flow import fastest_at_start
 from rigidfluid.core.setup.interactions import law_tables
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def impact_speeds(
     falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
     if wet:
         falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, domain, bodies, pull)))
-        falling = falling + _fastest_inflow(scene, domain)
+        falling = falling + _fastest_flow(scene, domain)
     if scene.contact.impact_speed is not None:
         falling = np.maximum(start, scene.contact.impact_speed)
     return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
@@ -154,8 +155,8 @@ def _own_speed(table: BodyTable, lever: float) -> float:
     return speed + 2.0 * np.pi * (table.prescribed.frequency or 0.0) * _length(table.prescribed.amplitude)
 
 
-def _fastest_inflow(scene: Scene, domain: Domain) -> float:
-    """Of all that is prescribed on the boundary, at the points and times sampled."""
+def _fastest_flow(scene: Scene, domain: Domain) -> float:
+    """Of all that is prescribed on the boundary and at the start, at the points and times sampled."""
     inflows = sampled_inflows(scene, domain)
     times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
     sliding = [
@@ -163,7 +164,8 @@ def _fastest_inflow(scene: Scene, domain: Domain) -> float:
         for wall in repelling_walls(scene, domain)
         if wall.velocity is not None
     ]
-    return max([0.0, *sliding, *(inflow.speed(time) for inflow in inflows for time in times)])
+    inflowing = [inflow.speed(time) for inflow in inflows for time in times]
+    return max([fastest_at_start(scene, domain), *sliding, *inflowing])
 
 
 def _lever(body: Body) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
@@ -133,7 +134,8 @@ def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tup
     -------
     str, str
         The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
-        walls are flat; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+        walls are flat; ``facets`` for balls, polygons and polyhedra where all walls are flat, round or of facets; else
+        ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"
@@ -142,6 +144,10 @@ def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tup
         if all(piece.shape.plane for piece in domain.pieces):
             return "ellipsoid", "all bodies are balls or ellipsoids"
         reason = "not all bodies are balls and not all walls are flat"
+    elif all(body.radius is not None or body.facets is not None for body in bodies):
+        if all(piece.shape.radius is not None or isinstance(piece.shape, FacetSurface) for piece in domain.pieces):
+            return "facets", "all bodies are balls or made of facets"
+        reason = "not all bodies are balls and a wall is neither flat nor round nor made of facets"
     if mesh:
         return "narrow_band", f"{reason}, and there is a mesh and a law"
     return "brute_force", f"{reason}, and there is no mesh or no law"

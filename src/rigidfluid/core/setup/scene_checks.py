@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
+from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.core.setup.placing import check_orientation
@@ -66,8 +67,9 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     ------
     SceneError
         If density, viscosity or the mesh is missing, or if more flows in than out; without a mesh, if there is a
-        tolerance.
+        tolerance; if the flow at the start is not for this backend.
     """
+    check_initial_flow(scene, backend, domain)
     if not backend.needs_mesh:
         if scene.time.tolerance is not None:
             allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"
@@ -98,6 +100,7 @@ def _vectors(scene: Scene) -> Vectors:
     d = scene.dimension
     k = 1 if d == 2 else 3
     yield "fluid.gravity", scene.fluid.gravity, d
+    yield "fluid.initial", None if isinstance(scene.fluid.initial, str) else scene.fluid.initial, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d
         yield f"boundary.{i}.angular_velocity", boundary.angular_velocity, k

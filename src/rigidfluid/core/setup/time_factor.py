@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Scene, TimeFileTable
+from rigidfluid.core.scene.validation import refuse_out_of_proportion
 from rigidfluid.errors import SceneError
 
 Rows = tuple[tuple[float, float], ...]
@@ -30,12 +33,16 @@ class TimeFactor:
         """The factor at ``time``."""
         factor = 1.0
         if self.table is not None:
-            times, values = zip(*self.table, strict=True)
-            factor *= float(np.interp(time, times, values))
+            factor *= float(np.interp(time, *self._columns))
         if self.ramp is not None:
             s = min(max(time / self.ramp, 0.0), 1.0)
             factor *= s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         return factor
+
+    @cached_property
+    def _columns(self) -> FloatArray:
+        """Times and values of the table, (2, rows)."""
+        return np.array(self.table).T
 
 
 UNCHANGED = TimeFactor()
@@ -108,4 +115,6 @@ def read_rows(file: str, at: str) -> Rows:
         raise SceneError(at, f"{file!r} with {rows.shape[1]} columns, or infinite values", allowed, remedy)
     if len(rows) > MOST_ROWS:
         raise SceneError(at, f"{file!r} of {len(rows)} rows", f"at most {MOST_ROWS}", "Thin it out.")
+    for number in rows.flat:
+        refuse_out_of_proportion(at, float(number))
     return tuple(map(tuple, rows.tolist()))

@@ -1,4 +1,4 @@
-"""Volume, centre of mass and inertia of what a closed surface of facets encloses, exact to rounding."""
+"""Volume, centre of mass and second moments of what a closed surface of facets encloses, exact to rounding."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from rigidfluid.core.model.types import FloatArray
 
 
 class FacetMoments(NamedTuple):
-    """``volume`` [length^d], negative if the normals point inwards; ``centre`` (d,) of mass [length]; ``unit_inertia``
-    (k, k) about it [length²]."""
+    """``volume`` [length^d], negative if the normals point inwards, ``centre`` (d,) of mass [length], ``second`` (d, d)
+    moments ∫ r rᵀ/volume about it [length²]."""
 
     volume: float
     centre: FloatArray
-    unit_inertia: FloatArray
+    second: FloatArray
 
 
 def facet_moments(facets: Facets) -> FacetMoments:
@@ -44,6 +44,10 @@ def facet_moments(facets: Facets) -> FacetMoments:
     centre = volumes @ sums / ((dimension + 1) * volume)
     squares = np.einsum("f,fi,fj->ij", volumes, sums, sums) + np.einsum("f,fki,fkj->ij", volumes, corners, corners)
     second = squares / ((dimension + 1) * (dimension + 2) * volume) - np.outer(centre, centre)
+    return FacetMoments(volume, origin + centre, second)
+
+
+def unit_inertia(second: FloatArray) -> FloatArray:
+    """tr(C) I - C (3, 3) of second moments C, their sum (1, 1) in 2D [length²]."""
     trace = np.trace(second)
-    unit_inertia = np.full((1, 1), trace) if dimension == 2 else trace * np.eye(3) - second
-    return FacetMoments(volume, origin + centre, unit_inertia)
+    return np.full((1, 1), trace) if len(second) == 2 else np.asarray(trace * np.eye(3) - second)

@@ -1,0 +1,121 @@
+"""The first mesh from surfaces: Netgen fills between the facets of the domain and of each body, which all stay."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.surface_checks import refuse_unfillable
+from rigidfluid.core.mesh.surface_mesh import enclosed, surface_mesh
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.errors import MeshError
+
+MESHER = [sys.executable, "-m", "rigidfluid.core.mesh.netgen_fill"]
+"""The command that fills what one file holds and writes the cells to another."""
+
+
+def fill_mesh(
+    bodies: Sequence[Body],
+    pose: Pose,
+    domain: Domain,
+    walls: Sequence[Wall],
+    sizes: Sizes,
+    timeout: float = MESHER_TIMEOUT,
+) -> Mesh:
+    """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, between facets that stay as they are.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes, in the scene's order.
+    pose : Pose
+        Where they are.
+    domain : Domain
+        Ω.
+    walls : sequence of Wall
+        The walls whose gaps are resolved.
+    sizes : Sizes
+        The wanted size.
+    timeout : float
+        Seconds after which the mesher is stopped.
+
+    Returns
+    -------
+    Mesh
+        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Facets and their vertices, to the last
+        bit, are those of `surface_mesh`.
+
+    Raises
+    ------
+    MeshError
+        When a surface is open, two cross, a body is outside, or Netgen makes no valid mesh in time.
+    """
+    surface = surface_mesh(bodies, pose, domain, walls, sizes)
+    refuse_unfillable(surface, bodies, pose, domain)
+    return fill_between(surface, sizes, timeout)
+
+
+def fill_between(surface: Mesh, sizes: Sizes, timeout: float) -> Mesh:
+    """The mesh inside a closed surface, whose facets and vertices stay to the last bit."""
+    points, cells = filled(surface, sizes.size, sizes.growth, timeout)
+    mesh = orient(_with_facets(points, cells, surface))
+    check_mesh(mesh, quality=0.0)
+    volume, expected = float(cell_volumes(mesh.points, mesh.cells).sum()), -enclosed(surface)
+    if abs(volume - expected) > 1e-10 * expected:
+        raise MeshError("mesh", f"cells with a volume of {volume!r}", f"{expected!r} between the surfaces", REMEDY)
+    return mesh
+
+
+def filled(surface: Mesh, size: float, growth: float, timeout: float) -> tuple[FloatArray, IntArray]:
+    """Vertices (M, d) and cells (C, d+1) between closed facets, made by Netgen in a process of its own.
+
+    Lengths are scaled by a power of two to about one, as Netgen takes vertices nearer than 1e-7 for one.
+    """
+    unit = 2.0 ** np.round(np.log2(np.ptp(surface.points, axis=0).max()))
+    with TemporaryDirectory() as folder:
+        given, made = Path(folder, "given.npz"), Path(folder, "made.npz")
+        np.savez(given, points=surface.points / unit, facets=surface.facets, size=size / unit, growth=growth)
+        try:
+            # What Netgen prints is dropped, as it may print without end.
+            ended = subprocess.run(
+                [*MESHER, str(given), str(made)],
+                timeout=timeout,
+                check=False,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+        except subprocess.TimeoutExpired as error:
+            remedy = f"Raise mesh.mesher_timeout if the mesh is large. {REMEDY}"
+            found = "a mesher that had not ended"
+            raise MeshError("mesh", found, f"an end within {timeout:g} seconds", remedy) from error
+        if not made.exists():
+            found = f"Netgen failed (its process ended with code {ended.returncode})"
+            raise MeshError("mesh", found, "surfaces that it can fill between", REMEDY)
+        with np.load(made) as arrays:
+            return unit * arrays["points"], arrays["cells"]
+
+
+def _with_facets(points: FloatArray, cells: IntArray, surface: Mesh) -> Mesh:
+    """A mesh of the cells, with the surface's facets and its vertices to the last bit."""
+    from scipy.spatial import cKDTree
+
+    used, compact = np.unique(cells, return_inverse=True)
+    points, cells = points[used], compact.reshape(cells.shape)
+    found = cKDTree(points).query(surface.points)
+    distance, place = np.asarray(found[0]), np.asarray(found[1])
+    if distance.max() > 1e-9 * np.ptp(surface.points, axis=0).max() or len(np.unique(place)) < len(place):
+        raise MeshError("mesh", "a vertex lost by Netgen", "every vertex of the surfaces kept", REMEDY)
+    points[place] = surface.points
+    return Mesh(points, cells, place[surface.facets], surface.markers)

@@ -1,0 +1,42 @@
+"""How the bodies of a scene come into its first mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.errors import MeshError
+
+MESHER_TIMEOUT = 600.0
+"""Seconds after which a mesher that has not ended is stopped."""
+
+Way = Literal["cad", "fill", "level_set"]
+
+
+@dataclass(frozen=True, slots=True)
+class Inserter:
+    """The way, and how long it may take.
+
+    ``way``: "cad", Netgen meshes the difference of CAD shapes; "fill", it fills between the facets of domain and
+    bodies; "level_set", MMG cuts bodies out of a mesh of the domain. None: "cad" where all have CAD shapes, else
+    "fill". ``timeout``: a mesher that fills is stopped after it [s].
+    """
+
+    way: Way | None = None
+    timeout: float = MESHER_TIMEOUT
+
+    def chosen(self, bodies: Sequence[Body], domain: Domain) -> Way:
+        """The way for these shapes; raises MeshError where one of them has no CAD shape and needs it."""
+        of_facets = [f"body.{i}" for i, body in enumerate(bodies) if body.facets is not None]
+        of_facets += ["the domain"] if domain.facets is not None else []
+        if self.way == "cad" and of_facets:
+            found = f"'cad' with {of_facets[0]} made of facets"
+            raise MeshError("mesh.inserter", found, "'fill' or 'level_set' for facets", "Leave the key out.")
+        return self.way or ("fill" if of_facets else "cad")
+
+
+BY_SHAPE = Inserter()
+"""The way that suits the shapes."""

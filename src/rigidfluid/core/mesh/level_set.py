@@ -1,0 +1,195 @@
+"""The first mesh by cutting: MMG cuts bodies out of a mesh of the domain along the zero level of their distance.
+
+Here for comparison with `fill_mesh`, which keeps edges and corners of bodies; a cut rounds them to first order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.fill import fill_between
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.mmg import as_mmg, from_mmg, run_mmg, with_kept_facets
+from rigidfluid.core.mesh.refine_surface import on_surface
+from rigidfluid.core.mesh.signals import kept_signals
+from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.surface_mesh import part_of, surface_mesh
+from rigidfluid.core.mesh.topology import REMEDY, boundary_facets, check_mesh, orient
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.errors import MeshError
+
+ADAPTATIONS = 4
+"""How often MMG brings the domain's mesh nearer to the wanted size before it cuts."""
+
+GRADATION = 1.3
+"""Ratio of neighbouring edges that MMG may use."""
+
+CUT = 9
+"""What MMG marks the facets of a cut with, less one; no surface may have this number meanwhile."""
+
+FLUID, SOLID = 2, 3
+"""What MMG marks the cells of either side with."""
+
+DEVIATION = {2: 0.01, 3: 0.25}
+"""How far the facets of a cut may be off the level that MMG interpolates, over size_body, by dimension."""
+
+ROUNDS = 12
+"""How often vertices are moved towards the shapes, and cells improved."""
+
+LEAST_QUALITY = 0.1
+"""Moving vertices onto the shapes leaves cells at this quality, or at what they had if that was less."""
+
+LEAST_SHARE = 1e-3
+"""A vertex that can move less than this of its way stays where it is."""
+
+ON_SHAPE = 1e-12
+"""A vertex is on its shape when it is nearer than this, over size_body."""
+
+CHORD = 0.25
+"""A facet whose middle is farther off the shape than this, over its longest edge, cuts through the body."""
+
+
+def level_set_mesh(
+    bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes, timeout: float
+) -> Mesh:
+    """Mesh of the domain minus the bodies, {x ∈ Ω: min_i d_i(x) > 0}, its facets on bodies cut by MMG.
+
+    The domain's facets, halved near bodies, stay. Vertices of the cut are moved onto the exact shapes as far as the
+    cells allow, cells are improved, and so on until all are there.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes, in the scene's order.
+    pose : Pose
+        Where they are.
+    domain : Domain
+        Ω.
+    walls : sequence of Wall
+        The walls whose gaps are resolved.
+    sizes : Sizes
+        The wanted size.
+    timeout : float
+        Seconds after which the mesher of the domain is stopped.
+
+    Returns
+    -------
+    Mesh
+        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
+
+    Raises
+    ------
+    MeshError
+        When MMG fails, a body gets no facets, or vertices do not come onto their shape.
+
+    Notes
+    -----
+    The way of Van Landeghem et al., appendix, with the vertices put back onto the shapes.
+    """
+
+    def size_at(points: FloatArray) -> FloatArray:
+        return wanted_size(points, bodies, pose, walls, sizes)
+
+    surface = surface_mesh(bodies, pose, domain, walls, sizes)
+    outer = part_of(surface, surface.markers >= len(bodies))
+    mesh = background = fill_between(outer, sizes, timeout)
+    if not bodies:
+        return background
+    for _ in range(ADAPTATIONS):
+        mesh = orient(_improved(mesh, size_at(mesh.points)))
+    mesh = _cut(mesh, bodies, pose, size_at(mesh.points), DEVIATION[domain.dimension] * sizes.size_body)
+    for _ in range(ROUNDS):
+        target = _on_shapes(mesh, bodies, pose, domain)
+        mesh = replace(mesh, points=_as_far_as_cells_allow(mesh, target))
+        mesh = orient(_improved(mesh, size_at(mesh.points)))
+        off = float(np.linalg.norm(_on_shapes(mesh, bodies, pose, domain) - mesh.points, axis=1).max())
+        if off <= ON_SHAPE * sizes.size_body:
+            break
+    else:
+        raise MeshError("mesh.inserter", f"vertices {off:.3g} off their shape", "all on it", "Use 'fill' instead.")
+    mesh = replace(mesh, points=_on_shapes(mesh, bodies, pose, domain))
+    kept = np.ones(len(background.facets), dtype=bool)
+    mesh = orient(with_kept_facets(mesh, mesh.markers < len(bodies), background, kept, background.points))
+    _refuse_chords(mesh, bodies, pose)
+    check_mesh(mesh, quality=0.0)
+    return mesh
+
+
+def _improved(mesh: Mesh, metric: FloatArray) -> Mesh:
+    """What MMG makes of a mesh with all its facets kept."""
+    return run_mmg(mesh, np.ones(len(mesh.facets), dtype=bool), 0, metric, GRADATION)
+
+
+def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, deviation: float) -> Mesh:
+    """The fluid's part of a mesh that is cut along the bodies, facets there marked by the nearest body."""
+    shifted, d = replace(mesh, markers=mesh.markers + CUT + 1), mesh.points.shape[1]
+    mmg = as_mmg(shifted, np.ones(len(mesh.facets), dtype=bool), 0, metric)
+    mmg.set_multi_materials([{"ref": 0, "split": 1, "ref_minus": SOLID, "ref_plus": FLUID}])
+    level = _distances(mesh.points, bodies, pose).min(axis=0)
+    try:
+        with kept_signals():
+            mmg.remesh_levelset(level[:, None], verbose=-1, hgrad=GRADATION, hausd=deviation)
+    except RuntimeError as error:
+        raise MeshError("mesh.inserter", f"MMG failed to cut ({error})", "bodies it can cut", REMEDY) from error
+    _, sides = mmg.get_triangles_with_refs() if d == 2 else mmg.get_tetrahedra_with_refs()
+    made = from_mmg(mmg, d)
+    used, cells = np.unique(made.cells[sides == FLUID], return_inverse=True)
+    points, cells = made.points[used], cells.reshape(-1, d + 1)
+    facets = boundary_facets(cells)
+    marks = dict(zip(map(tuple, np.sort(made.facets, axis=1).tolist()), made.markers.tolist(), strict=True))
+    markers = np.array([marks.get(tuple(facet), CUT) for facet in used[facets].tolist()]) - CUT - 1
+    on_cut = markers < 0
+    nearest = np.abs(_distances(points[facets[on_cut]].mean(axis=1), bodies, pose)).argmin(axis=0)
+    markers[on_cut] = nearest
+    for i in np.setdiff1d(np.arange(len(bodies)), nearest):
+        raise MeshError(f"body.{i}", "no facet of its own after the cut", "one at least", REMEDY)
+    return orient(Mesh(points, cells, facets, markers))
+
+
+def _distances(points: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:
+    """Of points (N, d) from each body, (n, N) [length]."""
+    return np.array([distance_to_body(pose, i, body, points) for i, body in enumerate(bodies)])
+
+
+def _vertices(mesh: Mesh, surface: int) -> IntArray:
+    return np.unique(mesh.facets[mesh.markers == surface])
+
+
+def _on_shapes(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
+    """The points (N, d) with those of each body's facets on its shape."""
+    points = mesh.points.copy()
+    for i in range(len(bodies)):
+        mine = _vertices(mesh, i)
+        points[mine] = on_surface(i, points[mine], bodies, pose, domain)
+    return points
+
+
+def _as_far_as_cells_allow(mesh: Mesh, target: FloatArray) -> FloatArray:
+    """Points (N, d) moved towards ``target`` (N, d), each halfway back as long as it spoils a cell."""
+    share, points = np.ones((len(target), 1)), target
+    allowed = np.minimum(LEAST_QUALITY, cell_quality(mesh.points, mesh.cells))
+    while (bad := cell_quality(points, mesh.cells) < allowed).any():
+        back = np.unique(mesh.cells[bad])
+        share[back] = np.where(share[back] < LEAST_SHARE, 0.0, 0.5 * share[back])
+        points = np.where(share == 1.0, target, mesh.points + share * (target - mesh.points))
+    return points
+
+
+def _refuse_chords(mesh: Mesh, bodies: Sequence[Body], pose: Pose) -> None:
+    """All vertices may be on a shape and a facet still cut through it; of shapes with corners all facets there do."""
+    for i, body in enumerate(bodies):
+        if body.facets is not None:
+            continue
+        corners = mesh.points[mesh.facets[mesh.markers == i]]
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+        off = np.abs(distance_to_body(pose, i, body, corners.mean(axis=1))) / longest
+        if off.max() > CHORD:
+            found = f"a facet whose middle is {off.max():.3g} of its length off the shape"
+            raise MeshError(f"body.{i}", found, f"at most {CHORD:g}", "Use mesh.inserter = 'fill'.")

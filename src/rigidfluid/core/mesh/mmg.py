@@ -1,0 +1,87 @@
+"""Plain calls of MMG: what it makes of a mesh whose kept facets are required to stay."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mesh.signals import kept_signals
+from rigidfluid.core.mesh.topology import REMEDY
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.errors import MeshError
+
+
+def run_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
+    """What MMG makes of a mesh when the ``kept`` facets (F,) and the corners of the domain are required to stay."""
+    mmg = as_mmg(mesh, kept, bodies, metric)
+    try:
+        with kept_signals():
+            mmg.remesh(verbose=-1, hgrad=gradation)
+    except RuntimeError as error:
+        raise MeshError("mesh", f"MMG failed ({error})", "a mesh that MMG can improve", REMEDY) from error
+    return from_mmg(mmg, mesh.points.shape[1])
+
+
+def as_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray) -> Any:
+    """MMG's mesh with its wanted size ``metric`` (N,); its references are the markers and 1."""
+    import mmgpy
+
+    d = mesh.points.shape[1]
+    corners = domain_corners(mesh, bodies)
+    cells, facets, references = (mesh.cells.astype(np.int32), mesh.facets.astype(np.int32), mesh.markers + 1)
+    mmg: Any
+    if d == 2:
+        mmg = mmgpy.MmgMesh2D()
+        mmg.set_mesh_size(vertices=len(mesh.points), triangles=len(cells), edges=len(facets))
+        put_cells, put_facets, require = mmg.set_triangles, mmg.set_edges, mmg.set_required_edges
+    else:
+        mmg = mmgpy.MmgMesh3D()
+        mmg.set_mesh_size(vertices=len(mesh.points), tetrahedra=len(cells), triangles=len(facets))
+        put_cells, put_facets, require = mmg.set_tetrahedra, mmg.set_triangles, mmg.set_required_triangles
+    mmg.set_vertices(mesh.points)
+    put_cells(cells)
+    put_facets(facets, references)
+    require(np.flatnonzero(kept).astype(np.int32))
+    mmg.set_corners(corners.astype(np.int32))
+    mmg.set_required_vertices(corners.astype(np.int32))
+    mmg["metric"] = metric[:, None]
+    return mmg
+
+
+def from_mmg(mmg: Any, dimension: int) -> Mesh:
+    """MMG's mesh as arrays."""
+    cells = mmg.get_triangles() if dimension == 2 else mmg.get_tetrahedra()
+    facets, references = mmg.get_edges_with_refs() if dimension == 2 else mmg.get_triangles_with_refs()
+    points = np.ascontiguousarray(mmg.get_vertices())
+    return Mesh(points, cells.astype(np.int64), facets.astype(np.int64), references.astype(np.int64) - 1)
+
+
+def domain_corners(mesh: Mesh, bodies: int) -> IntArray:
+    """Vertices that lie on at least d surfaces of the domain."""
+    on_face = [np.unique(mesh.facets[mesh.markers == face]) for face in range(bodies, mesh.markers.max() + 1)]
+    vertex, count = np.unique(np.concatenate(on_face), return_counts=True)
+    corners: IntArray = vertex[count >= mesh.points.shape[1]]
+    return corners
+
+
+def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: BoolArray, given: FloatArray) -> Mesh:
+    """The ``outer`` facets of ``new`` and the ``kept`` facets and exact coordinates of ``old``.
+
+    MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
+    nearness.
+    """
+    from scipy.spatial import cKDTree
+
+    old_vertices = np.unique(old.facets[kept])
+    found = cKDTree(new.points).query(given[old_vertices])
+    distance, place = np.asarray(found[0]), np.asarray(found[1])
+    shortest = 1e-9 * np.ptp(old.points, axis=0).max()
+    if len(np.unique(place)) < len(place) or np.any(distance > shortest):
+        raise MeshError("mesh", "a vertex lost by MMG", "every vertex of bodies and curved walls kept", REMEDY)
+    number = np.zeros(len(old.points), dtype=np.int64)
+    number[old_vertices] = place
+    points = new.points.copy()
+    points[place] = old.points[old_vertices]
+    facets = np.concatenate([number[old.facets[kept]], new.facets[outer]])
+    return Mesh(points, new.cells, facets, np.concatenate([old.markers[kept], new.markers[outer]]))

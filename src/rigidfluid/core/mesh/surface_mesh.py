@@ -1,0 +1,163 @@
+"""The closed surface around the fluid, facets of the domain and of each placed body, before there are cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.mesh.meshing import ATTEMPTS, longest_edges, netgen_mesh, put_back, run_netgen, sides, surfaces_of
+from rigidfluid.core.mesh.refine_surface import (
+    LONGEST,
+    bisect,
+    edge_numbers,
+    edges_of_facets,
+    on_surface,
+    one_per_cell,
+)
+from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.topology import REMEDY
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.errors import MeshError
+
+
+def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+    """All facets around the fluid, none longer than LONGEST times the wanted size, their normals into the fluid.
+
+    Shapes that have facets keep them; all others are meshed by Netgen, each on its own, their vertices exactly on them.
+    Edges still too long, as those of walls near bodies, are halved.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The shapes, in the scene's order.
+    pose : Pose
+        Where they are.
+    domain : Domain
+        What they are in.
+    walls : sequence of Wall
+        The walls whose gaps are resolved.
+    sizes : Sizes
+        The wanted size.
+
+    Returns
+    -------
+    Mesh
+        Without cells; markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
+
+    Raises
+    ------
+    MeshError
+        When Netgen cannot mesh a shape.
+    """
+    parts = []
+    for i, body in enumerate(bodies):
+        own = _as_mesh(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
+        parts.append(replace(own, points=to_world(pose, i, own.points), markers=np.full(len(own.facets), i)))
+    outer = _as_mesh(domain.facets) if domain.facets is not None else _meshed_domain(domain, sizes)
+    parts.append(replace(outer, markers=len(bodies) + outer.markers))
+    return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
+
+
+def part_of(surface: Mesh, chosen: BoolArray) -> Mesh:
+    """The ``chosen`` facets (F,) with their vertices."""
+    used, compact = np.unique(surface.facets[chosen], return_inverse=True)
+    facets = compact.reshape(-1, surface.facets.shape[1])
+    return _without_cells(surface.points[used], facets, surface.markers[chosen])
+
+
+def enclosed(surface: Mesh) -> float:
+    """What a closed surface encloses, Σ det(x_1, …, x_d) / d!, > 0 where its normals point out of it [length^d]."""
+    corners = surface.points[surface.facets]
+    return float(np.linalg.det(corners).sum()) / (2.0 if corners.shape[1] == 2 else 6.0)
+
+
+def _as_mesh(facets: Facets) -> Mesh:
+    """The vertices that facets use, and the facets."""
+    whole = _without_cells(facets.points, facets.vertices, facets.markers)
+    return part_of(whole, np.ones(len(facets.vertices), dtype=bool))
+
+
+def _without_cells(points: FloatArray, facets: IntArray, markers: IntArray) -> Mesh:
+    d = points.shape[1]
+    return Mesh(points, np.empty((0, d + 1), dtype=np.int64), facets.astype(np.int64), markers.astype(np.int64))
+
+
+def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
+    """Facets of a body that has a CAD shape, in its own frame, no edge longer than size_body."""
+    asked = sizes.size_body
+    for _ in range(ATTEMPTS):
+        shape = body.cad_shape()
+        for side in sides(shape, body.dimension):
+            side.name = "0"
+        netgen = netgen_mesh(shape, body.dimension, asked, sizes.growth, surfaces_alone=True)
+        found = surfaces_of(netgen, body.dimension)
+        excess = float(longest_edges(found, 1)[0]) / sizes.size_body
+        if excess <= 1.0:
+            surface = _as_mesh(Facets(found.points, found.facets, found.markers))
+            return _into_fluid(replace(surface, points=body.closest_point(surface.points)), [body])
+        asked *= 0.95 / excess
+    edge = f"a facet of length {excess * sizes.size_body:.4g}"
+    raise MeshError(f"body.{number}", edge, f"at most size_body = {sizes.size_body:g}", REMEDY)
+
+
+def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
+    """Facets of a domain that has a CAD shape; markers are the numbers of its pieces."""
+    nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
+    netgen = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
+    found = surfaces_of(netgen, domain.dimension)
+    surface = put_back(_as_mesh(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
+    return _into_fluid(surface, [piece.shape for piece in domain.pieces])
+
+
+def _into_fluid(surface: Mesh, shapes: Sequence[Surface]) -> Mesh:
+    """The same facets, with the normals of the shapes that they are on: Netgen's may point to either side."""
+    normals, middles = area_vectors(surface.points, surface.facets), surface.points[surface.facets].mean(axis=1)
+    along = np.empty(len(normals))
+    for number, shape in enumerate(shapes):
+        mine = surface.markers == number
+        along[mine] = np.sum(normals[mine] * shape.normal(middles[mine]), axis=1)
+    return replace(surface, facets=np.where(along[:, None] > 0.0, surface.facets, surface.facets[:, ::-1]))
+
+
+def _joined(parts: Sequence[Mesh]) -> Mesh:
+    first = np.cumsum([0, *(len(part.points) for part in parts)])
+    return _without_cells(
+        np.concatenate([part.points for part in parts]),
+        np.concatenate([part.facets + start for part, start in zip(parts, first[:-1], strict=True)]),
+        np.concatenate([part.markers for part in parts]),
+    )
+
+
+def _halved(
+    surface: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes
+) -> Mesh:
+    """The surface with too long edges halved, the longest of each facet first, new vertices on the exact surface."""
+    while True:
+        edges, _ = edges_of_facets(surface, np.ones(len(surface.facets), dtype=bool))
+        start, end = surface.points[edges[:, 0]], surface.points[edges[:, 1]]
+        length = np.linalg.norm(end - start, axis=1)
+        long = length > LONGEST * wanted_size(0.5 * (start + end), bodies, pose, walls, sizes)
+        if not long.any():
+            return surface
+        edges, length = edges[long], length[long]
+        edges = edges[one_per_cell(surface.facets, edges, length, len(surface.points))]
+        surface = bisect(surface, edges, _middles(surface, edges, bodies, pose, domain))
+
+
+def _middles(surface: Mesh, edges: IntArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
+    """Points (E, d) of the exact surface above the middles of ``edges`` (E, 2), where two meet of the flat one."""
+    middles = surface.points[edges].mean(axis=1)
+    flat = [False] * len(bodies) + [piece.shape.plane is not None for piece in domain.pieces]
+    for number in sorted(np.unique(surface.markers).tolist(), key=flat.__getitem__):
+        theirs, _ = edges_of_facets(surface, surface.markers == number)
+        mine = edge_numbers(edges, (0, 1), theirs, len(surface.points)) >= 0
+        middles[mine] = on_surface(number, middles[mine], bodies, pose, domain)
+    return np.asarray(middles)

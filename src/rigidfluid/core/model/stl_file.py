@@ -1,0 +1,66 @@
+"""Reads triangles from an STL file, as text or binary."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import SceneError
+
+_HEAD = 84
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_stl(path: Path, key: str) -> Facets:
+    """The triangles of an STL file, their corners joined where coordinates are equal; normals as the corners go round.
+
+    Parameters
+    ----------
+    path : Path
+        A binary file, which has as many bytes as its number of triangles says, or a text.
+    key : str
+        The scene's key that names the file, for messages.
+
+    Returns
+    -------
+    Facets
+        At least one.
+
+    Raises
+    ------
+    SceneError
+        If it cannot be read, or has no triangles.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise SceneError(key, f"{path}: {error.strerror}", "a readable STL file", "Check the path.") from None
+    corners = _binary(content) if _is_binary(content) else _text(content, path, key)
+    if len(corners) == 0 or not np.isfinite(corners).all():
+        raise SceneError(key, f"{path} with no triangles, or with no numbers", "a surface", "Write the file anew.")
+    points, numbers = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    return Facets(points, numbers.reshape(-1, 3).astype(np.int64), np.zeros(len(corners), dtype=np.int64))
+
+
+def _is_binary(content: bytes) -> bool:
+    if len(content) < _HEAD:
+        return False
+    count = int.from_bytes(content[_HEAD - 4 : _HEAD], "little")
+    return len(content) == _HEAD + count * _TRIANGLE.itemsize
+
+
+def _binary(content: bytes) -> FloatArray:
+    return np.frombuffer(content, dtype=_TRIANGLE, offset=_HEAD)["corners"].astype(float)
+
+
+def _text(content: bytes, path: Path, key: str) -> FloatArray:
+    rows = [line.split() for line in content.decode("ascii", errors="replace").splitlines()]
+    try:
+        vertices = np.array([row[1:] for row in rows if row and row[0] == "vertex"], dtype=float).reshape(-1, 3, 3)
+    except ValueError:
+        remedy = "Write the file anew, as text or binary."
+        raise SceneError(key, f"{path}, which is no STL file", "three vertices a facet", remedy) from None
+    return vertices

@@ -1,0 +1,284 @@
+"""Contacts of polygons and polyhedra with each other, with balls and with walls, exact and without a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.contacts import in_order
+from rigidfluid.core.model.facet_surface import FacetSurface, Nearby
+from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.detectors.facet_features import Features, features_of
+from rigidfluid.errors import SceneError
+
+SPREAD = 0.5
+"""Of a body's bounding radius: contacts of a pair that are farther than this behind the nearest are left out."""
+
+
+class Touches(NamedTuple):
+    """Where two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a, ``gap`` (m,)."""
+
+    point_a: FloatArray
+    point_b: FloatArray
+    normal: FloatArray
+    gap: FloatArray
+
+    def at(self, chosen: BoolArray) -> Touches:
+        """Those chosen."""
+        return Touches(*(each[chosen] for each in self))
+
+    def turned(self) -> Touches:
+        """The same with a and b in each other's place."""
+        return Touches(self.point_b, self.point_a, -self.normal, self.gap)
+
+
+class FacetDetector(Detector):
+    """One contact for each corner of a pair that faces the other's surface, so that a box lies on all its corners.
+
+    Of a corner at x with the nearest points p of the other surface, gap = |x - p| and normal = (x - p)/|x - p|, and in
+    space the same between edges that pass each other. A ball has a contact with each place that is nearer to its centre
+    than all around it. Overlap is the depth of the deepest corner, or that of the shallowest edge that goes through a
+    facet.
+
+    Parameters
+    ----------
+    options : PartOptions
+        None are read.
+    bodies : sequence of Body
+        Balls, and bodies of facets.
+    walls : sequence of Wall
+        Flat, round or made of facets.
+
+    Raises
+    ------
+    SceneError
+        If a body or a wall is of another shape.
+    """
+
+    name: ClassVar[str] = "facets"
+
+    def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+        super().__init__(options, bodies, walls)
+        for index, body in enumerate(bodies):
+            if body.facets is None and body.radius is None:
+                _refuse(self.name, f'body.{index} of type "{body.name}"', "balls, and bodies of facets")
+        for wall in walls:
+            if not is_known(wall.shape):
+                _refuse(self.name, f"the wall {wall.name!r}", "walls that are flat, round or of facets")
+        self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
+        self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
+        self._solids = [None if body.facets is None else _Solid(FacetSurface(body.facets)) for body in bodies]
+        self._fixed = {wall.surface: _fixed(wall.shape) for wall in walls}
+
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap), from the shapes alone."""
+        rotation = rotation_matrices(pose.orientation)
+        placed = [self._placed(i, pose.position[i], rotation[i]) for i in range(len(self.bodies))]
+        found = [_contacts(0, 0, _none(pose.position.shape[1]), 0.0, 0.0, False)]
+        for a, b in zip(*near_pairs(pose.position, self._bounds, reach), strict=True):
+            spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
+            touches = _between(placed[a], placed[b], reach, spread)
+            found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
+        for body, wall in near_walls(pose.position, self._bounds, self.walls, reach):
+            touches = _between(placed[body], self._fixed[wall.surface], reach, SPREAD * float(self._bounds[body]))
+            radii = self._radii[body], radius_of(wall.shape)
+            found.append(_contacts(body, wall.surface, touches, *radii, True))
+        return in_order(found)
+
+    def _placed(self, index: int, position: FloatArray, rotation: FloatArray) -> _Placed:
+        solid = self._solids[index]
+        return _Ball(position, self._radii[index]) if solid is None else _Facets(solid, position, rotation)
+
+
+def is_known(shape: Surface) -> bool:
+    """Whether the detector takes walls of this shape."""
+    return shape.radius is not None or isinstance(shape, FacetSurface)
+
+
+class _Solid:
+    """A surface of facets in its own frame, and what of it can touch others."""
+
+    def __init__(self, surface: FacetSurface) -> None:
+        self.surface = surface
+
+    @cached_property
+    def features(self) -> Features:
+        return features_of(self.surface)
+
+
+class _Ball(NamedTuple):
+    """A ball where it stands."""
+
+    centre: FloatArray
+    radius: float
+
+
+class _Facets(NamedTuple):
+    """A surface of facets where it stands."""
+
+    solid: _Solid
+    position: FloatArray
+    rotation: FloatArray
+
+    def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
+        found = self.solid.surface.nearby(self.local(points), reach, spread)
+        return found._replace(foot=self.lab(found.foot), normal=found.normal @ self.rotation.T)
+
+    def local(self, points: FloatArray) -> FloatArray:
+        return np.asarray((points - self.position) @ self.rotation)
+
+    def lab(self, points: FloatArray) -> FloatArray:
+        return np.asarray(self.position + points @ self.rotation.T)
+
+    @property
+    def points(self) -> FloatArray:
+        return self.lab(self.solid.surface.facets.points)
+
+
+class _Round(NamedTuple):
+    """A flat or round wall."""
+
+    shape: Surface
+
+    def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
+        distance = self.shape.signed_distance(points)
+        near = np.flatnonzero(distance <= reach)
+        return Nearby(near, self.shape.closest_point(points[near]), distance[near], self.shape.normal(points[near]))
+
+    def ball(self, beside: FloatArray) -> _Ball | None:
+        """The wall as a ball, if it bulges into the fluid; ``beside`` (d,) is any point there."""
+        radius = radius_of(self.shape)
+        if not 0 < radius < np.inf:
+            return None
+        foot, normal = self.shape.closest_point(beside[None]), self.shape.normal(beside[None])
+        return _Ball((foot - radius * normal)[0], radius)
+
+
+_Placed = _Ball | _Facets
+_Wall = _Facets | _Round
+
+
+def _fixed(shape: Surface) -> _Wall:
+    if not isinstance(shape, FacetSurface):
+        return _Round(shape)
+    dimension = shape.facets.points.shape[1]
+    return _Facets(_Solid(shape), np.zeros(dimension), np.eye(dimension))
+
+
+def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
+    """All contacts of a pair, the nearest first."""
+    if isinstance(a, _Ball):
+        parts = [_ball_touches(a, b, reach, spread)]
+    elif isinstance(b, _Ball):
+        parts = [_ball_touches(b, a, reach, spread).turned()]
+    else:
+        parts = _facet_touches(a, b, reach, spread)
+    found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    least = found.gap.min(initial=np.inf)
+    found = found.at((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
+    return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
+
+
+def _ball_touches(ball: _Ball, other: _Placed | _Wall, reach: float, spread: float) -> Touches:
+    if isinstance(other, _Ball):
+        away = ball.centre - other.centre
+        distance = float(np.linalg.norm(away))
+        normal = away / distance if distance > 0 else np.eye(len(away))[0]
+        gap = distance - ball.radius - other.radius
+        points = ball.centre - ball.radius * normal, other.centre + other.radius * normal
+        return Touches(points[0][None], points[1][None], normal[None], np.array([gap]))
+    near = other.nearby(ball.centre[None], reach + ball.radius, spread)
+    return Touches(ball.centre - ball.radius * near.normal, near.foot, near.normal, near.distance - ball.radius)
+
+
+def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> list[Touches]:
+    parts = [_corner_touches(a, b, reach, spread)]
+    if isinstance(b, _Round):
+        ball = b.ball(a.position)
+        return parts if ball is None else [*parts, _ball_touches(ball, a, reach, spread).turned()]
+    parts += [_corner_touches(b, a, reach, spread).turned(), _edge_touches(a, b, reach)]
+    if all(part.gap.min(initial=np.inf) > 0 for part in parts):
+        parts.append(_pierced(a, b))
+    return parts
+
+
+def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> Touches:
+    features = a.solid.features
+    corners = a.lab(a.solid.surface.facets.points[features.corners])
+    near = b.nearby(corners, reach, spread)
+    outwards = features.corner_normals[near.point] @ a.rotation.T
+    faces = np.sum(outwards * near.normal, axis=1) < 0
+    nearest = near.distance <= near.distance.min(initial=np.inf)
+    return Touches(corners[near.point], near.foot, near.normal, near.distance).at(faces | nearest)
+
+
+def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
+    dimension = len(a.position)
+    if dimension == 2:
+        return _none(dimension)
+    from rigidfluid.detectors.edge_pairs import passing_edges
+
+    edges_a, edges_b = a.solid.features, b.solid.features
+    first, second, point_a, point_b = passing_edges(a.points, edges_a.edges, b.points, edges_b.edges, reach)
+    away = point_a - point_b
+    gap = np.linalg.norm(away, axis=1)
+    normal = away / gap[:, None]
+    towards_b = np.sum(edges_a.edge_normals[first] @ a.rotation.T * normal, axis=1) < 0
+    towards_a = np.sum(edges_b.edge_normals[second] @ b.rotation.T * normal, axis=1) > 0
+    return Touches(point_a, point_b, normal, gap).at(towards_a & towards_b)
+
+
+def _pierced(a: _Facets, b: _Facets) -> Touches:
+    """The shallowest edge that goes through a facet, if any does, by its deeper end."""
+    found = [_through(a, b), _through(b, a).turned()]
+    both = Touches(*(np.concatenate(each) for each in zip(*found, strict=True)))
+    return both.at(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
+
+
+def _through(a: _Facets, b: _Facets) -> Touches:
+    """Edges of a through facets of b."""
+    from rigidfluid.core.model.crossings import crossings
+
+    facets, inside = b.solid.surface.facets, b.local(a.points)
+    lower, upper = b.solid.surface.bounds
+    if np.any(inside.max(axis=0) < lower) or np.any(inside.min(axis=0) > upper):
+        return _none(len(lower))
+    points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
+    met = crossings(points, edges, facets.vertices, b.solid.surface.tree)
+    normal = b.solid.surface.facet_normals[met[:, 1]]
+    ends = points[edges[met[:, 0]]]
+    heights = np.einsum("mej,mj->me", ends - points[facets.vertices[met[:, 1], :1]], normal)
+    deeper = np.argmin(heights, axis=1)
+    rows = np.arange(len(met))
+    gap, end = np.minimum(heights[rows, deeper], 0.0), ends[rows, deeper]
+    return Touches(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
+
+
+def _none(dimension: int) -> Touches:
+    vectors = np.empty((0, dimension))
+    return Touches(vectors, vectors, vectors, np.empty(0))
+
+
+def _contacts(a: int, b: int, touches: Touches, radius_a: float, radius_b: float, at_wall: bool) -> Contacts:
+    count = len(touches.gap)
+    return Contacts(
+        body_a=np.full(count, a),
+        body_b=np.full(count, b),
+        **touches._asdict(),
+        radius_a=np.full(count, radius_a, dtype=float),
+        radius_b=np.full(count, radius_b, dtype=float),
+        at_wall=np.full(count, at_wall),
+    )
+
+
+def _refuse(detector: str, found: str, allowed: str) -> None:
+    remedy = 'Use detector = "auto", which takes one for these shapes.'
+    raise SceneError("contact.detector", f'"{detector}" with {found}', allowed, remedy)

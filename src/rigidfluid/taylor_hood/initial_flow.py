@@ -1,0 +1,114 @@
+"""Fluid that is in motion when a run starts: by a formula, or as a steady flow past bodies that keep their twists."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twist
+from rigidfluid.errors import SceneError, StepRejected
+from rigidfluid.taylor_hood.advance import centred
+from rigidfluid.taylor_hood.boundary import pressure_load
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
+from rigidfluid.taylor_hood.discretisation import Discretisation
+from rigidfluid.taylor_hood.state import at_rest
+from rigidfluid.taylor_hood.transfer import project
+
+STEADY, MOST_ITERATIONS = 1e-8, 200
+"""A flow is steady when an iteration changes it by so little, relative in L²; so many are tried."""
+
+
+def formula_flow(
+    target: Discretisation,
+    tolerance: float,
+    mesh: Mesh,
+    pose: Pose,
+    twist: Twist,
+    velocity: Callable[[float, FloatArray], FloatArray],
+) -> FluidState:
+    """The flow without divergence that is nearest to ``velocity`` (time, points) at time 0, as bodies and boundary have
+    it there."""
+    surfaces, state = target.surfaces, dict(at_rest(target.surfaces, mesh, pose, twist))
+    node_points = target.numbering.node_points(mesh.geometry)
+    with surfaces.ranks.raise_on_all():
+        wanted = velocity(0.0, node_points)
+    wanted += surfaces.held_part(_given(target, node_points, state) - wanted)
+    state["velocity"] = state["velocity_previous"] = project(target, tolerance, wanted, mesh.geometry, pose.position)
+    return state
+
+
+def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
+    """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow:
+
+    ρ((uᵏ·∇)uᵏ⁺¹ + ½(∇·uᵏ)uᵏ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) - (p, ∇·v) = (f, v), (∇·uᵏ⁺¹, q) = 0, with the values at time 0.
+
+    Raises
+    ------
+    SceneError
+        Where that does not converge, with the Reynolds number.
+    """
+    problem, numbering = target.problem, target.numbering
+    state = dict(at_rest(target.surfaces, mesh, pose, twist))
+    node_points = numbering.node_points(mesh.geometry)
+    load, bodies = pressure_load(target.surfaces, node_points, 0.0), np.zeros_like(state["twist"])
+    if problem.source is not None:
+        load += target.mass_times(mesh.geometry, problem.source(0.0, node_points))
+    still = np.zeros_like(node_points)
+    matrix = CoupledMatrix(
+        points=mesh.geometry,
+        node_points=node_points,
+        inertia=0.0,
+        viscosity=problem.dynamic_viscosity,
+        advection=still,
+        flow=still,
+        position=pose.position,
+        mass_matrix=np.zeros((*bodies.shape, bodies.shape[1])),
+        controlled=np.ones(len(bodies), dtype=bool),
+    )
+    given = _given(target, node_points, state)
+    system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies)
+    change = np.inf
+    for _ in range(MOST_ITERATIONS):
+        try:
+            solution = target.solve(system, tolerance)
+        except StepRejected as error:
+            raise _not_steady(target, node_points, system.velocity, str(error)) from None
+        change = _relative(target, mesh.geometry, solution.velocity - system.velocity, solution.velocity)
+        flow = problem.inert_density * solution.velocity
+        matrix = replace(matrix, advection=flow, flow=flow)
+        system = replace(system, matrix=matrix, velocity=solution.velocity, pressure=solution.pressure, again=True)
+        if change < STEADY or problem.inert_density == 0.0:
+            break
+    else:
+        raise _not_steady(target, node_points, system.velocity, f"changes of {change:.1g} in the last iteration")
+    state["velocity"] = state["velocity_previous"] = system.velocity
+    state["pressure"] = state["pressure_previous"] = centred(target, mesh.geometry, system.pressure)
+    return state
+
+
+def _given(target: Discretisation, node_points: FloatArray, state: FluidState) -> FloatArray:
+    """What is prescribed at time 0, with all bodies as they move then, (nodes, d)."""
+    twist = state["twist"]
+    every = np.ones(len(twist), dtype=bool)
+    return target.surfaces.prescribed(0.0, node_points, state["position"], twist, every)
+
+
+def _relative(target: Discretisation, points: FloatArray, change: FloatArray, velocity: FloatArray) -> float:
+    squares = [np.sum(field * target.mass_times(points, field)) for field in (change, velocity)]
+    of_change, of_all = target.surfaces.ranks.sum(np.array(squares))
+    return float(np.sqrt(of_change / of_all)) if of_all > 0.0 else 0.0
+
+
+def _not_steady(target: Discretisation, node_points: FloatArray, velocity: FloatArray, found: str) -> SceneError:
+    ranks, problem = target.surfaces.ranks, target.problem
+    side = float(np.min(ranks.greatest(node_points.max(axis=0)) - ranks.min(node_points.min(axis=0))))
+    speed = float(ranks.greatest(np.linalg.norm(velocity, axis=1).max()))
+    reynolds = problem.density * speed * side / problem.dynamic_viscosity
+    return SceneError(
+        "fluid.initial",
+        f"'steady' with {found}, at a Reynolds number of {reynolds:.3g} of the domain's shortest side",
+        "a flow that is steady at its Reynolds number",
+        "Start with initial = 'rest' and a ramp on the inflow, or with expressions.",
+    )

@@ -1,0 +1,106 @@
+"""Polygons and polyhedra: masses against closed forms, and what is refused."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from facet_shapes import CUBE, TRIANGLES, binary_stl, polygon, polyhedron
+
+from rigidfluid.bodies.polygon import Polygon, PolygonOptions
+from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
+from rigidfluid.core.mechanics.added_mass import added_mass
+from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.errors import SceneError
+
+
+def test_an_l_has_the_moments_of_its_two_rectangles() -> None:
+    found = polygon([(9.0, 5.0), (11.0, 5.0), (11.0, 5.5), (9.5, 5.5), (9.5, 7.0), (9.0, 7.0)])
+    areas, centres = np.array([1.0, 0.75]), np.array([[10.0, 5.25], [9.25, 6.25]])
+    centre = areas @ centres / 1.75
+    own = areas * np.array([2.0**2 + 0.5**2, 0.5**2 + 1.5**2]) / 12.0
+    moved = areas * np.sum((centres - centre) ** 2, axis=1)
+    assert found.volume == pytest.approx(1.75, rel=1e-14)
+    assert found.unit_inertia[0, 0] == pytest.approx((own + moved).sum() / 1.75, rel=1e-13)
+    np.testing.assert_allclose(found.facets.points[0] + centre, [9.0, 5.0], rtol=1e-14)
+    assert found.bounding_radius == pytest.approx(max(np.hypot(*([11.0, 5.0] - centre)), np.hypot(*([9, 7] - centre))))
+
+
+def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) -> None:
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    cube = polyhedron(binary_stl(tmp_path / "cube.stl", CUBE @ turn + 4.0, TRIANGLES), scale=0.5)
+    assert cube.volume == pytest.approx(1 / 8, rel=1e-6)  # the file has single precision
+    np.testing.assert_allclose(cube.unit_inertia, 0.25 * np.eye(3) / 6, atol=1e-7)
+
+
+def test_added_mass_and_leverage_of_a_thin_bar_follow_its_length() -> None:
+    bar = polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 0.04), (0.0, 0.04)])
+    along, across = np.diag(added_mass(bar))
+    assert across == pytest.approx(pi * 2.0**2, rel=0.3)  # of a plate, πl²/4
+    assert along < 0.1 * bar.volume
+    assert most_leverage(bar) == pytest.approx(3.0, rel=1e-3)
+
+
+def test_a_turned_bar_has_the_same_added_mass_turned() -> None:
+    bar = [(0.0, 0.0), (2.0, 0.0), (2.0, 0.3), (0.0, 0.3)]
+    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    turned = polygon(np.array(bar) @ turn.T)
+    np.testing.assert_allclose(added_mass(turned), turn @ added_mass(polygon(bar)) @ turn.T, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("corners", "words"),
+    [
+        ([(0, 0), (1, 1), (1, 0), (0, 1)], "crosses itself"),
+        ([(0, 0), (2, 0), (2, 1), (1, 0), (0, 1)], "crosses itself"),  # a corner on an edge
+        ([(0, 0), (1, 0), (1, 0), (0, 1)], "corners 1 and 2 at the same place"),
+        ([(0, 0), (1, 0), (1, 1), (0, 0)], "corners 3 and 0 at the same place"),
+        ([(0, 0), (1, 0), (2, 0)], "straight back"),
+        ([(0, 0), (2, 0), (1, 0), (1, 1)], "straight back"),
+        ([(0, 0), (1, 0), (2, 1e-10)], "straight back"),
+    ],
+)
+def test_lines_that_are_no_polygon_are_refused(corners: Any, words: str) -> None:
+    with pytest.raises(SceneError, match=rf"body\.points: found .*{words}"):
+        polygon(corners)
+
+
+def test_dimensions_are_refused_by_name() -> None:
+    with pytest.raises(SceneError, match=r'body\.type: found "polygon" in 3D'):
+        Polygon(PolygonOptions(points=[[0, 0], [1, 0], [0, 1]]), 3)
+    with pytest.raises(SceneError, match=r'body\.type: found "stl" in 2D'):
+        Polyhedron(PolyhedronOptions(file="any.stl"), 2)
+
+
+@pytest.mark.parametrize(
+    ("triangles", "words"),
+    [
+        (TRIANGLES[1:], "an open surface, 3 edges"),
+        ([TRIANGLES[0][::-1], *TRIANGLES[1:]], "3 edges that triangles go along in one sense"),
+        ([*TRIANGLES, [0, 1, 1]], "1 triangles of no area"),
+        ([*TRIANGLES, *((np.array(TRIANGLES) + 8).tolist())], "a surface in 2 pieces"),
+    ],
+)
+def test_surfaces_that_enclose_no_body_are_refused(triangles: Any, words: str, tmp_path: Path) -> None:
+    path = binary_stl(tmp_path / "cube.stl", np.concatenate([CUBE, CUBE + 5.0]), triangles)
+    with pytest.raises(SceneError, match=rf"body\.file: found {words}"):
+        polyhedron(path)
+
+
+def test_a_polyhedron_that_goes_through_itself_is_refused(tmp_path: Path) -> None:
+    pushed = CUBE.copy()
+    pushed[7] = [-0.5, -0.5, 0.5]  # out through the opposite side
+    with pytest.raises(SceneError, match=r"body\.file: found a surface that crosses itself"):
+        polyhedron(binary_stl(tmp_path / "cube.stl", pushed, TRIANGLES))
+
+
+@pytest.mark.parametrize("content", [b"", b"solid\nendsolid\n", b"solid\nvertex 0 0\n", b"\x00" * 200])
+def test_files_without_triangles_are_refused(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "cube.stl").write_bytes(content)
+    with pytest.raises(SceneError, match=r"body\.file: found .*cube\.stl"):
+        polyhedron(tmp_path / "cube.stl")
+    with pytest.raises(SceneError, match=r"missing\.stl: No such file"):
+        polyhedron(tmp_path / "missing.stl")
