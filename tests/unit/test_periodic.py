@@ -87,6 +87,16 @@ def test_in_a_box_that_is_periodic_all_around_a_drop_accelerates_all_alike() -> 
     assert abs(history.energy["residual"][-1]) < 1e-4 * history.energy["boundary"][-1]
 
 
+def test_a_run_starts_with_the_steady_flow_that_the_drop_drives() -> None:
+    """Poiseuille flow past a ball that is held: what the drop gives is dissipated from the start on."""
+    held = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [0.6, 0.6], "fixed": True}
+    fluid = {"density": 1.0, "viscosity": 0.5, "initial": "steady"}
+    history = run(channel(body=[held], fluid=fluid, time={"end": 0.08, "step": 0.04}, output={"every": 0.08}))
+    power, lost = (np.diff(history.energy[name]) for name in ("boundary", "dissipation"))
+    np.testing.assert_allclose(power, lost, rtol=1e-6)
+    assert power[-1] > 0.01
+
+
 def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     run(channel(), tmp_path / "whole")
     run(channel(time={"end": 0.4, "step": 0.04}), tmp_path / "parts")
