@@ -112,6 +112,9 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
     if table.on not in allowed:
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+    if table.pressure_drop is not None and table.type != "periodic":
+        found = f"it on a {table.type!r} surface"
+        raise SceneError(f"{at}.pressure_drop", found, "it with type = 'periodic'", "Leave it out.")
     for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
         given = getattr(table, key) is not None
         if given and table.type not in types:
