@@ -358,12 +358,12 @@ def window() -> None:
     figure = Figure(figsize=(8.0, 4.2), layout="constrained")
     speed, off = figure.subplots(1, 2)
     speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
-    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [1]", yscale="log", ylim=(1e-7, 1e-1))
     for ends, history in runs.items():
         bodies = history.bodies
         label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
         speed.plot(bodies["time"], -bodies["vy"], style, label=label)
-        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+        off.plot(bodies["time"], np.abs(off_the_whole(history, whole)), style)
     speed.legend()
     figure.savefig(OUT / "window.png", dpi=120)
     head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
@@ -373,7 +373,7 @@ def window() -> None:
     write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
 
 
-WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOWS = (None, (2.0, 3.0), (1.0, 3.0), (4.0, 3.0), (2.0, 1.5), (2.0, 6.0), (4.0, 6.0))
 WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
 20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
 meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
@@ -382,8 +382,8 @@ run.
 
 {figures}
 
-Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
-less."""
+Ahead the fluid is held at rest, which the disk feels: half a channel's width from it by more than a per cent, two
+widths from it no more. Behind the wake leaves through the open end. The energy that it takes along is in the balance."""
 
 
 def in_window(ends: tuple[float, float] | None) -> History:
