@@ -39,6 +39,7 @@ OUT = ROOT / "docs" / "validation"
 sys.path.append(str(ROOT / "tests" / "support"))
 
 import adaptive_step as adaptive  # noqa: E402
+import curved_channels  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
@@ -350,6 +351,83 @@ The step is .01 at density 1.5 and .0025 at density 3. With .005 at density 3, t
 unaccounted for."""
 
 
+def window() -> None:
+    """A disk falls through a long channel, all of it meshed and in windows of several lengths."""
+    runs = {ends: in_window(ends) for ends in WINDOWS}
+    whole = runs[None]
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
+    speed, off = figure.subplots(1, 2)
+    speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    for ends, history in runs.items():
+        bodies = history.bodies
+        label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
+        speed.plot(bodies["time"], -bodies["vy"], style, label=label)
+        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+    speed.legend()
+    figure.savefig(OUT / "window.png", dpi=120)
+    head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
+    ways = [("whole channel", "") if ends is None else tuple(f"{end:g}" for end in ends) for ends in runs]
+    rows = [(*way, *window_figures(run, whole).values()) for way, run in zip(ways, runs.values(), strict=True)]
+    text = WINDOW.format(figures=table(head, rows))
+    write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
+
+
+WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
+20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
+meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
+difference of the speeds is over the final one. CPU times, of one thread, are over that of the whole channel in the same
+run.
+
+{figures}
+
+Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
+less."""
+
+
+def in_window(ends: tuple[float, float] | None) -> History:
+    """The fall with so much ahead and behind in the window, or in the whole channel; with its CPU time."""
+    tables = rigidfluid.load_scene(ROOT / "scenes" / "falling_disk_window.toml").to_dict()
+    if ends is None:
+        del tables["domain"]["window"]
+    else:
+        tables["domain"]["window"] |= {"ahead": ends[0], "behind": ends[1]}
+    start = time.process_time()
+    history = rigidfluid.run(rigidfluid.scene_from_dict(tables))
+    history.summary["cpu"] = time.process_time() - start
+    return history
+
+
+def off_the_whole(history: History, whole: History) -> np.ndarray:
+    """Speed less that in the whole channel, over its final speed, at each step [1]."""
+    found, expected = history.bodies, whole.bodies
+    return (expected["vy"] - found["vy"]) / final_speed(whole)
+
+
+def final_speed(history: History) -> float:
+    """Mean of the last tenth of a second."""
+    bodies = history.bodies
+    return float(-np.mean(bodies["vy"][bodies["time"] > bodies["time"][-1] - 0.1]))
+
+
+def window_figures(history: History, whole: History) -> dict[str, str]:
+    """What the page tells of one run."""
+    summary, speed = history.summary, final_speed(history)
+    energy, put = history.energy, summary["energy"]["put_in"]
+    return {
+        "final speed [cm/s]": f"{speed:.4f}",
+        "off the whole channel's": f"{speed / final_speed(whole) - 1:+.3%}",
+        "off it at any time": f"{np.abs(off_the_whole(history, whole)).max():.3%}",
+        "unknowns": f"{summary['unknowns']} ({summary['unknowns'] / whole.summary['unknowns']:.0%})",
+        "CPU": f"{summary['cpu'] / whole.summary['cpu']:.0%}",
+        "meshes": f"{1 + summary['remeshes']}",
+        "energy out through the ends, of all put in": f"{-energy['boundary'][-1] / put:.2%}",
+        "residual, lowest … highest": f"{energy['residual'].min() / put:.1e} … {energy['residual'].max() / put:.1e}",
+        "created, lost": "{created:.1e}, {lost:.1e}".format(**summary["energy"]),
+    }
+
+
 def lammps() -> None:
     """200 spheres in a box here and in LAMMPS: until chaos parts them, and in the mean."""
     start = time.perf_counter()
@@ -464,6 +542,54 @@ def tries(case: str, stepping: str, steps: tuple[float, ...]) -> Iterable[tuple[
         created, lost, first = created_and_lost(history)
         shares = (f"{100.0 * share:.2f}" for share in (created, lost, friction, first))
         yield case, stepping, f"{step:g}", *shares, CONTACT_CASES[case][1](history).replace("|", "\\|")
+
+
+def walls() -> None:
+    """Flows along curved walls and through oblique ends against their exact solutions."""
+    layers = (2, 4, 8, 16)
+    bends = [curved_channels.flow_in_bend(count) for count in layers]
+    exact = curved_channels.flux_through_bend()
+    fluxes = [abs(curved_channels.flux_of(flow) / exact - 1.0) for flow in bends]
+    speeds = [curved_channels.error_in_bend(flow) for flow in bends]
+    torques = {}
+    for name, spins in {"inner": (1.0, 0.0), "outer": (0.0, 1.0)}.items():
+        flows = [curved_channels.flow_between_cylinders(count, *spins) for count in layers]
+        expected = curved_channels.torque_between_cylinders(*spins)
+        found = [flow.advance.hydrodynamic_wrench.torque[0, 0] for flow in flows]
+        torques[name] = [abs(torque / expected - 1.0) for torque in found]
+    columns = {
+        "bend: flux": fluxes,
+        "bend: velocity": speeds,
+        **{f"cylinders, {name} turning: torque": values for name, values in torques.items()},
+    }
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    axes = figure.add_subplot(xlabel="layers of cells", ylabel="relative error", xscale="log", yscale="log")
+    for (name, values), style in zip(columns.items(), ("o-", "s-", "x-", "+--"), strict=True):
+        axes.plot(layers, values, style, label=name)
+    axes.plot(layers, [2.0 * count**-3.0 for count in layers], "k:", label="order 3")
+    axes.legend(fontsize=8)
+    figure.savefig(OUT / "walls.png", dpi=120)
+    rows = [
+        (
+            str(count),
+            *(f"{values[i]:.1e} ({order(values, i)})" if i else f"{values[i]:.1e}" for values in columns.values()),
+        )
+        for i, count in enumerate(layers)
+    ]
+    text = (
+        "Stokes flow in 2D between circles of radius 0.5 and 1, cells curved along them, from coarse to fine. The bend "
+        "turns through 2 rad, with a pressure on its two ends, which lie across no axis; errors of its flux and its "
+        "velocity (root mean square over its own) against u(r) = (G/2μ)(A r + B/r - r ln r). Between cylinders the "
+        "disk inside turns, or the wall outside (`angular_velocity` of a `wall`); error of the torque on the "
+        "disk against 4πμ(Ω₂ - Ω₁)R₁²R₂²/(R₂² - R₁²). In brackets the order of convergence.\n\n"
+    )
+    text += table(("layers", *columns), rows)
+    write_page("walls", "Curved walls and oblique ends", "python docs/make_validation.py walls", text)
+
+
+def order(errors: list[float], i: int) -> str:
+    """Of convergence by the last halving before the error of number ``i``."""
+    return f"{np.log2(errors[i - 1] / errors[i]):.1f}"
 
 
 def studied(name: str, plot: str = "") -> Results:
@@ -782,6 +908,7 @@ CASES = {
     "dfg_cylinder": dfg_cylinder,
     "dfg_unsteady": dfg_unsteady,
     "settling_cylinder": settling_cylinder,
+    "window": window,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
     "lammps": lammps,
@@ -789,6 +916,7 @@ CASES = {
     "contacts_in_fluid": contacts_in_fluid,
     "stability": stability,
     "backends_study": backends_study,
+    "walls": walls,
 }
 
 

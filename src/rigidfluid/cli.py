@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rigidfluid.evaluation.comparison.compare import CompareProgress
     from rigidfluid.evaluation.comparison.comparison import Comparison as BackendComparison
     from rigidfluid.evaluation.crosscheck import Comparison
+    from rigidfluid.evaluation.insertion.figures import Figures as InsertionFigures
     from rigidfluid.evaluation.studies.results import Results
     from rigidfluid.evaluation.studies.run import StudyProgress
 
@@ -48,6 +49,9 @@ Assignments = Annotated[
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
 CompareFolder = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_compare.")
+]
+MeshFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_mesh.")
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -125,6 +129,19 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
         _print_findings(report)
     if report.count("error"):
         raise typer.Exit(FOUND_ERRORS)
+
+
+@app.command()
+def insert(scene: SceneFile, assignments: Assignments = None, out: MeshFolder = None) -> None:
+    """Make a scene's first mesh, write it for other programs, and say how well the bodies came into it."""
+    with _reported():
+        from rigidfluid.core.setup.load import load_scene
+        from rigidfluid.evaluation.insertion import insert as make_mesh
+
+        loaded = load_scene(scene, assignments or ())
+        figures, written = make_mesh(loaded, out, lambda phase: _print_aside(f"{loaded.name}: {phase}"))
+        _print_insertion(figures)
+        _print(f"wrote to {written[0].parent}: {', '.join(path.name for path in written)}")
 
 
 @app.command()
@@ -347,6 +364,20 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
             bar.update(task, total=total, completed=done, now=text)
 
         yield show
+
+
+def _print_insertion(figures: InsertionFigures) -> None:
+    table = Table("surface", "shape", "facets", "given vertices kept", "vertices off", "middles off", box=SIMPLE_HEAD)
+    for row in figures.surfaces[:MOST_BODIES]:
+        kept = "" if row.given_corners is None else f"{row.kept_corners} of {row.given_corners}"
+        off = f"{row.vertices_off:.1e}", f"{row.middles_off:.1e}"
+        table.add_row(Text(row.name), row.kind, str(row.facets), kept, *off)
+    _console().print(table)
+    if len(figures.surfaces) > MOST_BODIES:
+        _print(f"and {len(figures.surfaces) - MOST_BODIES} more surfaces, in the report")
+    seconds = ", ".join(f"{phase} {_figure(value)} s" for phase, value in figures.seconds.items())
+    _print(f"{figures.cells} cells, {figures.vertices} vertices, worst quality {_figure(figures.worst_quality)}")
+    _print(f"volume of the fluid: {figures.volume:.8g} of {figures.exact_volume:.8g}; {seconds}")
 
 
 def _print_study(results: Results) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from dish import dish
+from drawn import bent_tube, drawn, plate
 from wedge import wedge
 
 from rigidfluid.core.model.domain import Piece
@@ -59,6 +60,22 @@ class TestStenosis(DomainContract):
     @pytest.fixture(params=[{}, {"throat": 0.6}, {"throat": 0.2}], ids=["half disks", "flatter", "rounder"])
     def domain(self, request):
         return Stenosis(StenosisOptions(length=4.0, width=1.0, radius=0.3, **request.param), 2)
+
+
+class TestBentTubeFromStep(DomainContract):
+    coarse = 0.07
+
+    @pytest.fixture
+    def domain(self, tmp_path):
+        return drawn(bent_tube(), tmp_path)
+
+
+class TestPlateFromStep(DomainContract):
+    coarse = 0.03
+
+    @pytest.fixture
+    def domain(self, tmp_path):
+        return drawn(plate(), tmp_path, 2)
 
 
 class TestDish(DomainContract):

@@ -77,6 +77,15 @@ def flux_of(flow: Flow, panels: int = 400) -> float:
     return float((OUTER - INNER) * np.tile(0.5 * weight / panels, panels) @ (velocity @ along))
 
 
+def error_in_bend(flow: Flow) -> float:
+    """Root mean square of the velocity's error at random points of the bend, over that of the velocity."""
+    share = np.random.default_rng(0).uniform(size=(200, 2))
+    radius, turn = INNER + (OUTER - INNER) * share[:, 0], ANGLE * share[:, 1]
+    velocity, _ = flow.probe(_at(radius, turn))
+    exact = speed_in_bend(radius)[:, None] * _at(np.ones(len(turn)), turn + 0.5 * np.pi)
+    return float(np.linalg.norm(velocity - exact) / np.linalg.norm(exact))
+
+
 def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
     """Steady Stokes flow round a disk that turns with the angular velocity ``inner`` in a round wall that turns with
     ``outer``."""

@@ -17,7 +17,7 @@ from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.boundary_samples import quadrature
 from rigidfluid.core.setup.boundary_values import BoundaryPressure
 from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.expressions import Expression
+from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
@@ -304,3 +304,14 @@ def test_a_run_taken_up_again_has_the_same_inflow_to_the_last_bit(tmp_path: Path
     rigidfluid.run(whole, tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> None:
+    """Where the shape of a surface is not known beforehand, it shows in the first step."""
+    along = [VectorExpression.of([source, 0.0], "u") for source in ("1 + t", "1 - t")]
+    values = dict(zip(("x0", "x1"), along, strict=True))
+    posed = problem(2, dict.fromkeys(values, "velocity"), values)
+    flow = Flow.start(ScikitFem(ScikitFem.Options(), posed), box(2, 4), nobody(2))
+    flow = flow.after(0.01)
+    with pytest.raises(SceneError, match=r"boundary: found a net inflow of 0\.\d* at time 0\.31.*Balance"):
+        flow.after(0.3)

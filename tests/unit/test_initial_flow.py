@@ -116,3 +116,13 @@ def test_the_energy_of_a_formula_is_that_at_the_start() -> None:
 def test_what_cannot_be_is_refused(changes: dict[str, Any], found: str) -> None:
     with pytest.raises(SceneError, match=found):
         run({"fluid": changes})
+
+
+def test_a_formula_on_slip_faces_passes_none_of_them() -> None:
+    history = run(
+        {"fluid": {"initial": ["1", "y"]}, "output": {"every": 0.5, "probes": [[0.5, 1.0], [0.0, 0.5]]}},
+        boundary=[{"on": "all", "type": "slip"}],
+    )
+    top, left = (history.probes[name][probe] for name, probe in (("vy", 0), ("vx", 1)))
+    assert abs(top) < 1e-12
+    assert abs(left) < 1e-12

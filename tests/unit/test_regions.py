@@ -5,11 +5,15 @@ from falling import falling_disk
 from mesh_tools import ball, box, box_walls, upright
 
 from rigidfluid.checks import check
-from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, Wake
+from rigidfluid.core.mesh.refine_surface import LONGEST
+from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, Wake, curved_walls
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
+from rigidfluid.reports.plane import distance_grid
 
 POINTS = np.random.default_rng(0).uniform(-3.0, 3.0, (400, 2))
 BOX = RefinedBox(np.array([-1.0, 0.0]), np.array([1.0, 2.0]), 0.05)
@@ -86,3 +90,36 @@ def test_the_check_says_whether_a_scene_has_boxes_wakes_and_meshes_made_by_age()
         told = {feature.name: feature for feature in check(falling_disk(mesh=mesh)).features}
         assert [told[name].on for name in names] == [on] * 3
     assert told["boxes of finer cells"].why == "[[mesh.refine]] names none"
+
+
+def stenosis(length=32.0):
+    return Stenosis(StenosisOptions(length=length, width=8.0, radius=3.125), 2)
+
+
+def test_curved_walls_ask_for_a_quarter_of_their_radius():
+    first, second = curved_walls(stenosis(), size=1.0, size_wall=None)
+    assert first.size == second.size == 3.125 / 4
+    np.testing.assert_allclose(first.distance(np.array([[0.0, 0.0], [0.0, -1.0]])), [0.875, 0.125], atol=1e-15)
+    assert curved_walls(stenosis(), size=0.7, size_wall=None) == ()
+
+
+def test_the_size_of_curved_walls_may_be_given():
+    assert [wall.size for wall in curved_walls(stenosis(), size=1.0, size_wall=0.2)] == [0.2, 0.2]
+    assert curved_walls(box([0, 0], [1, 1]), size=1.0, size_wall=0.1) == ()
+
+
+def test_curved_walls_are_as_fine_as_they_ask_for():
+    body, pose, domain = ball(0.5), upright([-8.0, 0.0]), stenosis()
+    sizes = Sizes(1.0, 0.3, regions=curved_walls(domain, 1.0, 0.25))
+    mesh = initial_mesh([body], pose, domain, surfaces_of(domain, 1), sizes)
+    ends = mesh.points[mesh.facets[mesh.markers >= 5]]
+    assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max() <= LONGEST * 0.25
+
+
+def test_the_outline_of_a_stenosis_has_its_bumps():
+    x, y, distance = distance_grid(stenosis())
+    i, j = np.argmin(np.abs(x)), np.argmin(np.abs(y + 2.0))
+    np.testing.assert_allclose(distance[j, i], np.hypot(x[i], y[j] + 4.0) - 3.125, rtol=1e-14)
+    assert distance[np.argmin(np.abs(y)), i] > 0.8
+    assert (distance[[0, -1]] < 0).all()
+    assert (distance[:, [0, -1]] < 0).all()

@@ -200,6 +200,7 @@ BAD = {
         "Remove",
     ),
     "shortest too long": ({"time.shortest": 0.1}, "time.shortest: found 0.1", "time.step = 0.001", "Shorten"),
+    "wall coarser than mesh": ({"mesh.size_wall": 0.2}, "mesh.size_wall: found 0.2", "mesh.size = 0.15", "Refine it"),
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
     "mesh made anew too often": (
         {"mesh.remesh_every": 1e-4},

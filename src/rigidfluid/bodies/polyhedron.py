@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.facet_body import FacetBody
-from rigidfluid.bodies.stl_file import read_stl
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.stl_file import read_stl
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
 

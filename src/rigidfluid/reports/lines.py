@@ -11,6 +11,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
+from rigidfluid.reports.plane import distance_grid
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels
 
@@ -127,9 +128,13 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
 
 
 def _draw_paths(axes: Axes, results: Results, position: FloatArray) -> None:
-    """The paths in the box around the domain, seen along the last axis: in 3D their x and y."""
-    lower, upper = (corner[:2] for corner in results.system.domain.extent)
-    axes.add_patch(Rectangle((lower[0], lower[1]), *(upper - lower), fill=False, color=BLACK, linewidth=0.8))
+    """The paths in the domain, in 3D in the box around it, seen along the last axis: their x and y."""
+    domain = results.system.domain
+    if domain.dimension == 2:
+        axes.contour(*distance_grid(domain), levels=[0.0], colors=BLACK, linewidths=0.8)
+    else:
+        lower, upper = (corner[:2] for corner in domain.extent)
+        axes.add_patch(Rectangle((lower[0], lower[1]), *(upper - lower), fill=False, color=BLACK, linewidth=0.8))
     many = len(results.names) > MOST_LINES
     for i in range(len(results.names)):
         colour = BLUE if many else PALETTE[i]

@@ -1,4 +1,4 @@
-"""What a picture of a 2D field asks of its mesh: finer triangles, the outline of a body, its narrowest gap."""
+"""What a picture of a 2D field asks of its mesh and domain: finer triangles, outlines, the narrowest gap of a body."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import BoolArray, Fields, FloatArray, IntArray
+
+OUTLINE = 400
+"""Points along the longer side of the grid in which a domain's outline is found."""
 
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 
@@ -58,3 +62,14 @@ def fine_triangles(fields: Fields) -> Triangulation:
 def corner_triangles(fields: Fields) -> Triangulation:
     """The cells themselves."""
     return Triangulation(fields.points[:, 0], fields.points[:, 1], fields.cells[:, :3])
+
+
+def distance_grid(domain: Domain) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Coordinates (X,), (Y,) of a grid a little larger than the domain, and distances (Y, X), > 0 inside [length]."""
+    margin = 2.0 * float(domain.size.max()) / OUTLINE
+    lower, upper = (corner + sign * margin for corner, sign in zip(domain.extent, (-1.0, 1.0), strict=True))
+    counts = np.maximum(OUTLINE * domain.size / domain.size.max(), OUTLINE / 4).astype(int)
+    x, y = (np.linspace(*ends) for ends in zip(lower, upper, counts, strict=True))
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    away = np.min([np.abs(piece.shape.signed_distance(points)) for piece in domain.pieces], axis=0)
+    return x, y, np.where(domain.contains(points), away, -away).reshape(len(y), len(x))

@@ -34,7 +34,7 @@ def formula_flow(
     node_points = target.numbering.node_points(mesh.geometry)
     with surfaces.ranks.raise_on_all():
         wanted = velocity(0.0, node_points)
-    wanted = np.where(surfaces.velocity_free, wanted, _given(target, node_points, state))
+    wanted += surfaces.held_part(_given(target, node_points, state) - wanted)
     state["velocity"] = state["velocity_previous"] = project(target, tolerance, wanted, mesh.geometry, pose.position)
     return state
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, final
 
 from rigidfluid.core.model.interfaces import PartOptions
@@ -29,7 +28,7 @@ class SparseBackend(TaylorHoodBackend):
         dimension, orderings = self.problem.dimension, Orderings()
         self._solver, self._inviscid_solver = (LaggedFactors(dimension, orderings) for _ in range(2))
         self._assembly: Assembly | None = None
-        self._points: FloatArray
+        self._geometry: FloatArray
 
     @abstractmethod
     def assembly(self, numbering: Numbering) -> Assembly:
@@ -41,7 +40,7 @@ class SparseBackend(TaylorHoodBackend):
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
-        self._points = mesh.points  # they say which pressure is fixed
+        self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
         solvers = self._solver, self._inviscid_solver
         return SparseDiscretisation(self.problem, self._assembly, *solvers, mesh, controlled)
 
@@ -54,7 +53,7 @@ class SparseBackend(TaylorHoodBackend):
             return {}
         controlled, discretisation = self._latest
         assert isinstance(discretisation, SparseDiscretisation)
-        return {"controlled": controlled.astype(float), "points": self._points} | discretisation.memory()
+        return {"controlled": controlled.astype(float), "geometry": self._geometry} | discretisation.memory()
 
     @final
     def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
@@ -62,7 +61,7 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory and mesh is not None:
-            discretisation = self._on(replace(mesh, points=memory["points"]), memory["controlled"].astype(bool))
+            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool))
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

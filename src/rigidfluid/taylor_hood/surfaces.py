@@ -10,9 +10,13 @@ from scipy.spatial import cKDTree
 
 from rigidfluid.core.mechanics.rigid import cross, moment
 from rigidfluid.core.model.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood.face import Face
 from rigidfluid.taylor_hood.frames import local_frames
 from rigidfluid.taylor_hood.numbering import Numbering
+
+MOST_SCALED = 0.1
+"""Of prescribed inflow and outflow, what a coarse mesh may make of those that are equal [1]."""
 
 
 class Surfaces:
@@ -81,7 +85,7 @@ class Surfaces:
             value = face.condition.value
             velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
         if self.enclosed:
-            self._balance(velocity, node_points)
+            self._balance(time, velocity, node_points)
         self.move_with_bodies(velocity, node_points, position, twist, controlled)
         return velocity
 
@@ -99,7 +103,7 @@ class Surfaces:
         nodes, body = nodes[chosen[body]], body[chosen[body]]
         velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
 
-    def _balance(self, velocity: FloatArray, node_points: FloatArray) -> None:
+    def _balance(self, time: float, velocity: FloatArray, node_points: FloatArray) -> None:
         """Scale inflow and outflow of an enclosed flow to be equal on this mesh; else a pinned vertex leaks.
 
         Quadratic elements see a prescribed flux up to their error, near the walls' corners above all.
@@ -109,6 +113,13 @@ class Surfaces:
             return
         flow = self.ranks.sum(np.array([np.sum(face.inflow(node_points, velocity)) for face in held]))
         passed = np.abs(flow).sum()
+        if abs(flow.sum()) > MOST_SCALED * passed:
+            raise SceneError(
+                "boundary",
+                f"a net inflow of {flow.sum():.6g} at time {time:g}, and {passed:.6g} in and out, without an outlet",
+                f"as much outflow as inflow, but for {MOST_SCALED:g} of both by the mesh's error",
+                "Balance the velocities, or give one surface type = 'pressure'.",
+            )
         for face, part in zip(held, flow, strict=True):
             if part != 0.0:
                 velocity[face.nodes] *= 1.0 - np.sign(part) * flow.sum() / passed

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.proximity import detect, interacting, travel
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, IntArray, Pose
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose
 from rigidfluid.errors import StepRejected
+
+SAME_PLACE = 4.0
+"""A contact is the one before if its points are no farther from those carried along than this times the way."""
 
 
 class TrackedPairs:
     """The same pairs in the same order at any pose, by a detector that needs no mesh.
+
+    Where a pair has several contacts, each is the one found nearest to its points as the bodies carry them along. One
+    that is not found there any more goes on at the points carried along, so that its force ends with the step and not
+    within it.
 
     Parameters
     ----------
@@ -41,7 +49,22 @@ class TrackedPairs:
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
         numbers = self._numbers(found)
         self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
-        return select(found, np.searchsorted(numbers, self._pairs))
+        if _all_different(self._pairs) and _all_different(numbers):
+            return select(found, np.searchsorted(numbers, self._pairs))
+        return self._matched(found, numbers, ExtrapolatedContacts(self.start, self._pose).at(pose), SAME_PLACE * moved)
+
+    def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
+        """Of each contact ``carried`` along the one ``found`` at its place."""
+        from scipy.optimize import linear_sum_assignment
+
+        both, row = joined([found, carried]), np.arange(len(carried)) + len(found)
+        for pair in np.unique(self._pairs):
+            there, here = np.flatnonzero(numbers == pair), np.flatnonzero(self._pairs == pair)
+            away = _apart(carried, here, found, there)
+            mine, theirs = linear_sum_assignment(away)
+            near = away[mine, theirs] <= far
+            row[here[mine[near]]] = there[theirs[near]]
+        return select(both, row)
 
     def _detected(self, pose: Pose, reach: float) -> Contacts:
         near = detect(self._system, pose, None, reach)
@@ -62,3 +85,15 @@ class TrackedPairs:
                 "contacts between surfaces that may meet at four times the fastest speed",
                 "Shorten the step.",
             )
+
+
+def _all_different(numbers: IntArray) -> bool:
+    return bool(np.all(numbers[1:] != numbers[:-1]))
+
+
+def _apart(first: Contacts, rows: IntArray, second: Contacts, others: IntArray) -> FloatArray:
+    """Sum of the distances of both points, of each of some contacts to each of others [length]."""
+    total = np.zeros((len(rows), len(others)))
+    for one, other in ((first.point_a, second.point_a), (first.point_b, second.point_b)):
+        total += np.linalg.norm(one[rows][:, None] - other[others][None], axis=2)
+    return total

@@ -53,6 +53,8 @@ def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Do
         middles[surface == i] = on_surface(i, straight[surface == i], bodies, pose, domain)
     length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
     bends = np.linalg.norm(middles - straight, axis=1) > FLAT * length
+    if not bends.any():
+        return mesh
     curved = replace(mesh, curved=CurvedEdges(edges[bends], surface[bends], middles[bends]))
     while curved.curved is not None:
         cells = CurvedCells(curved)

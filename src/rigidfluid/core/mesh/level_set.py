@@ -183,8 +183,10 @@ def _as_far_as_cells_allow(mesh: Mesh, target: FloatArray) -> FloatArray:
 
 
 def _refuse_chords(mesh: Mesh, bodies: Sequence[Body], pose: Pose) -> None:
-    """All vertices may be on a shape and a facet still cut through it."""
+    """All vertices may be on a shape and a facet still cut through it; of shapes with corners all facets there do."""
     for i, body in enumerate(bodies):
+        if body.facets is not None:
+            continue
         corners = mesh.points[mesh.facets[mesh.markers == i]]
         longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
         off = np.abs(distance_to_body(pose, i, body, corners.mean(axis=1))) / longest

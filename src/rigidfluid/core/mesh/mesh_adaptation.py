@@ -22,6 +22,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose, Twist
+from rigidfluid.core.model.window import CLEARANCE
 from rigidfluid.errors import MeshError, StepRejected
 
 TANGLED = 0.02
@@ -192,7 +193,7 @@ class MeshUpdater:
 
 
 def _refuse_to_leave(system: System, pose: Pose) -> None:
-    """Reject a step in which a body comes through an end of the window."""
+    """Reject a step in which a body comes near an end of the window."""
     if system.window is None:
         return
     left = system.window.left_by(pose, np.array([body.bounding_radius for body in system.bodies]))
@@ -201,7 +202,7 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
         raise StepRejected(
             f"body {system.surfaces[left]!r}",
             f"it at {pose.position[left].tolist()}, where it leaves the window",
-            f"a place between {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}, all of the body",
+            f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
         )
 

@@ -1,4 +1,5 @@
-"""Regions of finer cells away from the bodies' surfaces: boxes that stay, and the wakes of moving bodies."""
+"""Regions of finer cells away from the bodies' surfaces: boxes and curved walls, which stay, and the wakes of moving
+bodies."""
 
 from __future__ import annotations
 
@@ -8,8 +9,13 @@ from typing import Protocol
 
 import numpy as np
 
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
+
+CELLS_PER_RADIUS = 4.0
+"""So many edges are as long as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
 
 
 class Region(Protocol):
@@ -73,3 +79,42 @@ class Wake:
             for body, start, end in found
             if np.linalg.norm(end - start) > self.size
         )
+
+
+@dataclass(frozen=True, slots=True)
+class CurvedWall:
+    """The points of a ``shape`` that is part of the domain's boundary."""
+
+    shape: Surface
+    size: float
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """|signed distance|."""
+        return np.abs(self.shape.signed_distance(points))
+
+
+def curved_walls(domain: Domain, size: float, size_wall: float | None) -> tuple[CurvedWall, ...]:
+    """The curved pieces of the boundary that ask for cells finer than ``size`` [length].
+
+    Parameters
+    ----------
+    domain : Domain
+        Whose boundary.
+    size : float
+        Edge length far from all surfaces [length].
+    size_wall : float or None
+        Longest edge on curved pieces; if None, the least radius of curvature over CELLS_PER_RADIUS, where that is
+        known [length].
+
+    Returns
+    -------
+    tuple of CurvedWall
+        In the order of the pieces.
+    """
+    found = []
+    for shape in (piece.shape for piece in domain.pieces):
+        radius = np.inf if shape.least_radius is None else shape.least_radius
+        wanted = radius / CELLS_PER_RADIUS if size_wall is None or shape.plane is not None else size_wall
+        if wanted < size:
+            found.append(CurvedWall(shape, wanted))
+    return tuple(found)

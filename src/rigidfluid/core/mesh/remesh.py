@@ -81,11 +81,18 @@ def initial_mesh(
     MeshError
         When no valid mesh can be made.
     """
+    inserted = inserted_mesh(bodies, pose, domain, walls, sizes, inserter)
+    return remesh(inserted, bodies, pose, domain, walls, sizes)
+
+
+def inserted_mesh(
+    bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes, inserter: Inserter
+) -> Mesh:
+    """The first mesh before it is graded; as for `initial_mesh`."""
     way = inserter.chosen(bodies, domain)
     if way != "cad":
         insert = fill_mesh if way == "fill" else level_set_mesh
-        inserted = insert(bodies, pose, domain, walls, sizes, inserter.timeout)
-        return remesh(inserted, bodies, pose, domain, walls, sizes)
+        return insert(bodies, pose, domain, walls, sizes, inserter.timeout)
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
         mesh = generate_mesh(bodies, pose, domain, sizes.size, sizes.size_body, sizes.growth, finer)
@@ -93,7 +100,7 @@ def initial_mesh(
         if not len(points):
             break
         finer += zip(points, wanted, strict=True)
-    return remesh(mesh, bodies, pose, domain, walls, sizes)
+    return mesh
 
 
 def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes) -> Mesh:

@@ -103,13 +103,20 @@ def _refuse_inside_out(surface: Mesh, bodies: int) -> None:
         raise MeshError("domain", f"facets around a fluid with a volume of {volume:.6g}", allowed, _MEND)
 
 
-def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
-    first, second = _near_facets(surface)
-    corners = surface.points[surface.facets]
+def first_crossing(points: FloatArray, facets: IntArray) -> tuple[int, int] | None:
+    """Two of the ``facets`` (F, d) that cut through each other, None if no two do."""
+    corners = points[facets]
+    first, second = _near_facets(corners, facets)
     cross = facets_cross(corners[first], corners[second])
-    if not cross.any():
+    return (int(first[cross][0]), int(second[cross][0])) if cross.any() else None
+
+
+def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
+    crossing = first_crossing(surface.points, surface.facets)
+    if crossing is None:
         return
-    a, b = int(first[cross][0]), int(second[cross][0])
+    a, b = crossing
+    corners = surface.points[surface.facets]
     place = 0.5 * (corners[a].mean(axis=0) + corners[b].mean(axis=0))
     one, other = sorted((int(surface.markers[a]), int(surface.markers[b])))
     found = f"facets that cross {names[other] if other != one else 'each other'} near {_place(place)}"
@@ -117,11 +124,10 @@ def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
     raise MeshError(names[one], found, "surfaces that do not cross", remedy)
 
 
-def _near_facets(surface: Mesh) -> tuple[IntArray, IntArray]:
+def _near_facets(corners: FloatArray, facets: IntArray) -> tuple[IntArray, IntArray]:
     """Pairs of facets without a common vertex whose boxes overlap, by number, each (P,)."""
     from scipy.spatial import cKDTree
 
-    corners = surface.points[surface.facets]
     centre = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
     order = np.argsort(-radius, kind="stable")  # each looks for smaller ones, so that large ones are not met by all
@@ -133,7 +139,7 @@ def _near_facets(surface: Mesh) -> tuple[IntArray, IntArray]:
     near = rank[first] < rank[second]
     near &= np.all((lower[first] <= upper[second]) & (lower[second] <= upper[first]), axis=1)
     first, second = first[near], second[near]
-    shared = (surface.facets[first][:, :, None] == surface.facets[second][:, None]).any(axis=(1, 2))
+    shared = (facets[first][:, :, None] == facets[second][:, None]).any(axis=(1, 2))
     return first[~shared], second[~shared]
 
 

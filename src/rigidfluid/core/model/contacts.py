@@ -27,6 +27,11 @@ def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
     return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
 
 
+def joined(parts: Sequence[Contacts]) -> Contacts:
+    """All contacts of at least one part, part by part."""
+    return Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+
+
 def in_order(parts: Sequence[Contacts]) -> Contacts:
     """All contacts of several parts, sorted by (body_a, body_b).
 
@@ -40,5 +45,5 @@ def in_order(parts: Sequence[Contacts]) -> Contacts:
     Contacts
         As many as in all parts.
     """
-    merged = Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+    merged = joined(parts)
     return select(merged, np.lexsort((merged.body_b, merged.body_a)))

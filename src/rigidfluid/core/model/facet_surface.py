@@ -106,6 +106,10 @@ class FacetSurface(Surface):
         """Unit normals into the fluid of all facets, (F, d)."""
         return self._faces.normals[:, -1]
 
+    def nearest_facets(self, points: FloatArray) -> IntArray:
+        """Rows of the nearest facets, (N,), for ``points`` (N, d) [length]."""
+        return self._nearest(points)[0]
+
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the facets, (N, d) for ``points`` (N, d) [length]."""
         return self._measured(points, *self._nearest(points)).foot

@@ -53,6 +53,14 @@ class Surface(ABC):
         [length]."""
         return None
 
+    @property
+    def least_radius(self) -> float | None:
+        """Smallest radius of curvature |R| where it is known: c²/a of an ellipsoid of longest semi-axis a and shortest
+        c, infinite of a plane; else None [length]."""
+        if self.radius is not None:
+            return abs(self.radius)
+        return None if self.semi_axes is None else float(self.semi_axes.min() ** 2 / self.semi_axes.max())
+
     def normal(self, points: FloatArray) -> FloatArray:
         """Unit normals into the fluid, (N, d), at the closest points of ``points`` (N, d).
 

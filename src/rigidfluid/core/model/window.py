@@ -9,6 +9,10 @@ import numpy as np
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import FloatArray, Pose
 
+CLEARANCE = 2.0
+"""The centre of a body stays so many of its bounding radii away from an end of the window: nearer, the cells between
+them are squeezed flat, and the open end is no channel that goes on."""
+
 
 @dataclass(frozen=True)
 class Window:
@@ -67,10 +71,10 @@ class Window:
         return part
 
     def left_by(self, pose: Pose, radius: FloatArray) -> int | None:
-        """The first body, of bounding ``radius`` (n,), that is not all between the ends at ``pose``, if any; at an end
-        of the domain itself, bodies meet that."""
+        """The first body, of bounding ``radius`` (n,), that is less than its clearance from an end at ``pose``, if any;
+        an end that is the domain's own may be touched."""
         lower, upper = (float(corner[self.axis]) for corner in self.domain.extent)
         low, high = self.interval(pose)
-        along = pose.position[:, self.axis]
-        left = ((along - radius < low) & (low > lower)) | ((along + radius > high) & (high < upper))
+        along, apart = pose.position[:, self.axis], CLEARANCE * radius
+        left = ((along - apart < low) & (low > lower)) | ((along + apart > high) & (high < upper))
         return int(np.argmax(left)) if left.any() else None

@@ -33,15 +33,15 @@ def write_vtu(path: Path, fields: Fields) -> None:
     piece = ET.SubElement(
         ET.SubElement(root, "UnstructuredGrid"), "Piece", NumberOfPoints=str(nodes), NumberOfCells=str(cells)
     )
-    _array(ET.SubElement(piece, "Points"), "points", _in_space(fields.points).astype("<f8"))
+    data_array(ET.SubElement(piece, "Points"), "points", in_space(fields.points).astype("<f8"))
     topology = ET.SubElement(piece, "Cells")
     width = fields.cells.shape[1]
-    _array(topology, "connectivity", fields.cells.astype("<i8").ravel())
-    _array(topology, "offsets", np.arange(width, width * cells + 1, width, dtype="<i8"))
-    _array(topology, "types", np.full(cells, _QUADRATIC[width], dtype="u1"))
+    data_array(topology, "connectivity", fields.cells.astype("<i8").ravel())
+    data_array(topology, "offsets", np.arange(width, width * cells + 1, width, dtype="<i8"))
+    data_array(topology, "types", np.full(cells, _QUADRATIC[width], dtype="u1"))
     data = ET.SubElement(piece, "PointData", Vectors="velocity", Scalars="pressure")
-    _array(data, "velocity", _in_space(fields.velocity).astype("<f4"))
-    _array(data, "pressure", fields.pressure.astype("<f4"))
+    data_array(data, "velocity", in_space(fields.velocity).astype("<f4"))
+    data_array(data, "pressure", fields.pressure.astype("<f4"))
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
@@ -154,7 +154,8 @@ def _values(element: ET.Element) -> NDArray[Any]:
     return values if components is None else values.reshape(-1, int(components))
 
 
-def _array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
+def data_array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
+    """Add numbers to an element, inline and binary, (N,) or (N, components)."""
     kind = _TYPES[values.dtype.str[1:]]
     element = ET.SubElement(parent, "DataArray", type=kind, Name=name, format="binary")
     if values.ndim == 2:
@@ -163,6 +164,6 @@ def _array(parent: ET.Element, name: str, values: NDArray[np.generic]) -> None:
     element.text = base64.b64encode(len(raw).to_bytes(_HEADER, "little") + raw).decode("ascii")
 
 
-def _in_space(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def in_space(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """ParaView's points and vectors have three components."""
     return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))

@@ -60,13 +60,14 @@ def _level(system: System, clock: Clock, stored: float) -> int | None:
     """The level that the first step may be twice as long as; any where the motion starts smoothly.
 
     Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
-    contacts that let go, and weight where the fluid has no inertia.
+    contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that hold it.
     """
     problem = system.backend.problem
     if not system.backend.needs_mesh or problem is None:
         return None
     moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
-    at_once = moves or stored > 0.0 or (not problem.inertia and system.weight.any())
+    given = not isinstance(problem.initial, str)
+    at_once = moves or given or stored > 0.0 or (not problem.inertia and system.weight.any())
     return start_level(clock) if at_once else None
 
 

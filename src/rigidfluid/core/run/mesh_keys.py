@@ -5,15 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
-from rigidfluid.core.mesh.regions import RefinedBox
+from rigidfluid.core.mesh.regions import RefinedBox, Region, curved_walls
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.scene.scene import MeshTable
 
 
-def sizes_of(table: MeshTable) -> Sizes:
-    """What decides the cell size."""
-    boxes = tuple(RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in table.refine)
-    return Sizes(table.size, table.size_body, table.growth, table.cells_per_gap, table.refinements, table.order, boxes)
+def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
+    """What decides the cell size in a domain."""
+    boxes = [RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in table.refine]
+    regions: tuple[Region, ...] = (*boxes, *curved_walls(domain, table.size, table.size_wall))
+    return Sizes(
+        table.size, table.size_body, table.growth, table.cells_per_gap, table.refinements, table.order, regions
+    )
 
 
 def inserter_of(table: MeshTable | None) -> Inserter:

@@ -377,7 +377,7 @@ def _sizes(scene: Scene, system: System) -> Sizes | None:
     if not system.backend.needs_mesh:
         return None
     assert scene.mesh is not None
-    return sizes_of(scene.mesh)
+    return sizes_of(scene.mesh, system.domain)
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:

@@ -271,6 +271,11 @@ class MeshTable(_Table):
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: Positive = Field(description="Edge length on the bodies [length]")
+    size_wall: Positive | None = Field(
+        default=None,
+        description="Edge length on walls that are not flat; a quarter of the least radius of curvature, where that is "
+        "known, if not given [length]",
+    )
     growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
     cells_per_gap: int = Field(
         default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"

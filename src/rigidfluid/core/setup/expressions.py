@@ -10,6 +10,7 @@ from functools import reduce
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.validation import LARGEST
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -84,11 +85,12 @@ class Expression:
         names = dict(zip(_COORDINATES, points.T, strict=False)) | {"t": np.float64(time), "pi": np.float64(np.pi)}
         with np.errstate(all="ignore"):
             found = np.broadcast_to(np.asarray(self._value(names), dtype=float), len(points))
-        lost = np.flatnonzero(~np.isfinite(found))
+        lost = np.flatnonzero(~(np.abs(found) <= LARGEST))
         if lost.size:
             where = f"at time {time:g} and point {points[lost[0]].tolist()}"
             remedy = "Write it so that it has a value there, as with max(…) or where(…)."
-            raise SceneError(self.at, f"{found[lost[0]]} from {self.source!r} {where}", "finite values", remedy)
+            allowed = f"finite values, up to {LARGEST:g}"
+            raise SceneError(self.at, f"{found[lost[0]]} from {self.source!r} {where}", allowed, remedy)
         return found
 
 

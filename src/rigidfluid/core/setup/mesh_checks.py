@@ -26,6 +26,8 @@ def check_mesh_table(scene: Scene) -> None:
     if mesh.remesh_every is not None and mesh.remesh_every < scene.time.step:
         allowed = f"at least time.step = {scene.time.step}"
         raise SceneError("mesh.remesh_every", mesh.remesh_every, allowed, "Re-mesh less often.")
+    if mesh.size_wall is not None:
+        _check_size("mesh.size_wall", mesh.size_wall, mesh)
     if mesh.wake is not None:
         _check_size("mesh.wake.size", mesh.wake.size, mesh)
     for number, box in enumerate(mesh.refine):
@@ -52,7 +54,7 @@ def check_cells(mesh: MeshTable, domain: Domain) -> None:
 def _check_size(field: str, size: float, mesh: MeshTable) -> None:
     """A region coarser than all else would refine nothing."""
     if size > mesh.size:
-        raise SceneError(field, size, f"at most mesh.size = {mesh.size}", "Refine it, or leave the table out.")
+        raise SceneError(field, size, f"at most mesh.size = {mesh.size}", "Refine it, or leave it out.")
 
 
 def _check_count(field: str, size: float, volume: float, where: str, dimension: int) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import BoundaryCondition, Pose
-from rigidfluid.core.model.window import Window
+from rigidfluid.core.model.window import CLEARANCE, Window
 from rigidfluid.core.setup.boundary import boundary_table
 from rigidfluid.core.setup.boundary_values import BoundaryPressure
 from rigidfluid.core.setup.expressions import Expression
@@ -121,8 +121,8 @@ def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> Non
         low, high = window.interval(pose)
         raise SceneError(
             f"body.{left}.position",
-            f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not all in the window",
-            f"a place between {low:.6g} and {high:.6g} along {'xyz'[window.axis]}, all of the body",
+            f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not well in the window",
+            f"at least {CLEARANCE:g} of its radii from {low:.6g} and {high:.6g} along {'xyz'[window.axis]}",
             "Move it, or lengthen domain.window.ahead or domain.window.behind.",
         )
 

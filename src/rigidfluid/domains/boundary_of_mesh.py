@@ -1,0 +1,145 @@
+"""The boundary of a mesh file's fluid, or of its facets where it has no cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
+from rigidfluid.domains.naming import Part, listed
+from rigidfluid.errors import SceneError
+
+SAME = 1e-9
+"""Over the size of the domain: points that are nearer to each other are one."""
+
+_FLAT = 1e-12
+"""Over the size of the domain: points that are less off the plane z = 0 lie in it."""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """``facets`` marked by the file's numbers, the ``names`` of those, and how many ``doubled`` points were joined."""
+
+    facets: Facets
+    names: dict[int, str]
+    doubled: int
+
+    @property
+    def parts(self) -> list[Part]:
+        """What the file knows of it, by ascending number."""
+        numbers = np.unique(self.facets.markers).tolist()
+        return [Part(number, self.names.get(number), self._look(number)) for number in numbers]
+
+    def _look(self, number: int) -> str:
+        chosen = self.facets.vertices[self.facets.markers == number]
+        return f"{len(chosen)} facets about {place(self.facets.points[chosen.ravel()])}"
+
+
+def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: float) -> Boundary:
+    """The boundary of what the fluid fills.
+
+    Parameters
+    ----------
+    file : MeshFile
+        As it was read.
+    dimension : int
+        2 or 3.
+    fluid : int, str or None
+        Number or name of the cells that are fluid; may be None where all cells have one number.
+    scale : float
+        What lengths in the file are multiplied by [1].
+
+    Returns
+    -------
+    Boundary
+        Points that are less than SAME apart are joined, and facets without an area left out.
+
+    Raises
+    ------
+    SceneError
+        If there is nothing, the region is not there or not said, or a facet of its boundary has no number.
+    """
+    points = _in_space(file, dimension) * scale
+    region = _region(file.cells, points, dimension, fluid)
+    if len(region):
+        vertices, numbers = _around(region, file.facets, points)
+    else:
+        vertices, numbers = file.facets.vertices, file.facets.numbers
+    if not len(vertices):
+        raise SceneError(FIELD, "neither cells nor facets", f"a mesh in {dimension} dimensions", "Write the file anew.")
+    joined = _joined(points[:, :dimension], vertices)
+    doubled = len(np.unique(vertices)) - len(np.unique(joined[vertices]))
+    vertices = joined[vertices]
+    sound = np.all(np.diff(np.sort(vertices, axis=1), axis=1) > 0, axis=1)
+    used, compact = np.unique(vertices[sound], return_inverse=True)
+    facets = Facets(points[used, :dimension], compact.reshape(-1, dimension).astype(np.int64), numbers[sound])
+    return Boundary(facets, file.facets.names, doubled)
+
+
+def place(points: FloatArray) -> str:
+    """The middle of points (N, d), as messages show it."""
+    return "(" + ", ".join(f"{x:.6g}" for x in points.mean(axis=0)) + ")"
+
+
+def _in_space(file: MeshFile, dimension: int) -> FloatArray:
+    points = file.points
+    if not np.isfinite(points).all():
+        raise SceneError(FIELD, "coordinates that are no numbers", "finite ones", "Write the file anew.")
+    if dimension == 2 and len(points) and np.abs(points[:, 2]).max() > _FLAT * np.abs(points).max():
+        found = f"points off the plane z = 0, by up to {np.abs(points[:, 2]).max():.6g}"
+        raise SceneError(FIELD, found, "a mesh in the plane, as the scene has 2 dimensions", "Choose another file.")
+    return points
+
+
+def _region(cells: Cells, points: FloatArray, dimension: int, fluid: int | str | None) -> IntArray:
+    """The cells that are fluid."""
+    numbers = np.unique(cells.numbers).tolist()
+    regions = [
+        Part(number, cells.names.get(number), f"{np.count_nonzero(cells.numbers == number)} cells")
+        for number in numbers
+    ]
+    if fluid is None:
+        if len(regions) > 1:
+            remedy = 'Say which is the fluid: `fluid = "…"`.'
+            raise SceneError("domain.fluid", f"nothing, and several regions: {listed(regions)}", "one of them", remedy)
+        return cells.vertices
+    chosen = [part.number for part in regions if fluid in (part.number, part.name)]
+    if not chosen:
+        known = listed(regions) or "none, as the file has no cells"
+        raise SceneError("domain.fluid", f"{fluid!r}, which is no region of the file", known, "Correct or remove it.")
+    return cells.vertices[np.isin(cells.numbers, chosen)]
+
+
+def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArray, IntArray]:
+    """Facets (F, d) of only one cell of the region, and the numbers that the file's facets give them."""
+    count = region.shape[1]
+    sides = np.concatenate([np.delete(region, k, axis=1) for k in range(count)])
+    unique, times = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    outer = unique[times == 1]
+    keys = np.concatenate([outer, np.sort(facets.vertices, axis=1)])
+    _, row = np.unique(keys, axis=0, return_inverse=True)
+    number_of = dict(zip(row.ravel()[len(outer) :].tolist(), facets.numbers.tolist(), strict=True))
+    found = [number_of.get(key) for key in row.ravel()[: len(outer)].tolist()]
+    bare = [i for i, number in enumerate(found) if number is None]
+    if bare:
+        first = place(points[outer[bare[0]]])
+        text = f"{len(bare)} facets of the fluid's boundary without a number, the first about {first}"
+        raise SceneError(FIELD, text, "a number or name for every facet", "Give all of the boundary physical groups.")
+    return outer, np.array(found, dtype=np.int64)
+
+
+def _joined(points: FloatArray, vertices: IntArray) -> IntArray:
+    """For each point the number of the one that stands for it."""
+    used = np.unique(vertices)
+    size = float(np.ptp(points[used], axis=0).max())
+    pairs = used[cKDTree(points[used]).query_pairs(SAME * size, output_type="ndarray")]
+    links = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(len(points),) * 2)
+    _, group = connected_components(links, directed=False)
+    _, first = np.unique(group, return_index=True)
+    return np.asarray(first[group])

@@ -1,0 +1,180 @@
+"""A domain from a CAD file: the exact surfaces that were drawn."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from rigidfluid.core.mesh.meshing import sides, surfaces_of
+from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.domains.closed_form import Flat, Form, form_of_edge, form_of_face
+from rigidfluid.domains.formed_surface import FormedSurface
+from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
+from rigidfluid.domains.orientation import facing_the_fluid
+from rigidfluid.domains.planes import plane_around
+from rigidfluid.errors import SceneError
+
+_FACETS = 30
+"""Facets along the longest side of the domain, at least, by which faces are found."""
+
+_FACETS_PER_RADIUS = 8.0
+"""And along a radius of curvature."""
+
+_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")
+
+
+class CadOptions(PartOptions):
+    """Keys of the ``[domain]`` table with type ``cad``: a STEP, BREP or IGES file with one solid, or in 2D one
+    face, which is where the fluid is.
+
+    Planes, cylinders, balls and tori (in 2D lines and circles) are exact; other faces are as fine facets see them.
+    """
+
+    file: str = Field(description="The file, sought beside the scene: .step, .stp, .brep, .iges or .igs")
+    scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
+    faces: dict[str, Labels] | None = Field(
+        default=None,
+        description="Names of surfaces, each with the names in the file, or the numbers from 1 on, of the faces (in 2D "
+        "edges) that it consists of; all must be there; the file's names if not given",
+    )
+
+
+class Cad(Domain):
+    """What a solid of a CAD file, or in 2D a face in the plane z = 0, is around.
+
+    Parameters
+    ----------
+    options : CadOptions
+        ``file``, ``scale`` [1], ``faces``.
+    dimension : int
+        2 or 3.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read or has no such shape, or if faces have no name.
+    """
+
+    name: ClassVar[str] = "cad"
+    Options: ClassVar[type[PartOptions]] = CadOptions
+    options: CadOptions
+
+    def __init__(self, options: CadOptions, dimension: int) -> None:
+        super().__init__(options, dimension)
+        self._shape = _read(options, dimension)
+        parts = [_part(number, side) for number, side in enumerate(self._sides, start=1)]
+        self._names = surface_names(parts, options.faces)
+        self._order = in_order(self._names, options.faces)
+        facets = facing_the_fluid(_fine_facets(self._shape, dimension), "domain.file")
+        self._facets, self._whole = facets, FacetSurface(facets)
+        self._forms = [self._form(side) for side in self._sides]
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """As `faces` lists them, else as the file does."""
+        return tuple(self._piece(name) for name in self._order)
+
+    @property
+    def extent(self) -> tuple[FloatArray, FloatArray]:
+        """Corners of the box around all pieces [length]."""
+        lower, upper = zip(*(piece.shape.bounds for piece in self.pieces), strict=True)
+        return np.min(lower, axis=0), np.max(upper, axis=0)
+
+    @property
+    def volume(self) -> float:
+        """As Open CASCADE integrates it [length^d]."""
+        return float(self._shape.mass)
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Which of ``points`` (N, d) are inside, (N,)."""
+        return np.asarray(self._exact.signed_distance(points) > 0.0)
+
+    def cad_shape(self) -> Any:
+        """The solid or face of the file, scaled."""
+        for side, name in zip(self._sides, self._names, strict=True):
+            side.name = name
+        return self._shape
+
+    @property
+    def _sides(self) -> list[Any]:
+        return list(sides(self._shape, self.dimension))
+
+    @cached_property
+    def _exact(self) -> FormedSurface:
+        return FormedSurface(self._facets, self._forms)
+
+    def _form(self, side: Any) -> Form | None:
+        return form_of_edge(side) if self.dimension == 2 else form_of_face(side.surf)
+
+    def _piece(self, name: str) -> Piece:
+        numbers = [i for i, given in enumerate(self._names) if given == name]
+        chosen = np.isin(self._facets.markers, numbers)
+        facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
+        all_flat = all(isinstance(self._forms[i], Flat) for i in numbers)
+        plane: Plane | None = plane_around(facets, self._facets.points, self._exact.slack) if all_flat else None
+        shape: Surface = plane or FormedSurface(facets, self._forms, self._whole)
+        return Piece(name, shape, float(sum(self._sides[i].mass for i in numbers)))
+
+
+def _read(options: CadOptions, dimension: int) -> Any:
+    from netgen import meshing, occ
+
+    path = Path(options.file)
+    if not path.is_file():
+        raise SceneError("domain.file", str(path), "a file that is there", "Check the path.")
+    if path.suffix.lower() not in _SUFFIXES:
+        remedy = "Write it in one of those; a mesh is read by type = 'mesh'."
+        raise SceneError("domain.file", str(path), f"one of {', '.join(_SUFFIXES)}", remedy)
+    try:
+        shape = occ.OCCGeometry(str(path), dim=dimension).shape
+    except (meshing.NgException, occ.OCCException, RuntimeError) as error:
+        found = f"{path}, which Open CASCADE cannot read ({str(error).strip()})"
+        raise SceneError("domain.file", found, "a whole CAD file", "Write it anew.") from error
+    solids, faces = list(shape.solids), list(shape.faces)
+    whole = solids if dimension == 3 else [] if solids else faces
+    if len(whole) != 1:
+        found = f"{path} with {len(solids)} solids and {len(faces)} faces"
+        allowed = "one solid in 3D" if dimension == 3 else "one face and no solid in 2D"
+        raise SceneError("domain.file", found, allowed, "Join what the fluid fills, and leave the rest out.")
+    return whole[0].Scale(occ.Pnt(0, 0, 0), options.scale)
+
+
+def _part(number: int, side: Any) -> Part:
+    centre = ", ".join(f"{x:.4g}" for x in (side.center.x, side.center.y, side.center.z))
+    return Part(number, side.name, f"about ({centre}), of size {side.mass:.4g}")
+
+
+def _fine_facets(shape: Any, dimension: int) -> Facets:
+    """Facets marked by the number of their face, from 0."""
+    from netgen import meshing, occ
+
+    low, high = shape.bounding_box
+    size = max(high.x - low.x, high.y - low.y, high.z - low.z)
+    for number, side in enumerate(sides(shape, dimension)):
+        side.name = str(number)
+    step = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
+    verbosity = meshing.SetMessageImportance(0)
+    try:
+        parameters = meshing.MeshingParameters(
+            maxh=size / _FACETS, curvaturesafety=_FACETS_PER_RADIUS, perfstepsend=step, parallel_meshing=False
+        )
+        made = occ.OCCGeometry(shape, dim=dimension).GenerateMesh(parameters)
+    except (occ.OCCException, meshing.NgException, RuntimeError) as error:
+        found = f"a shape that Netgen cannot mesh ({str(error).strip()})"
+        raise SceneError(
+            "domain.file", found, "a closed shape without gaps", "Repair it where it was drawn."
+        ) from error
+    finally:
+        meshing.SetMessageImportance(verbosity)
+    mesh = surfaces_of(made, dimension)
+    used, compact = np.unique(mesh.facets, return_inverse=True)
+    return Facets(mesh.points[used], compact.reshape(mesh.facets.shape).astype(np.int64), mesh.markers)

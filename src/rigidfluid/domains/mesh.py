@@ -1,0 +1,134 @@
+"""A domain whose boundary is that of a mesh in a file."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from rigidfluid.core.mesh.surface_checks import first_crossing
+from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.domains.boundary_of_mesh import boundary_of, place
+from rigidfluid.domains.mesh_file import FIELD, read_mesh
+from rigidfluid.domains.naming import Labels, in_order, surface_names
+from rigidfluid.domains.orientation import enclosed_volume, facing_the_fluid
+from rigidfluid.domains.planes import plane_around
+from rigidfluid.errors import SceneError
+
+
+class MeshOptions(PartOptions):
+    """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
+    not used.
+
+    Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`, those of Netgen and STL
+    without.
+    """
+
+    file: str = Field(
+        description="The file, sought beside the scene: .msh, .med, .vtu, .mesh, .meshb, .vol, .vol.gz or .stl"
+    )
+    scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
+    faces: dict[str, Labels] | None = Field(
+        default=None,
+        description="Names of surfaces, each with the names or numbers in the file that it consists of; all must be "
+        "there; the file's names if not given",
+    )
+    fluid: int | str | None = Field(
+        default=None, description="Number or name of the cells that are fluid, where the file has several kinds"
+    )
+
+
+class FacetWall(FacetSurface):
+    """Facets that are taken for what they are, even where they lie in a plane: the plane does not end with them."""
+
+    @property
+    def plane(self) -> None:
+        """None."""
+        return
+
+    @property
+    def radius(self) -> None:
+        """None."""
+        return
+
+
+class MeshDomain(Domain):
+    """The polyhedron, or in 2D the polygon, of the boundary facets of a mesh.
+
+    Parameters
+    ----------
+    options : MeshOptions
+        ``file``, ``scale`` [1], ``faces``, ``fluid``.
+    dimension : int
+        2 or 3.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read or the region is not there, if facets have no name, or if the surface is open,
+        crosses itself or has one side only.
+    """
+
+    name: ClassVar[str] = "mesh"
+    Options: ClassVar[type[PartOptions]] = MeshOptions
+    options: MeshOptions
+
+    def __init__(self, options: MeshOptions, dimension: int) -> None:
+        super().__init__(options, dimension)
+        file = read_mesh(Path(options.file), dimension)
+        boundary = boundary_of(file, dimension, options.fluid, options.scale)
+        parts = boundary.parts
+        names = surface_names(parts, options.faces)
+        self._names = in_order(names, options.faces)
+        facets = facing_the_fluid(boundary.facets, FIELD)
+        _refuse_crossing(facets)
+        piece_of = {part.number: self._names.index(name) for part, name in zip(parts, names, strict=True)}
+        markers = np.array([piece_of[number] for number in facets.markers.tolist()], dtype=np.int64)
+        self._facets = Facets(facets.points, facets.vertices, markers)
+        self._whole = FacetSurface(self._facets)
+
+    @property
+    def facets(self) -> Facets:
+        """The facets of the file, normals into the fluid, marked by the number of their piece."""
+        return self._facets
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """As `faces` lists them, else as the file does."""
+        return tuple(self._piece(number, name) for number, name in enumerate(self._names))
+
+    @property
+    def extent(self) -> tuple[FloatArray, FloatArray]:
+        """Corners of the box around all facets [length]."""
+        return self._whole.bounds
+
+    @property
+    def volume(self) -> float:
+        """Of the polyhedron, exactly [length^d]."""
+        return enclosed_volume(self._facets)
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Which of ``points`` (N, d) are inside, (N,)."""
+        return np.asarray(self._whole.signed_distance(points) > 0.0)
+
+    def _piece(self, number: int, name: str) -> Piece:
+        chosen = self._facets.markers == number
+        facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
+        area = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1).sum()
+        plane = plane_around(facets, self._facets.points)
+        return Piece(name, plane or FacetWall(facets, self._whole), float(area))
+
+
+def _refuse_crossing(facets: Facets) -> None:
+    crossing = first_crossing(facets.points, facets.vertices)
+    if crossing is not None:
+        one, other = (place(facets.points[facets.vertices[facet]]) for facet in crossing)
+        found = f"facets that cross each other, the first two about {one} and {other}"
+        raise SceneError(FIELD, found, "a surface that does not cross itself", "Mend it there.")

@@ -1,0 +1,131 @@
+"""Facets of a closed surface, all turned towards the fluid inside."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.errors import SceneError
+
+
+def facing_the_fluid(facets: Facets, at: str) -> Facets:
+    """The same facets, in such an order of their corners that all normals point into the fluid.
+
+    The fluid is what an odd number of closed surfaces is around: inside the outermost, outside those within it.
+
+    Parameters
+    ----------
+    facets : Facets
+        Of one or several closed surfaces, in any order.
+    at : str
+        Where they come from, for messages.
+
+    Returns
+    -------
+    Facets
+        The same facets in the same order.
+
+    Raises
+    ------
+    SceneError
+        If a surface is open, branches, or has one side only, with the place.
+    """
+    _refuse_open(facets, at)
+    flip, surface = _turned_alike(facets, at)
+    facets = _flipped(facets, flip)
+    for number in range(int(surface.max()) + 1):
+        mine, others = surface == number, surface != number
+        outwards = _enclosed(facets.points, facets.vertices[mine]) > 0.0
+        within = _depth(facets, surface, facets.points[facets.vertices[mine][0, 0]], others)
+        facets = _flipped(facets, mine & (outwards == (within % 2 == 0)))
+    return facets
+
+
+def ridges(vertices: IntArray) -> tuple[IntArray, IntArray]:
+    """What facets share with their neighbours: corners of edges, edges of triangles; and in which sense they go round.
+
+    Parameters
+    ----------
+    vertices : (F, d) array
+        Corners of the facets.
+
+    Returns
+    -------
+    (F, d, d-1) array, (F, d) array
+        Vertex numbers, ascending; 1 or -1, different for two neighbours that are turned alike.
+    """
+    if vertices.shape[1] == 2:
+        return vertices[:, :, None], np.tile([-1, 1], (len(vertices), 1))
+    ends = np.stack([vertices, np.roll(vertices, -1, axis=1)], axis=2)
+    return np.sort(ends, axis=2), np.where(ends[:, :, 0] < ends[:, :, 1], 1, -1)
+
+
+def _refuse_open(facets: Facets, at: str) -> None:
+    corners, _ = ridges(facets.vertices)
+    unique, count = np.unique(corners.reshape(-1, corners.shape[2]), axis=0, return_counts=True)
+    what = "corner" if facets.vertices.shape[1] == 2 else "edge"
+    for wrong, found in ((count == 1, "an open surface"), (count > 2, "surfaces that branch")):
+        if wrong.any():
+            places = facets.points[unique[np.argmax(wrong)]].round(12).tolist()
+            text = f"{found}: {np.count_nonzero(wrong)} free {what}s" if count[wrong][0] == 1 else found
+            remedy = "Close the hole there." if count[wrong][0] == 1 else "Remove the facets that do not belong there."
+            raise SceneError(at, f"{text}, the first at {places}", f"two facets at each {what}", remedy)
+
+
+def _turned_alike(facets: Facets, at: str) -> tuple[BoolArray, IntArray]:
+    """Which facets (F,) must be turned round so that neighbours go round alike, and the surface each is on (F,).
+
+    Each facet is there twice, as it is and turned round, and linked to what its neighbours then are.
+    """
+    corners, sense = ridges(facets.vertices)
+    count, d = facets.vertices.shape
+    _, ridge = np.unique(corners.reshape(count * d, -1), axis=0, return_inverse=True)
+    order = np.argsort(ridge.ravel(), kind="stable").reshape(-1, 2)
+    first, second = order.T // d
+    alike = (sense.ravel()[order[:, 0]] != sense.ravel()[order[:, 1]]).astype(np.int64)
+    rows = np.concatenate([first, first + count])
+    columns = np.concatenate([second + count * (1 - alike), second + count * alike])
+    links = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
+    _, side = connected_components(links, directed=False)
+    as_is, turned = side[:count], side[count:]
+    if np.any(as_is == turned):
+        place = facets.points[facets.vertices[np.argmax(as_is == turned)]].mean(axis=0).round(12).tolist()
+        raise SceneError(at, f"a surface with one side only, at {place}", "surfaces with two sides", "Mend it there.")
+    _, surface = np.unique(np.minimum(as_is, turned), return_inverse=True)
+    return np.asarray(turned < as_is), surface.astype(np.int64)
+
+
+def _flipped(facets: Facets, flip: BoolArray) -> Facets:
+    vertices = facets.vertices.copy()
+    vertices[flip] = vertices[flip][:, ::-1]
+    return replace(facets, vertices=vertices)
+
+
+def _enclosed(points: FloatArray, vertices: IntArray) -> float:
+    """Volume that facets with normals outwards enclose, negative of normals inwards, ∮ x·n / d [length^d]."""
+    normals = area_vectors(points, vertices)
+    middles = points[vertices].mean(axis=1) - points[vertices[0, 0]]
+    return float(np.sum(middles * normals) / points.shape[1])
+
+
+def _depth(facets: Facets, surface: IntArray, point: FloatArray, others: BoolArray) -> int:
+    """How many of the other surfaces are around a point."""
+    around = 0
+    for number in np.unique(surface[others]):
+        chosen = surface == number
+        shape = FacetSurface(replace(facets, vertices=facets.vertices[chosen], markers=facets.markers[chosen]))
+        outwards = _enclosed(facets.points, facets.vertices[chosen]) > 0.0
+        inside = shape.signed_distance(point[None])[0] < 0.0
+        around += bool(inside == outwards)
+    return around
+
+
+def enclosed_volume(facets: Facets) -> float:
+    """Exact volume of the polyhedron (area of the polygon) of facets that face the fluid inside [length^d]."""
+    return -_enclosed(facets.points, facets.vertices)

@@ -1,0 +1,167 @@
+"""How well bodies came into a mesh: facets and corners kept, distances from the shapes, areas, volumes, cells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mechanics.frames import distance_to_body, to_world
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.model.facets import area_vectors
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+
+BINS = 20
+"""Of the histogram of cells over their quality, from 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceFigures:
+    """Of one surface of the mesh.
+
+    ``kind``: "smooth", or "facets", or "flat" of a flat piece of the domain, whose facets may be made anew in their
+    plane. ``given_facets``, ``kept_facets``, ``given_corners``, ``kept_corners``: of a shape made of facets, and how
+    many of them are in the mesh to the last bit (a facet that is not has been halved); else None. ``facets`` in the
+    mesh; ``vertices_off``, ``middles_off``: farthest vertex, and middle of a facet, from the shape [length].
+    ``area`` of the facets, ``exact_area`` of the shape where it is known [length^(d-1)]; ``volume`` that a body's
+    facets enclose, ``exact_volume`` of the body [length^d].
+    """
+
+    name: str
+    kind: str
+    facets: int
+    given_facets: int | None
+    kept_facets: int | None
+    given_corners: int | None
+    kept_corners: int | None
+    vertices_off: float
+    middles_off: float
+    area: float
+    exact_area: float | None
+    volume: float | None
+    exact_volume: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Of a mesh: counts, its worst cell's quality [1], how many cells have a quality in each of BINS classes, its
+    volume and that of the domain less the bodies [length^d], seconds of each phase, and its surfaces."""
+
+    name: str
+    dimension: int
+    inserter: str
+    cells: int
+    vertices: int
+    worst_quality: float
+    quality_histogram: tuple[int, ...]
+    volume: float
+    exact_volume: float
+    seconds: dict[str, float]
+    surfaces: tuple[SurfaceFigures, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self)
+
+
+def measured(name: str, inserter: str, mesh: Mesh, system: System, seconds: dict[str, float]) -> Figures:
+    """The figures of a straight mesh around a system's bodies where they start."""
+    quality = cell_quality(mesh.points, mesh.cells)
+    return Figures(
+        name=name,
+        dimension=system.dimension,
+        inserter=inserter,
+        cells=len(mesh.cells),
+        vertices=len(mesh.points),
+        worst_quality=float(quality.min()),
+        quality_histogram=tuple(np.histogram(quality, BINS, (0.0, 1.0))[0].tolist()),
+        volume=float(cell_volumes(mesh.points, mesh.cells).sum()),
+        exact_volume=system.meshed(system.pose).volume - sum(body.volume for body in system.bodies),
+        seconds=seconds,
+        surfaces=tuple(_surfaces(mesh, system)),
+    )
+
+
+def _surfaces(mesh: Mesh, system: System) -> Iterator[SurfaceFigures]:
+    bodies, domain = system.bodies, system.meshed(system.pose)
+    sides = _sides(mesh)
+    for i, body in enumerate(bodies):
+        given = None
+        if body.facets is not None:
+            given = to_world(system.pose, i, body.facets.points), body.facets.vertices
+        facets = mesh.facets[mesh.markers == i]
+        off = [np.abs(distance_to_body(system.pose, i, body, at)).max() for at in _vertices_and_middles(mesh, facets)]
+        volume = _enclosed(mesh.points[facets] - system.pose.position[i], sides[mesh.markers == i])
+        yield _surface(mesh, i, system.surfaces[i], given, off, None, (volume, body.volume), flat=False)
+    for k, piece in enumerate(domain.pieces):
+        given, number = None, len(bodies) + k
+        if domain.facets is not None:
+            given = domain.facets.points, domain.facets.vertices[domain.facets.markers == k]
+        facets = mesh.facets[mesh.markers == number]
+        parts = _vertices_and_middles(mesh, facets)
+        off = [np.linalg.norm(at - piece.shape.closest_point(at), axis=1).max() for at in parts]
+        flat = piece.shape.plane is not None
+        yield _surface(mesh, number, piece.name, given, off, piece.area, (None, None), flat)
+
+
+def _surface(
+    mesh: Mesh,
+    number: int,
+    name: str,
+    given: tuple[FloatArray, IntArray] | None,
+    off: Sequence[float],
+    area: float | None,
+    volumes: tuple[float | None, float | None],
+    flat: bool,
+) -> SurfaceFigures:
+    facets = mesh.facets[mesh.markers == number]
+    counts: tuple[int | None, int | None, int | None, int | None] = None, None, None, None
+    if given is not None:
+        points, vertices = given
+        area = float(np.linalg.norm(area_vectors(points, vertices), axis=1).sum())
+        corners = points[np.unique(vertices)]
+        kept = _rows(points[vertices]) & _rows(mesh.points[facets])
+        counts = len(vertices), len(kept), len(corners), len(_rows(corners) & _rows(mesh.points[np.unique(facets)]))
+    return SurfaceFigures(
+        name,
+        "flat" if flat else "smooth" if given is None else "facets",
+        len(facets),
+        *counts,
+        float(off[0]),
+        float(off[1]),
+        float(np.linalg.norm(area_vectors(mesh.points, facets), axis=1).sum()),
+        area,
+        *volumes,
+    )
+
+
+def _vertices_and_middles(mesh: Mesh, facets: IntArray) -> tuple[FloatArray, FloatArray]:
+    return mesh.points[np.unique(facets)], mesh.points[facets].mean(axis=1)
+
+
+def _rows(points: FloatArray) -> set[tuple[Any, ...]]:
+    """Points (N, d) or facets' corners (F, d, d), to the last bit, a facet's in any order."""
+    if points.ndim == 2:
+        return set(map(tuple, points.tolist()))
+    return {tuple(sorted(map(tuple, corners))) for corners in points.tolist()}
+
+
+def _sides(mesh: Mesh) -> FloatArray:
+    """1 for each facet (F,) whose normal, by the order of its vertices, points into its cell, else -1."""
+    d = mesh.points.shape[1]
+    picks = np.array([np.delete(np.arange(d + 1), k) for k in range(d + 1)])
+    of_cells = np.sort(mesh.cells[:, picks].reshape(-1, d), axis=1)
+    number = np.unique(np.concatenate([of_cells, np.sort(mesh.facets, axis=1)]), axis=0, return_inverse=True)[1]
+    opposite = np.empty(number.max() + 1, dtype=np.int64)
+    opposite[number[: len(of_cells)]] = mesh.cells.ravel()
+    inner = mesh.points[opposite[number[len(of_cells) :]]]
+    return np.asarray(-np.sign(np.linalg.det(mesh.points[mesh.facets] - inner[:, None])))
+
+
+def _enclosed(corners: FloatArray, sides: FloatArray) -> float:
+    """What facets with ``corners`` (F, d, d), about a point of the body, enclose, ``sides`` (F,) as by `_sides`."""
+    return float(sides @ np.linalg.det(corners)) / factorial(corners.shape[1])

@@ -1,0 +1,91 @@
+"""Meshes a scene and writes the mesh, its pictures, and a report of how well the bodies came into it."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
+from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.errors import SceneError
+from rigidfluid.evaluation.insertion.figures import Figures, measured
+from rigidfluid.evaluation.insertion.page import write_page
+
+_WAYS = {
+    "cad": "meshing the domain less the bodies",
+    "fill": "filling between the facets of domain and bodies",
+    "level_set": "cutting the bodies out of a mesh of the domain",
+}
+
+
+def insert(
+    scene: Scene, out: Path | None = None, progress: Callable[[str], None] = lambda _: None
+) -> tuple[Figures, list[Path]]:
+    """Make the first mesh of a scene, and say how well the bodies came into it.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a [mesh] table.
+    out : Path, optional
+        Folder for mesh, pictures and report; ``out/<scene name>_mesh`` if None.
+    progress : callable
+        Called with what is being done, in words, as it begins.
+
+    Returns
+    -------
+    tuple
+        The figures, and the files that were written.
+
+    Raises
+    ------
+    SceneError, PluginError
+        Where the scene cannot be built, or has no mesh.
+    MeshError
+        Where no mesh can be made.
+    OutputError
+        Where the disk refuses.
+    """
+    table = scene.mesh
+    if table is None:
+        raise SceneError(
+            "mesh", "no such table", "a scene with [mesh] size and size_body", "Add the table; dry runs need none."
+        )
+    seconds: dict[str, float] = {}
+    with _timed(seconds, "scene"):
+        progress("checking the scene")
+        system, inserter = build_system(scene), inserter_of(table)
+        domain = system.meshed(system.pose)
+        way = inserter.chosen(system.bodies, domain)
+    around = system.bodies, system.pose, domain, system.walls, sizes_of(table, system.domain)
+    with _timed(seconds, "insertion"):
+        progress(_WAYS[way])
+        mesh = inserted_mesh(*around, inserter)
+    with _timed(seconds, "grading"):
+        progress("grading the cells")
+        mesh = remesh(mesh, *around)
+    figures = measured(scene.name, way, mesh, system, seconds)
+    progress("writing mesh and report")
+    out = Path("out") / f"{scene.name}_mesh" if out is None else Path(out)
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+        files = [out / name for name in ("mesh.vtu", "mesh.msh", "insertion.json")]
+        write_mesh_vtu(files[0], mesh, system.surfaces)
+        write_msh(files[1], mesh, system.surfaces)
+        text = json.dumps(figures.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+        files[2].write_text(text + "\n", encoding="utf-8")
+        return figures, [*files, *write_page(figures, mesh, system, out)]
+
+
+@contextmanager
+def _timed(seconds: dict[str, float], phase: str) -> Iterator[None]:
+    start = time.perf_counter()
+    yield
+    seconds[phase] = time.perf_counter() - start

@@ -1,0 +1,57 @@
+"""Shapes that are drawn and written to CAD files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rigidfluid.domains.cad import Cad, CadOptions
+
+
+def bent_tube() -> Any:
+    """A tube of radius 1: a leg of length 4 along z, a quarter bend of radius 3, a leg of length 4 along x."""
+    from netgen import occ
+
+    first = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 1, 4)
+    disk = occ.WorkPlane(occ.Axes(occ.Pnt(0, 0, 4), occ.Z, occ.X)).Circle(1).Face()
+    bend = disk.Revolve(occ.Axis(occ.Pnt(3, 0, 4), occ.Y), 90)
+    tube = first + bend + occ.Cylinder(occ.Pnt(3, 0, 7), occ.X, 1, 4)
+    tube.faces.name = "wall"
+    tube.faces.Min(occ.Z).name = "inflow"
+    tube.faces.Max(occ.X).name = "outflow"
+    return tube
+
+
+def ball_in_a_box() -> Any:
+    """A cube of length 2 about the origin, with a ball of radius 0.5 in its middle left out."""
+    from netgen import occ
+
+    box = occ.Box(occ.Pnt(-1, -1, -1), occ.Pnt(1, 1, 1))
+    box.faces.name = "box"
+    ball = occ.Sphere(occ.Pnt(0, 0, 0), 0.5)
+    ball.faces.name = "ball"
+    return box - ball
+
+
+def plate() -> Any:
+    """A rectangle of 4 × 2 with a round hole of radius 0.3 about (1, 1), in the plane."""
+    from netgen import occ
+
+    sheet = occ.WorkPlane().Rectangle(4, 2).Face()
+    for side, name in zip(sheet.edges, ("bottom", "right", "top", "left"), strict=True):
+        side.name = name
+    hole = occ.WorkPlane().Circle(1, 1, 0.3).Face()
+    hole.edges.name = "hole"
+    return sheet - hole
+
+
+def written(shape: Any, folder: Path, name: str = "shape.step") -> str:
+    """The path of a file with the shape, as its ending says."""
+    path = str(folder / name)
+    shape.WriteBrep(path) if name.endswith("brep") else shape.WriteStep(path)
+    return path
+
+
+def drawn(shape: Any, folder: Path, dimension: int = 3, **keys: Any) -> Cad:
+    """The domain of a shape that has been written and read back."""
+    return Cad(CadOptions(file=written(shape, folder), **keys), dimension)
