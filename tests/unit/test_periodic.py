@@ -12,6 +12,7 @@ import pytest
 from mesh_tools import ball, upright
 
 from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
@@ -23,7 +24,7 @@ from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.errors import SceneError, StepError
+from rigidfluid.errors import MeshError, SceneError, StepError
 
 ENDS = [{"on": "left", "type": "periodic", "pressure_drop": 6.0}, {"on": "right", "type": "periodic"}]
 
@@ -135,6 +136,14 @@ def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
     scene = channel()
     with pytest.raises(SceneError, match=r"boundary.0.type: found 'periodic' with backend 'dolfinx'"):
         check_periodic(scene, Dolfinx, known_parts(scene).domain)
+
+
+def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is 'cad'"):
+        Inserter("fill").chosen([ball(0.15)], domain)
+    assert Inserter().chosen([ball(0.15)], domain) == "cad"
 
 
 def test_no_periodic_surface_repels() -> None:
