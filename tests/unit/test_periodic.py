@@ -14,6 +14,8 @@ from mesh_tools import ball, upright
 from rigidfluid.backends.dolfinx.backend import Dolfinx
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.periodic import with_exact_images
+from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import FloatArray, Mesh
@@ -68,6 +70,30 @@ def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None
             one, two = (across(mesh, 1 + piece, pair[0] // 2) for piece in pair)
             assert len(one) > d
             np.testing.assert_array_equal(one, two)
+
+
+def test_images_are_put_exactly_where_they_belong_and_lost_ones_are_told() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    mesh = initial_mesh([ball(0.15)], upright([0.6, 0.6]), domain, [], Sizes(0.3, 0.1))
+    right = np.unique(mesh.facets[mesh.markers == 2])
+    points = mesh.points.copy()
+    points[right, 1] += 1e-9 * np.sin(np.arange(len(right)))
+    np.testing.assert_array_equal(with_exact_images(replace(mesh, points=points), 1, domain).points, mesh.points)
+    points[right[0], 1] += 0.01
+    with pytest.raises(MeshError, match=r"vertices on the periodic surfaces 'left' and 'right'"):
+        with_exact_images(replace(mesh, points=points), 1, domain)
+
+
+def test_facets_of_periodic_surfaces_are_not_halved() -> None:
+    """Though they are longer than wanted by now, as those of the ball are."""
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    around = [ball(0.15)], upright([0.3, 0.6]), domain, []
+    mesh = initial_mesh(*around, Sizes(0.3, 0.1))
+    edges, _, _ = long_edges(mesh, *around, Sizes(0.02, 0.01), LONGEST)
+    assert len(edges)
+    assert set(edges.ravel()) <= set(mesh.facets[mesh.markers == 0].ravel())
 
 
 def test_a_pressure_drop_takes_a_ball_along_and_the_energy_balance_closes() -> None:
