@@ -86,6 +86,11 @@ class Domain(SpatialPart):
         return None
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to tell a user of how it was read or made; each is a sentence without its full stop."""
+        return ()
+
+    @property
     def names(self) -> tuple[str, ...]:
         """The names of the pieces, in the order of their surface numbers."""
         return tuple(piece.name for piece in self.pieces)
