@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import in_order
-from rigidfluid.core.model.facet_surface import FacetSurface, Nearby
+from rigidfluid.core.model.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
@@ -149,9 +149,7 @@ class _Round(NamedTuple):
     shape: Surface
 
     def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
-        distance = self.shape.signed_distance(points)
-        near = np.flatnonzero(distance <= reach)
-        return Nearby(near, self.shape.closest_point(points[near]), distance[near], self.shape.normal(points[near]))
+        return nearby(self.shape, points, reach, spread)
 
     def ball(self, beside: FloatArray) -> _Ball | None:
         """The wall as a ball, if it bulges into the fluid; ``beside`` (d,) is any point there."""

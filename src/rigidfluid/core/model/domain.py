@@ -46,6 +46,10 @@ class Domain(SpatialPart):
         2 or 3.
     """
 
+    periodic: tuple[tuple[int, int], ...] = ()
+    """Pairs of flat pieces, by their numbers, that a scene makes periodic: what leaves by one comes in by the other.
+    The second is the first displaced; their facets match, and stay."""
+
     @property
     @abstractmethod
     def pieces(self) -> tuple[Piece, ...]:

@@ -203,3 +203,12 @@ class FacetSurface(Surface):
     @cached_property
     def _faces(self) -> Faces:
         return faces_of(self._points, self._vertices)
+
+
+def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:
+    """As `FacetSurface.nearby`; of other shapes, which have no hollows that are known of, the nearest place alone."""
+    if isinstance(shape, FacetSurface):
+        return shape.nearby(points, reach, spread)
+    distance = shape.signed_distance(points)
+    near = np.flatnonzero(distance <= reach)
+    return Nearby(near, shape.closest_point(points[near]), distance[near], shape.normal(points[near]))
