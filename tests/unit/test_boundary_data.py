@@ -21,12 +21,16 @@ from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
+from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.testing.fluid.boxes import box, nobody
 from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, problem
 from rigidfluid.testing.fluid.flow import Flow
 
 OPEN = {"on": "right", "type": "pressure", "pressure": 0.0}
+
+
+DUCT = Box(BoxOptions(lower=(0.0, 0.0, 0.0), upper=(3.0, 3.0, 4.0)), 3)
 
 
 def tables(boundary: list[dict[str, Any]], dimension: int = 2, **changes: Any) -> dict[str, Any]:
@@ -119,7 +123,7 @@ def test_flow_through_a_duct_has_a_constant_laplacian_and_the_published_mean() -
     edge = np.array([[0.0, 0.5, 0.3], [0.0, 0.2, 1.0], [0.0, -0.5, -1.0]])
     np.testing.assert_allclose(poiseuille(duct, edge), 0.0, atol=1e-4)
     piece = Piece("inlet", Plane(np.zeros(3), np.eye(3)[0], (np.array([0, -0.5, -1]), np.array([0, 0.5, 1]))), 2.0)
-    nodes, weights = quadrature(piece)
+    nodes, weights = quadrature(piece, DUCT)
     mean = weights @ poiseuille(duct, nodes) / 2.0
     assert mean == pytest.approx(-0.02858 * 4.0 / 2.0 * laplacian[-1] / 1.0, rel=1e-3)
 
@@ -131,7 +135,7 @@ def test_flow_through_a_pipe() -> None:
     disk = Piece("end", Plane(centre, turned, (centre - half, centre + half)), np.pi * 0.25)
     shape = section(disk)
     assert shape is not None
-    nodes, weights = quadrature(disk)
+    nodes, weights = quadrature(disk, DUCT)
     assert weights @ poiseuille(shape, nodes) == pytest.approx(0.5 * np.pi * 0.25, rel=1e-12)
     np.testing.assert_allclose((nodes - centre) @ turned, 0.0, atol=1e-15)
     rim = centre + 0.5 * np.array([[0.0, 1.0, 0.0], [0.8, 0.0, -0.6]])
@@ -166,6 +170,26 @@ def test_the_fastest_inflow_is_found_between_start_and_end() -> None:
     scene["body"][0]["fixed"] = False
     system = build_system(scene_from_dict(scene))
     assert system.loads.speed[0] == pytest.approx(30.0, rel=1e-3)
+
+
+def test_the_greatest_value_of_a_long_table_is_seen() -> None:
+    rows = [[0.001 * number, 30.0 if number == 1234 else 0.1] for number in range(2001)]
+    table = {"on": "left", **inflow(velocity=[1.0, 0.0], over_time=rows)}
+    scene = tables([table, OPEN], contact={"law": "centre", "range": 0.1, "epsilon": 1.0})
+    scene["body"][0]["fixed"] = False
+    assert build_system(scene_from_dict(scene)).loads.speed[0] == pytest.approx(30.0)
+
+
+def test_velocities_on_a_curved_surface_are_sampled_all_over_it() -> None:
+    obstacle = {"name": "roll", "type": "sphere", "radius": 0.2, "position": [2.0, 0.5]}
+    scene = tables([OPEN, {"on": "roll", "type": "velocity", "velocity": ["0.5 - y", "x - 2"]}])
+    scene["domain"] |= {"type": "channel", "obstacle": [obstacle]}
+    scene["contact"] = {"law": "centre", "range": 0.1, "epsilon": 1.0}
+    scene["body"][0]["fixed"] = False
+    assert build_system(scene_from_dict(scene)).loads.speed[0] == pytest.approx(0.2)
+    scene["boundary"][1]["velocity"][0] = "log(x - 1.81)"
+    with pytest.raises(SceneError, match=r"boundary\.1\.velocity\.0 on 'roll': found nan"):
+        scene_from_dict(scene)
 
 
 LEFT, THROUGH = {"on": "left", **inflow()}, [{"on": "left", **inflow()}, {"on": "right", **inflow()}]

@@ -7,6 +7,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from channels import CHANNEL, PIN, THROAT, scene
 
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
@@ -15,23 +16,6 @@ from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.errors import RigidfluidError
-
-CHANNEL = {"type": "channel", "lower": [0.0, 0.0], "upper": [4.0, 1.0]}
-PIN = {"type": "sphere", "radius": 0.2, "position": [2.0, 0.4], "name": "pin"}
-THROAT = {"type": "stenosis", "length": 32.0, "width": 8.0, "radius": 3.125}
-
-
-def scene(domain: dict[str, Any], **tables: Any) -> dict[str, Any]:
-    found = {
-        "scene": {"name": "channel", "dimension": 2},
-        "fluid": {"density": 1.0, "viscosity": 0.1},
-        "domain": domain,
-        "body": [{"type": "sphere", "radius": 0.1, "density": 2.0, "position": [1.0, 0.5]}],
-        "mesh": {"size": 0.2, "size_body": 0.05},
-        "time": {"end": 1.0, "step": 0.1},
-        "output": {"every": 1.0},
-    }
-    return found | tables
 
 
 def channel(*obstacles: dict[str, Any]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.checks.design_contacts import design_contacts
+from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.impact import on_impact
@@ -49,9 +50,10 @@ class BodyRow:
 
 @dataclass(frozen=True)
 class Report:
-    """What a check has found: what is switched on and off, the bodies, and findings, the gravest first."""
+    """What a check has found: the domain, what is switched on and off, the bodies, and findings, the gravest first."""
 
     scene: str
+    domain: DomainRow
     features: tuple[Feature, ...]
     bodies: tuple[BodyRow, ...]
     findings: tuple[Finding, ...]
@@ -65,6 +67,7 @@ class Report:
         return {
             "scene": self.scene,
             **{f"{grade}s": self.count(grade) for grade in GRADES},
+            "domain": asdict(self.domain),
             "features": [asdict(feature) for feature in self.features],
             "bodies": [asdict(body) for body in self.bodies],
             "findings": [finding.to_dict() for finding in self.findings],
@@ -94,7 +97,10 @@ def check(scene: Scene) -> Report:
         scene = parts.scene
         start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
-        return Report(scene.name, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found))
+        domain = domain_row(scene, system.domain)
+        return Report(
+            scene.name, domain, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found)
+        )
 
 
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:

@@ -7,8 +7,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 
@@ -19,7 +21,7 @@ _NUDGE = 1e-3
 
 
 class DomainContract:
-    """Geometry of the surfaces, and that meshes made from the CAD shape are of the same domain.
+    """Geometry of the surfaces, and that meshes made from the CAD shape, or the facets, are of the same domain.
 
     Override the fixture ``domain``; parametrise it to hold several domains to the same standard.
     """
@@ -158,6 +160,8 @@ def _probes(domain: Domain) -> FloatArray:
 def _mesh(domain: Domain, relative_size: float) -> Mesh:
     nobody = Pose(np.zeros((0, domain.dimension)), np.zeros((0, 1 if domain.dimension == 2 else 4)))
     size = relative_size * _size(domain)
+    if domain.facets is not None:
+        return fill_mesh([], nobody, domain, [], Sizes(size, size, 0.3))
     return generate_mesh([], nobody, domain, size, size, 0.3)
 
 

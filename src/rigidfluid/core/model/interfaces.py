@@ -265,6 +265,8 @@ class FluidBackend(Part):
     """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
     oblique_faces: ClassVar[bool] = False
     """Whether it takes slip and pressure conditions on faces that lie across no axis."""
+    periodic_faces: ClassVar[bool] = False
+    """Whether it takes periodic conditions."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 

@@ -57,7 +57,7 @@ def check_boundary(scene: Scene, domain: Domain) -> None:
         held = boundary_table(scene, piece.name)
         if held is not None:
             _check_sliding(domain, piece, held, table_key(scene, held))
-            _check_values(scene, piece, held, table_key(scene, held))
+            _check_values(scene, domain, piece, held, table_key(scene, held))
     _check_names(scene, domain)
     outside = ~domain.contains(np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension))
     if outside.any():
@@ -112,6 +112,9 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
     if table.on not in allowed:
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+    if table.pressure_drop is not None and table.type != "periodic":
+        found = f"it on a {table.type!r} surface"
+        raise SceneError(f"{at}.pressure_drop", found, "it with type = 'periodic'", "Leave it out.")
     for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
         given = getattr(table, key) is not None
         if given and table.type not in types:
@@ -158,7 +161,7 @@ def _check_sliding(domain: Domain, piece: Piece, table: BoundaryTable, at: str) 
         raise SceneError(f"{at}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
-def _check_values(scene: Scene, piece: Piece, table: BoundaryTable, at: str) -> None:
+def _check_values(scene: Scene, domain: Domain, piece: Piece, table: BoundaryTable, at: str) -> None:
     """Refuse expressions and profiles that cannot be, and values that are not finite where they are sampled."""
     value: BoundaryVelocity | BoundaryPressure
     if table.type == "velocity":
@@ -167,7 +170,7 @@ def _check_values(scene: Scene, piece: Piece, table: BoundaryTable, at: str) -> 
         value = prescribed_pressure(piece, table, scene.dimension, at)
     else:
         return
-    points, _ = quadrature(piece)
+    points, _ = quadrature(piece, domain)
     for time in sample_times(scene, steady=value.is_steady):
         value(time, points)
 

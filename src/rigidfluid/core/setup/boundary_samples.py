@@ -17,15 +17,15 @@ from rigidfluid.core.setup.profiles import Disk, Rectangle, section
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
 
-_PANELS, _TIMES = 8, 65
-"""A side is integrated in so many panels of three points, and a time in the run looked at so many times."""
+_PANELS, _TIMES, _ROWS = 8, 65, 500
+"""Panels of a side, each with three points of its integral; times in a run; rows of a table."""
 
 
 @dataclass(frozen=True)
 class SampledInflow:
     """A ``velocity`` prescribed on a ``piece``, with ``points`` (N, d) and ``weights`` (N,) of an integral over it.
 
-    Where the piece's shape is not known there is one point, and only uniform and constant velocities have a flux.
+    Where the section of a flat piece is not known there is one point, and only a uniform velocity has a flux.
     """
 
     piece: Piece
@@ -53,19 +53,26 @@ def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
         table = boundary_table(scene, piece.name)
         if table is not None and table.type == "velocity":
             velocity = prescribed_velocity(piece, table, table_key(scene, table))
-            inflows.append(SampledInflow(piece, velocity, *quadrature(piece)))
+            inflows.append(SampledInflow(piece, velocity, *quadrature(piece, domain)))
     return inflows
 
 
 def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
-    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady."""
-    rows = [time for table in scene.boundary if isinstance(table.over_time, tuple) for time, _ in table.over_time]
-    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), rows])
+    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady.
+
+    Of a long table some rows, and the one of the greatest value.
+    """
+    tables = [table.over_time for table in scene.boundary if isinstance(table.over_time, tuple) and table.over_time]
+    rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
+    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), [time for time, _ in rows]])
     return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
 
 
-def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
-    """Points (N, d) and weights (N,) of an integral over a piece; of one whose shape is not known, one point."""
+def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:
+    """Points (N, d) and weights (N,) of an integral over a piece of the domain.
+
+    Of a curved piece, points all over it; of a flat one whose section is not known, one.
+    """
     shape = section(piece)
     nodes, weights = _composite()
     if isinstance(shape, Rectangle):
@@ -80,9 +87,13 @@ def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ across
         points = shape.centre + shape.radius * nodes[:, None, None] * circle
         return points.reshape(-1, 3), (2.0 * np.outer(weights * nodes, weights) * piece.area).ravel()
-    lower, upper = piece.shape.bounds
-    middle = 0.5 * (lower + upper)
-    return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+    points = points_of(piece.shape, domain)
+    points = points if piece.shape.plane is None else points.mean(axis=0, keepdims=True)
+    return points, np.full(len(points), piece.area / len(points))
+
+
+def _size(row: tuple[float, float]) -> float:
+    return abs(row[1])
 
 
 def points_of(shape: Surface, domain: Domain) -> FloatArray:

@@ -103,6 +103,12 @@ def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: 
     return BoundaryPressure(pressure, _factor(table))
 
 
+def pressure_drop(table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
+    """What the pressure is higher by the periodic surface of a ``table`` at ``at`` than on the opposite one."""
+    assert table.pressure_drop is not None
+    return BoundaryPressure(Expression(table.pressure_drop, f"{at}.pressure_drop", dimension))
+
+
 def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
     """That of a wall by its ``table``, None where it rests."""
     if table.velocity is None and table.angular_velocity is None:

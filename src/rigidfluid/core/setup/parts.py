@@ -17,6 +17,7 @@ from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
 
@@ -175,7 +176,9 @@ def _domain(scene: Scene, registry: Registry) -> Domain:
     table = scene.domain
     part = registry.get(DOMAIN, table.type)
     _refuse_unread(table.options, [part], type(table).model_fields, "domain")
-    return part(read_table(part.Options, table.options, "domain"), scene.dimension)
+    domain = part(read_table(part.Options, table.options, "domain"), scene.dimension)
+    domain.periodic = periodic_pairs(scene, domain)
+    return domain
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:

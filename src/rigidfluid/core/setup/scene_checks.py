@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
@@ -82,6 +83,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
     check_cells(scene.mesh, domain)
     check_oblique(scene, backend, domain)
+    check_periodic(scene, backend, domain)
     check_inflow(scene, domain)
 
 
