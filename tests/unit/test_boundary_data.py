@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.boundary_samples import quadrature
-from rigidfluid.core.setup.boundary_values import BoundaryPressure
+from rigidfluid.core.setup.boundary_values import BoundaryPressure, BoundaryVelocity
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.load import scene_from_dict
@@ -339,3 +341,31 @@ def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> No
     flow = flow.after(0.01)
     with pytest.raises(SceneError, match=r"boundary: found a net inflow of 0\.\d* at time 0\.31.*Balance"):
         flow.after(0.3)
+
+
+def developed(dimension: int, divisions: int, inlet: Any, kind: str) -> Flow:
+    """The steady flow through a unit box from its face at x = 0, where something is given, to that at x = 1."""
+    values = {"x0": inlet, "x1": BoundaryPressure(Expression(0.0, "p", dimension))}
+    posed = problem(dimension, {"x0": kind, "x1": "pressure"}, values)
+    posed = replace(posed, initial="steady", inertia=False)
+    return Flow.start(ScikitFem(ScikitFem.Options(), posed), box(dimension, divisions), nobody(dimension))
+
+
+def test_flux_against_pressure_drop_between_plates() -> None:
+    """Q = Δp h³/(12 μ L) for h = L = 1, and the parabola is in the space."""
+    flow = developed(2, 2, BoundaryPressure(Expression("24*exp(0*x)", "p", 2)), "pressure")
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    velocity, _ = flow.probe(np.column_stack([np.full(3, 0.3), 0.5 * (nodes + 1.0)]))
+    assert 0.5 * weights @ velocity[:, 0] == pytest.approx(24.0 / (12.0 * VISCOSITY), rel=1e-8)
+
+
+def test_flux_against_pressure_drop_in_a_square_duct() -> None:
+    """Q = 0.035144 Δp h⁴/(μ L) (White 2006): an inflow with this profile is developed at once."""
+    shape = Rectangle(np.array([0.0, 0.5, 0.5]), np.ones(2), np.eye(3)[1:])
+    inflow = BoundaryVelocity(VectorExpression.of([1.0, 0.0, 0.0], "u"), partial(poiseuille, shape))
+    flow = developed(3, 5, inflow, "velocity")
+    middle = np.array([[x, 0.5, 0.5] for x in (0.25, 0.5, 0.75)])
+    velocity, pressure = flow.probe(middle)
+    np.testing.assert_allclose(velocity, [[1.0, 0.0, 0.0]] * 3, atol=0.01)
+    mean = 0.035144 / 0.073671  # of the peak
+    assert (pressure[0] - pressure[2]) / 0.5 == pytest.approx(VISCOSITY * mean / 0.035144, rel=0.02)
