@@ -109,6 +109,20 @@ def test_profiles_in_2d(profile: str, expected: list[float]) -> None:
     np.testing.assert_allclose(found[:, 0], 2.0 * np.array(expected), atol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("profile", "peak"), [("uniform", 15.0), ("parabolic", 15.0 * 9 / 4), ("poiseuille", 15.0 * 1.9918)]
+)
+def test_a_flux_makes_the_velocity_that_carries_it(profile: str, peak: float) -> None:
+    """Through a face of 1 × 2, of which the middle has the peak; of a duct 1.992 times the mean (Shah and London 1978)."""
+    table = {"type": "velocity", "flux": "3*t", "profile": profile, "over_time": [[0.0, 1.0], [2.0, 5.0]]}
+    face = Piece("left", Plane(np.zeros(3), np.eye(3)[0], (np.zeros(3), np.array([0.0, 1.0, 2.0]))), 2.0)
+    points, weights = quadrature(face, DUCT)
+    found = value_on_left(table, 2.0, points[:, 1:], dimension=3)
+    assert weights @ found[:, 0] == pytest.approx(30.0)
+    np.testing.assert_array_equal(found[:, 1:], 0.0)
+    assert value_on_left(table, 2.0, [[0.5, 1.0]], dimension=3)[0, 0] == pytest.approx(peak, rel=2e-3)
+
+
 def test_a_profile_multiplies_an_expression() -> None:
     found = value_on_left(inflow(velocity=["t + y", 0.0], profile="parabolic", ramp=1.0), 1.0, [0.5])
     np.testing.assert_allclose(found, [[1.5, 0.0]])
@@ -194,6 +208,7 @@ def test_velocities_on_a_curved_surface_are_sampled_all_over_it() -> None:
         scene_from_dict(scene)
 
 
+FLUX = {"on": "left", "type": "velocity", "flux": 1.0}
 LEFT, THROUGH = {"on": "left", **inflow()}, [{"on": "left", **inflow()}, {"on": "right", **inflow()}]
 BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
     "components": ([LEFT | {"velocity": ["y"]}, OPEN], "boundary.0.velocity: found ['y'], 1 of them", "2 dimensions"),
@@ -207,6 +222,10 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
         "boundary.0.over_time.2: found time 1 after 1",
         "Sort",
     ),
+    "flux and velocity": ([LEFT | {"flux": 1.0}, OPEN], "boundary.0.flux: found it beside `velocity`", "Keep one"),
+    "flux on a wall": ([{"on": "left", "type": "wall", "flux": 1.0}], "boundary.0.flux: found it on a 'wall'", "Keep"),
+    "flux in space": ([FLUX | {"flux": "y"}, OPEN], "boundary.0.flux: found an unknown name: 'y'", "t, pi"),
+    "unbalanced flux": ([FLUX, FLUX | {"on": "right", "flux": "-t"}], "a net inflow of 1 [", "pressure"),
     "truth": ([LEFT | {"velocity": [True, 0.0]}, OPEN], "boundary.0.velocity.0: found True", "Velocity"),
     "row of one": ([LEFT | {"over_time": [[0.0], [1.0, 1.0]]}, OPEN], "boundary.0.over_time.0: found", "Factor"),
     "no table": ([LEFT | {"over_time": 3.0}, OPEN], "boundary.0.over_time: found 3.0", "Factor"),
@@ -262,6 +281,7 @@ def test_a_profile_that_the_surface_has_not() -> None:
         [LEFT | {"velocity": ["pi/2*sin(pi*y)*t", 0.0]}, THROUGH[1] | {"velocity": ["t", 0.0]}],
         [table | {"ramp": 0.5, "over_time": [[0.0, 1.0], [3.0, -1.0]]} for table in THROUGH],
         [LEFT | {"velocity": [1.5, 0.0], "profile": "poiseuille"}, THROUGH[1] | {"velocity": [1.0, 0.0]}],
+        [FLUX | {"flux": "1 + t", "profile": "parabolic"}, FLUX | {"on": "right", "flux": "-1 - t"}],
     ],
 )
 def test_what_balances_needs_no_outlet(boundary: list[dict[str, Any]]) -> None:
