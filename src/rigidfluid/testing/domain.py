@@ -97,7 +97,7 @@ class DomainContract:
                 continue
             assert part.names == domain.names
             ends = [p.shape.plane.point[axis] for p in part.pieces if p.shape.plane and p.shape.plane.axis == axis]
-            self._assert_close(np.sort(ends), [low, high], domain)
+            self._assert_close(np.sort(ends), np.array([low, high]), domain)
             between = (points[:, axis] > low) & (points[:, axis] < high)
             np.testing.assert_array_equal(part.contains(points), domain.contains(points) & between)
             assert part.volume / domain.volume == pytest.approx(0.3)
