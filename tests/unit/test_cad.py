@@ -14,6 +14,7 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.profiles import Disk, Rectangle, section
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.closed_form import Flat, Offset, form_of_face
 from rigidfluid.errors import SceneError
@@ -62,6 +63,20 @@ def test_points_outside_a_wall_are_at_negative_distances(tmp_path: Path) -> None
     tube = drawn(bent_tube(), tmp_path)
     wall = tube.pieces[tube.names.index("wall")].shape
     np.testing.assert_allclose(wall.signed_distance(np.array([[0.0, 1.25, 2.0], [5.0, 0.0, 9.0]])), [-0.25, -1.0])
+
+
+def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
+    """So that they can have a Poiseuille profile; and rectangles beside curved faces as rectangles."""
+    tube = drawn(bent_tube(), tmp_path)
+    end = section(tube.pieces[tube.names.index("outflow")])
+    assert isinstance(end, Disk)
+    np.testing.assert_allclose(end.centre, [7.0, 0.0, 7.0], rtol=0, atol=1e-12)
+    assert end.radius == pytest.approx(1.0, rel=1e-12)
+    box = ball_in_a_box()
+    for face, name in zip(sorted(box.faces, key=lambda face: face.center.x)[:1], ("left",), strict=True):
+        face.name = name
+    left = drawn(box, tmp_path)
+    assert isinstance(section(left.pieces[left.names.index("left")]), Rectangle)
 
 
 def test_a_body_is_meshed_in_a_tube(tmp_path: Path) -> None:
