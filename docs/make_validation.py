@@ -212,7 +212,7 @@ def dfg_unsteady() -> None:
     lift.set(xlabel="time [s]", ylabel="lift coefficient")
     rows = []
     for name, overrides in UNSTEADY.items():
-        history, seconds = run("dfg_2d3.toml", overrides)
+        history, _ = run("dfg_2d3.toml", overrides)
         time_of, (of_drag, of_lift, _) = history.bodies["time"], unsteady_coefficients(history)
         drag.plot(time_of[1:], of_drag[1:], label=name)
         lift.plot(time_of[1:], of_lift[1:])
@@ -220,13 +220,13 @@ def dfg_unsteady() -> None:
         off = [
             f"{value:.6g} ({value / exact - 1.0:+.2%})" for value, exact in zip(found, JOHN_2004.values(), strict=True)
         ]
-        rows.append((name, *off, f"{history.summary['unknowns']}", f"{seconds:.0f}"))
+        rows.append((name, *off, str(history.summary["unknowns"]), str(history.summary["steps"])))
     drag.plot(3.93625, 2.950921575, "k+", markersize=12, label="John 2004")
     lift.plot(5.693125, 0.47795, "k+", markersize=12)
     drag.legend()
     figure.savefig(OUT / "dfg_unsteady.png", dpi=120)
     reference = ("John 2004", *(f"{value:.10g}" for value in JOHN_2004.values()), "", "")
-    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "wall time [s]"), [reference, *rows]) + ABOUT_UNSTEADY
+    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "steps"), [reference, *rows]) + ABOUT_UNSTEADY
     write_page("dfg_unsteady", "DFG cylinder 2D-3", "python docs/make_validation.py dfg_unsteady", text)
 
 
@@ -358,12 +358,12 @@ def window() -> None:
     figure = Figure(figsize=(8.0, 4.2), layout="constrained")
     speed, off = figure.subplots(1, 2)
     speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
-    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [1]", yscale="log", ylim=(1e-7, 1e-1))
     for ends, history in runs.items():
         bodies = history.bodies
         label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
         speed.plot(bodies["time"], -bodies["vy"], style, label=label)
-        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+        off.plot(bodies["time"], np.abs(off_the_whole(history, whole)), style)
     speed.legend()
     figure.savefig(OUT / "window.png", dpi=120)
     head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
@@ -373,7 +373,7 @@ def window() -> None:
     write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
 
 
-WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOWS = (None, (2.0, 3.0), (1.0, 3.0), (4.0, 3.0), (2.0, 1.5), (2.0, 6.0), (4.0, 6.0))
 WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
 20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
 meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
@@ -382,8 +382,9 @@ run.
 
 {figures}
 
-Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
-less."""
+Ahead the fluid is held at rest, which the disk feels: half a channel's width from it by more than a per cent, two
+widths from it no more than the new mesh of the whole channel after 2.1 s. Behind the wake leaves through the open end.
+The energy that it takes along is in the balance."""
 
 
 def in_window(ends: tuple[float, float] | None) -> History:

@@ -17,6 +17,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import Contacts, FloatArray, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.facets import FacetDetector
+from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError
 
 FLOOR = Wall(9, "floor", Plane(np.zeros(2), np.array([0.0, 1.0])))
@@ -136,8 +137,12 @@ def test_walls_of_facets_have_corners_too() -> None:
     tilted = found([polygon(SQUARE)], pose((1.6, 1.55, np.pi / 4)), step)
     away = np.array([2.0, 1.0]) - [1.6, 1.55]
     assert tilted.gap[0] == pytest.approx(np.abs(away @ np.array([1.0, -1.0])) / np.sqrt(2.0) - 0.5, rel=1e-12)
-    in_corner = found([ball(0.3, 2)], pose((1.65, 0.32, 0.0)), step)
-    np.testing.assert_allclose(in_corner.gap, [0.02, 0.05], rtol=1e-11)
+    for detector in (FacetDetector, SphereDetector):
+        balls = detector(PartOptions(), [ball(0.3, 2)] * 2, [step])
+        in_corner = balls.detect(pose((1.65, 0.32, 0.0), (0.7, 0.4, 0.0)), None, np.inf)
+        at_wall = in_corner.at_wall
+        np.testing.assert_allclose(in_corner.gap[at_wall], [0.02, 0.05, 0.1], rtol=1e-11)
+        np.testing.assert_array_equal(in_corner.body_a[at_wall], [0, 0, 1])
 
 
 def test_other_shapes_are_refused_by_name() -> None:

@@ -1,4 +1,4 @@
-"""Contacts of the true shapes of balls, ellipses and ellipsoids with each other and with flat walls."""
+"""Contacts of the true shapes of balls, ellipses and ellipsoids with each other and with flat and round walls."""
 
 from __future__ import annotations
 
@@ -14,10 +14,14 @@ from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, require_plane
+from rigidfluid.core.model.wall import Wall, centre_of, is_round, radius_of
+from rigidfluid.detectors.ellipsoid_in_hollow import farthest_points
 from rigidfluid.errors import SceneError, StepError
 
 _STARTS = 16
+
+_ON_THE_WALL = 1e-6
+"""Over the radius: a point of a round surface that is farther than this from a part of it is beyond its end."""
 
 
 class EllipsoidDetector(Detector):
@@ -38,7 +42,7 @@ class EllipsoidDetector(Detector):
     Raises
     ------
     SceneError
-        If a body has no semi-axes, or a wall is not flat.
+        If a body has no semi-axes, or a wall is neither flat nor round.
     """
 
     name: ClassVar[str] = "ellipsoid"
@@ -46,7 +50,8 @@ class EllipsoidDetector(Detector):
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
         self._axes = [_semi_axes(index, body) for index, body in enumerate(bodies)]
-        self._flat = [(wall.surface, require_plane(wall, self.name)) for wall in walls]
+        self._round = [(wall, centre_of(wall.shape)) for wall in walls if is_round(wall.shape)]
+        self._flat = [(wall.surface, _plane(wall)) for wall in walls if not is_round(wall.shape)]
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies], dtype=float)
 
@@ -62,6 +67,9 @@ class EllipsoidDetector(Detector):
         half = rotation_matrices(pose.orientation) * axes[:, None, :]
         found = [self._body_contacts(pose.position, half, reach)]
         found += [self._wall_contacts(pose.position, half, *wall) for wall in self._flat]
+        for wall, centre in self._round:
+            touching = self._bump_contacts if radius_of(wall.shape) > 0 else self._hollow_contacts
+            found.append(touching(pose.position, half, wall, centre, reach))
         contacts = in_order(found)
         return select(contacts, contacts.gap <= reach)
 
@@ -99,6 +107,48 @@ class EllipsoidDetector(Detector):
             at_wall=np.ones(len(position), dtype=bool),
         )
 
+    def _bump_contacts(
+        self, position: FloatArray, half: FloatArray, wall: Wall, centre: FloatArray, reach: float
+    ) -> Contacts:
+        """With a wall that is a ball's surface."""
+        radius, count = radius_of(wall.shape), len(position)
+        near = np.flatnonzero(np.linalg.norm(position - centre, axis=1) - self._bounds - radius <= reach)
+        ball = radius * np.eye(len(centre))
+        both = np.vstack([position, centre]), np.concatenate([half, ball[None]])
+        normal, found = _normals(*both, near, np.full(len(near), count), reach)
+        body = near[found]
+        point_a, point_b = position[body] - _farthest(half[body], normal), centre + radius * normal
+        return self._with_wall(body, wall, point_a, point_b, normal)
+
+    def _hollow_contacts(
+        self, position: FloatArray, half: FloatArray, wall: Wall, centre: FloatArray, reach: float
+    ) -> Contacts:
+        """With a wall that is a ball's surface seen from inside, as far as it goes."""
+        radius = -radius_of(wall.shape)
+        near = np.flatnonzero(np.linalg.norm(position - centre, axis=1) + self._bounds >= radius - reach)
+        first, other, there = farthest_points(position[near] - centre, half[near])
+        body, away = np.concatenate([near, near[there]]), np.concatenate([first, other[there]])
+        distance = np.linalg.norm(away, axis=1, keepdims=True)
+        point_b = centre + radius * away / distance
+        ends = np.linalg.norm(wall.shape.closest_point(point_b) - point_b, axis=1) <= _ON_THE_WALL * radius
+        found = self._with_wall(body, wall, centre + away, point_b, -away / distance)
+        return select(found, np.flatnonzero(ends)[np.argsort(found.gap[ends], kind="stable")])
+
+    def _with_wall(
+        self, body: IntArray, wall: Wall, point_a: FloatArray, point_b: FloatArray, normal: FloatArray
+    ) -> Contacts:
+        return Contacts(
+            body_a=body,
+            body_b=np.full(len(body), wall.surface),
+            point_a=point_a,
+            point_b=point_b,
+            normal=normal,
+            gap=np.sum((point_a - point_b) * normal, axis=1),
+            radius_a=self._radii[body],
+            radius_b=np.full(len(body), radius_of(wall.shape)),
+            at_wall=np.ones(len(body), dtype=bool),
+        )
+
 
 def _semi_axes(index: int, body: Body) -> FloatArray:
     if body.semi_axes is not None:
@@ -108,6 +158,17 @@ def _semi_axes(index: int, body: Body) -> FloatArray:
         f'"ellipsoid" with body.{index} of type "{body.name}"',
         "balls, ellipses and ellipsoids only",
         'Use detector = "fast_marching", or "brute_force", for this shape.',
+    )
+
+
+def _plane(wall: Wall) -> Plane:
+    if wall.shape.plane is not None:
+        return wall.shape.plane
+    raise SceneError(
+        "contact.detector",
+        f'"ellipsoid" with the wall {wall.name!r}',
+        "walls that are flat or round",
+        'Use detector = "auto", which takes one for this wall.',
     )
 
 
