@@ -108,6 +108,46 @@ def test_a_polyhedron_that_goes_through_itself_is_refused(tmp_path: Path) -> Non
         polyhedron(binary_stl(tmp_path / "cube.stl", pushed, TRIANGLES))
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.1, 2.0])
+def test_facets_in_one_plane_do_not_cross_whatever_rounding_says(turn: float, tmp_path: Path) -> None:
+    """A cube's faces cut into fans about a middle that is off the plane by single precision."""
+    points, triangles = fans_on_a_cube()
+    across = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+    body = polyhedron(binary_stl(tmp_path / "cube.stl", points @ across.T @ across[[1, 2, 0]], triangles))
+    assert body.volume == pytest.approx(1.0, rel=1e-6)
+
+
+def fans_on_a_cube() -> tuple[np.ndarray, list[list[int]]]:
+    """Each face with five vertices on each edge and a fan of triangles from one within."""
+    points: list[tuple[float, ...]] = []
+    triangles: list[list[int]] = []
+
+    def number(point: np.ndarray) -> int:
+        key = tuple(np.round(point, 9).tolist())
+        if key not in points:
+            points.append(key)
+        return points.index(key)
+
+    steps = np.arange(5) / 5.0
+    zeros, ones = np.zeros(5), np.ones(5)
+    around = np.concatenate(
+        [
+            np.stack([steps, zeros], 1),
+            np.stack([ones, steps], 1),
+            np.stack([1 - steps, ones], 1),
+            np.stack([zeros, 1 - steps], 1),
+        ]
+    )
+    for axis in range(3):
+        for side in (0.0, 1.0):
+            ring = [number(np.insert(at, axis, side)) for at in around]
+            middle = number(np.insert(np.array([0.37, 0.41]), axis, side))
+            for a, b in zip(ring, np.roll(ring, -1), strict=True):
+                outwards = (axis != 1) == (side == 1.0)
+                triangles.append([middle, a, int(b)] if outwards else [middle, int(b), a])
+    return np.array(points), triangles
+
+
 @pytest.mark.parametrize("content", [b"", b"solid\nendsolid\n", b"solid\nvertex 0 0\n", b"\x00" * 200])
 def test_files_without_triangles_are_refused(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "cube.stl").write_bytes(content)
