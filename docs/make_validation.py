@@ -592,10 +592,10 @@ def walls() -> None:
     ]
     text += (
         "\n\n## Periodic surfaces\n\n"
-        "Cubic arrays of balls of radius 0.2 and distance 1 in Stokes flow that a pressure drop drives, periodic in all "
-        "directions: force on each over viscosity and mean velocity, against the series of Sangani and Acrivos 1982, "
-        "doi:10.1016/0301-9322(82)90029-5 and 10.1016/0301-9322(82)90047-7. The first of them has coefficients of three "
-        "digits and ends with the cube of the volume fraction, which is 0.126 here.\n\n"
+        "Cubic arrays of balls of radius 0.2 and distance 1 in Stokes flow that a pressure drop drives, periodic in "
+        "all directions: force on each over viscosity and mean velocity, against the series of Sangani and Acrivos "
+        "1982, doi:10.1016/0301-9322(82)90029-5 and 10.1016/0301-9322(82)90047-7. The first of them has coefficients "
+        "of three digits and ends with the cube of the volume fraction, which is 0.126 here.\n\n"
     )
     text += table(("layers", "of", "force", "off"), arrays)
     write_page("walls", "Curved walls and oblique ends", "python docs/make_validation.py walls", text)
