@@ -384,7 +384,8 @@ run.
 {figures}
 
 Ahead the fluid is held at rest, which the disk feels: half a channel's width from it by more than a per cent, two
-widths from it no more. Behind the wake leaves through the open end. The energy that it takes along is in the balance."""
+widths from it no more than the new mesh of the whole channel after 2.1 s. Behind the wake leaves through the open end.
+The energy that it takes along is in the balance."""
 
 
 def in_window(ends: tuple[float, float] | None) -> History:

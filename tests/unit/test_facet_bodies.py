@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, binary_stl, polygon, polyhedron
+from mesh_tools import ball
 
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.errors import SceneError
 
 
@@ -27,6 +29,15 @@ def test_an_l_has_the_moments_of_its_two_rectangles() -> None:
     assert found.unit_inertia[0, 0] == pytest.approx((own + moved).sum() / 1.75, rel=1e-13)
     np.testing.assert_allclose(found.facets.points[0] + centre, [9.0, 5.0], rtol=1e-14)
     assert found.bounding_radius == pytest.approx(max(np.hypot(*([11.0, 5.0] - centre)), np.hypot(*([9, 7] - centre))))
+
+
+def test_a_shape_may_be_thick_where_its_centre_is_not() -> None:
+    corner = polygon([(0.0, 0.0), (0.3, 0.0), (0.3, 0.12), (0.12, 0.12), (0.12, 0.3), (0.0, 0.3)])
+    assert half_thickness(corner) == pytest.approx(0.12 * np.sqrt(2) / (1.0 + np.sqrt(2)), rel=0.05)
+    assert 0.0 < inscribed_radius(corner) < 0.01
+    thin = polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 0.1), (0.1, 0.1), (0.1, 1.0), (0.0, 1.0)])
+    assert inscribed_radius(thin) == 0.0
+    assert half_thickness(ball(0.2)) == 0.2
 
 
 def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) -> None:

@@ -85,9 +85,8 @@ class Cad(Domain):
 
     @property
     def extent(self) -> tuple[FloatArray, FloatArray]:
-        """Corners of the box around all pieces [length]."""
-        lower, upper = zip(*(piece.shape.bounds for piece in self.pieces), strict=True)
-        return np.min(lower, axis=0), np.max(upper, axis=0)
+        """Corners of the box around all faces; round ones may be a little within it [length]."""
+        return self._exact.bounds
 
     @property
     def volume(self) -> float:
@@ -120,7 +119,8 @@ class Cad(Domain):
         chosen = np.isin(self._facets.markers, numbers)
         facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
         all_flat = all(isinstance(self._forms[i], Flat) for i in numbers)
-        plane: Plane | None = plane_around(facets, self._facets.points, self._exact.slack) if all_flat else None
+        slack = self._exact.slack if self.dimension == 3 else 0.0  # a side in the plane ends at points
+        plane: Plane | None = plane_around(facets, self._facets.points, slack) if all_flat else None
         shape: Surface = plane or FormedSurface(facets, self._forms, self._whole)
         return Piece(name, shape, float(sum(self._sides[i].mass for i in numbers)))
 

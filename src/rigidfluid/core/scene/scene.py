@@ -134,6 +134,11 @@ class BoundaryTable(_Table):
         default=None,
         description="Velocity on a `velocity` surface, its peak; of a `wall` along itself, in numbers [length/time]",
     )
+    flux: Formula | None = Field(
+        default=None,
+        description="Instead of `velocity`, what flows in through a `velocity` surface, out if negative: a number or "
+        "an expression of t alone [length^d/time]",
+    )
     profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
         default="uniform",
         description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
