@@ -17,6 +17,7 @@ from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
+from rigidfluid.checks.shapes import of_facets
 from rigidfluid.checks.static_load import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.checks.tolerance import to_a_tolerance
@@ -105,7 +106,7 @@ def check(scene: Scene) -> Report:
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
-    yield from to_a_tolerance(scene.time)
+    yield from chain(to_a_tolerance(scene.time), of_facets(system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

@@ -198,6 +198,7 @@ def _ball_touches(ball: _Ball, other: _Placed | _Wall, reach: float, spread: flo
 
 
 def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> list[Touches]:
+    reach = min(reach, _some_gap(a, b) + spread)
     parts = [_corner_touches(a, b, reach, spread)]
     if isinstance(b, _Round):
         ball = b.ball(a.position)
@@ -208,14 +209,33 @@ def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float)
     return parts
 
 
+def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
+    """Of a vertex of a that is near b; the least gap is no larger [length]."""
+    foot = b.nearby(a.position[None], np.inf, 0.0).foot[0]
+    points = a.points
+    nearest = np.argmin(np.linalg.norm(points - foot, axis=1))
+    return max(float(b.nearby(points[nearest : nearest + 1], np.inf, 0.0).distance[0]), 0.0)
+
+
 def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> Touches:
     features = a.solid.features
-    corners = a.lab(a.solid.surface.facets.points[features.corners])
+    corners = a.points[features.corners]
+    close = np.flatnonzero(_beside(corners[:, None], b, reach))
+    corners = corners[close]
     near = b.nearby(corners, reach, spread)
-    outwards = features.corner_normals[near.point] @ a.rotation.T
+    outwards = features.corner_normals[close[near.point]] @ a.rotation.T
     faces = np.sum(outwards * near.normal, axis=1) < 0
     nearest = near.distance <= near.distance.min(initial=np.inf)
     return Touches(corners[near.point], near.foot, near.normal, near.distance).at(faces | nearest)
+
+
+def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
+    """Which groups of points (m, k, d) have a box within ``reach`` of that around another surface, in its frame."""
+    if isinstance(other, _Round):
+        return np.ones(len(groups), dtype=bool)
+    lower, upper = other.solid.surface.bounds
+    inside = other.local(groups)
+    return np.asarray(np.all((inside.max(axis=1) >= lower - reach) & (inside.min(axis=1) <= upper + reach), axis=1))
 
 
 def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
@@ -224,13 +244,16 @@ def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
         return _none(dimension)
     from rigidfluid.detectors.edge_pairs import passing_edges
 
-    edges_a, edges_b = a.solid.features, b.solid.features
-    first, second, point_a, point_b = passing_edges(a.points, edges_a.edges, b.points, edges_b.edges, reach)
+    points_a, points_b, both = a.points, b.points, (a.solid.features, b.solid.features)
+    close_a = _beside(points_a[both[0].edges], b, reach)
+    close_b = _beside(points_b[both[1].edges], a, reach)
+    edges_a, edges_b = both[0].edges[close_a], both[1].edges[close_b]
+    first, second, point_a, point_b = passing_edges(points_a, edges_a, points_b, edges_b, reach)
     away = point_a - point_b
     gap = np.linalg.norm(away, axis=1)
     normal = away / gap[:, None]
-    towards_b = np.sum(edges_a.edge_normals[first] @ a.rotation.T * normal, axis=1) < 0
-    towards_a = np.sum(edges_b.edge_normals[second] @ b.rotation.T * normal, axis=1) > 0
+    towards_b = np.sum(both[0].edge_normals[close_a][first] @ a.rotation.T * normal, axis=1) < 0
+    towards_a = np.sum(both[1].edge_normals[close_b][second] @ b.rotation.T * normal, axis=1) > 0
     return Touches(point_a, point_b, normal, gap).at(towards_a & towards_b)
 
 
