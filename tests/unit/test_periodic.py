@@ -12,7 +12,10 @@ import pytest
 from mesh_tools import ball, upright
 
 from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.periodic import with_exact_images
+from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import FloatArray, Mesh
@@ -23,7 +26,7 @@ from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.errors import SceneError, StepError
+from rigidfluid.errors import MeshError, SceneError, StepError
 
 ENDS = [{"on": "left", "type": "periodic", "pressure_drop": 6.0}, {"on": "right", "type": "periodic"}]
 
@@ -67,6 +70,30 @@ def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None
             one, two = (across(mesh, 1 + piece, pair[0] // 2) for piece in pair)
             assert len(one) > d
             np.testing.assert_array_equal(one, two)
+
+
+def test_images_are_put_exactly_where_they_belong_and_lost_ones_are_told() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    mesh = initial_mesh([ball(0.15)], upright([0.6, 0.6]), domain, [], Sizes(0.3, 0.1))
+    right = np.unique(mesh.facets[mesh.markers == 2])
+    points = mesh.points.copy()
+    points[right, 1] += 1e-9 * np.sin(np.arange(len(right)))
+    np.testing.assert_array_equal(with_exact_images(replace(mesh, points=points), 1, domain).points, mesh.points)
+    points[right[0], 1] += 0.01
+    with pytest.raises(MeshError, match=r"vertices on the periodic surfaces 'left' and 'right'"):
+        with_exact_images(replace(mesh, points=points), 1, domain)
+
+
+def test_facets_of_periodic_surfaces_are_not_halved() -> None:
+    """Though they are longer than wanted by now, as those of the ball are."""
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    around = [ball(0.15)], upright([0.3, 0.6]), domain, []
+    mesh = initial_mesh(*around, Sizes(0.3, 0.1))
+    edges, _, _ = long_edges(mesh, *around, Sizes(0.02, 0.01), LONGEST)
+    assert len(edges)
+    assert set(edges.ravel()) <= set(mesh.facets[mesh.markers == 0].ravel())
 
 
 def test_a_pressure_drop_takes_a_ball_along_and_the_energy_balance_closes() -> None:
@@ -135,6 +162,16 @@ def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
     scene = channel()
     with pytest.raises(SceneError, match=r"boundary.0.type: found 'periodic' with backend 'dolfinx'"):
         check_periodic(scene, Dolfinx, known_parts(scene).domain)
+    with pytest.raises(SceneError, match=r"found 'periodic' with backend 'dry'"):
+        channel(fluid={"backend": "dry"}, mesh=None)
+
+
+def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is 'cad'"):
+        Inserter("fill").chosen([ball(0.15)], domain)
+    assert Inserter().chosen([ball(0.15)], domain) == "cad"
 
 
 def test_no_periodic_surface_repels() -> None:

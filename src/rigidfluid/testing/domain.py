@@ -87,6 +87,21 @@ class DomainContract:
             assert domain.contains(foot + step).all()
             assert not domain.contains(foot - step).any()
 
+    def test_a_part_between_two_planes_is_the_same_all_along(self, domain: Domain) -> None:
+        """Where there is one: names as before, flat ends at the planes, and the same points inside between them."""
+        lower, upper = domain.extent
+        for axis in range(len(lower)):
+            low, high = lower[axis] + np.array([0.3, 0.6]) * (upper - lower)[axis]
+            part, points = domain.between(axis, low, high), _probes(domain)
+            if part is None:
+                continue
+            assert part.names == domain.names
+            ends = [p.shape.plane.point[axis] for p in part.pieces if p.shape.plane and p.shape.plane.axis == axis]
+            self._assert_close(np.sort(ends), np.array([low, high]), domain)
+            between = (points[:, axis] > low) & (points[:, axis] < high)
+            np.testing.assert_array_equal(part.contains(points), domain.contains(points) & between)
+            assert part.volume / domain.volume == pytest.approx(0.3)
+
     def test_the_mesh_is_in_the_domain(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
         """What is far from the facets is inside, and the box around all is `extent`."""
         points, boundary = meshes[1].points, np.unique(meshes[1].facets)

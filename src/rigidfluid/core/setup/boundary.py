@@ -55,7 +55,7 @@ def _condition(scene: Scene, domain: Domain, surface: int, piece: Piece) -> Boun
     if table.type == "wall":
         sliding = wall_velocity(table, scene.dimension)
         value = None if sliding is None else sliding.steadily
-    elif table.velocity is not None:
+    elif table.type == "velocity":
         value = prescribed_velocity(piece, table, table_key(scene, table))
     elif table.pressure is not None:
         value = prescribed_pressure(piece, table, scene.dimension, table_key(scene, table))

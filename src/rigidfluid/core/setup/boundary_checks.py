@@ -14,6 +14,7 @@ from rigidfluid.core.setup.boundary_values import (
     BoundaryVelocity,
     prescribed_pressure,
     prescribed_velocity,
+    pressure_drop,
     wall_velocity,
 )
 from rigidfluid.core.setup.time_factor import check_rows
@@ -119,8 +120,11 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
         given = getattr(table, key) is not None
         if given and table.type not in types:
             raise SceneError(f"{at}.{key}", f"it on a {table.type!r} surface", f"it with type = {key!r}", "Keep one.")
-        if table.type == key and not given:
+        if table.type == key and not given and table.flux is None:
             raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
+    if table.flux is not None and (table.type != "velocity" or table.velocity is not None):
+        found = "it beside `velocity`" if table.velocity is not None else f"it on a {table.type!r} surface"
+        raise SceneError(f"{at}.flux", found, "one of both, with type = 'velocity'", "Keep one.")
     if table.profile != "uniform" and table.type != "velocity":
         found = f"{table.profile!r} on a {table.type!r} surface"
         raise SceneError(f"{at}.profile", found, "it with type = 'velocity'", "Leave it out.")
@@ -168,6 +172,8 @@ def _check_values(scene: Scene, domain: Domain, piece: Piece, table: BoundaryTab
         value = prescribed_velocity(piece, table, at)
     elif table.type == "pressure":
         value = prescribed_pressure(piece, table, scene.dimension, at)
+    elif table.pressure_drop is not None:
+        value = pressure_drop(table, scene.dimension, at)
     else:
         return
     points, _ = quadrature(piece, domain)

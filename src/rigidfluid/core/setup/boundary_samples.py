@@ -12,13 +12,13 @@ from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
-from rigidfluid.core.setup.profiles import Disk, Rectangle, section
+from rigidfluid.core.setup.profiles import section
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
 
-_PANELS, _TIMES, _ROWS = 8, 65, 500
-"""Panels of a side, each with three points of its integral; times in a run; rows of a table."""
+_TIMES, _ROWS = 65, 500
+"""Times in a run, and rows of a table, that are looked at."""
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,8 @@ def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:
     Of a curved piece, points all over it; of a flat one whose section is not known, one.
     """
     shape = section(piece)
-    nodes, weights = _composite()
-    if isinstance(shape, Rectangle):
-        grid = np.meshgrid(*[nodes] * len(shape.sides), indexing="ij")
-        products = np.prod(np.meshgrid(*[weights] * len(shape.sides), indexing="ij"), axis=0)
-        return shape.points(np.stack([axis.ravel() for axis in grid], axis=1)), products.ravel() * piece.area
-    if isinstance(shape, Disk):
-        plane = piece.shape.plane
-        assert plane is not None
-        across = np.linalg.svd(plane.unit_normal[None, :])[2][1:]
-        angle = 2.0 * np.pi * nodes
-        circle = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ across
-        points = shape.centre + shape.radius * nodes[:, None, None] * circle
-        return points.reshape(-1, 3), (2.0 * np.outer(weights * nodes, weights) * piece.area).ravel()
+    if shape is not None:
+        return shape.quadrature()
     points = points_of(piece.shape, domain)
     points = points if piece.shape.plane is None else points.mean(axis=0, keepdims=True)
     return points, np.full(len(points), piece.area / len(points))
@@ -100,10 +89,3 @@ def points_of(shape: Surface, domain: Domain) -> FloatArray:
     """Points all over a surface of the domain, (100, d) [length]."""
     lower, upper = (np.clip(corner, *domain.extent) for corner in shape.bounds)
     return shape.closest_point(np.random.default_rng(0).uniform(lower, upper, (100, domain.dimension)))
-
-
-def _composite() -> tuple[FloatArray, FloatArray]:
-    """Gauss' rule of three points in each panel of [0, 1], exact for polynomials of degree 5."""
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    panels = np.arange(_PANELS)[:, None]
-    return ((panels + 0.5 * (nodes + 1.0)) / _PANELS).ravel(), np.tile(0.5 * weights / _PANELS, _PANELS)

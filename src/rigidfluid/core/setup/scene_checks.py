@@ -70,6 +70,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
         tolerance; if the flow at the start is not for this backend.
     """
     check_initial_flow(scene, backend, domain)
+    check_periodic(scene, backend, domain)
     if not backend.needs_mesh:
         if scene.time.tolerance is not None:
             allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"
@@ -83,7 +84,6 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
         raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
     check_cells(scene.mesh, domain)
     check_oblique(scene, backend, domain)
-    check_periodic(scene, backend, domain)
     check_inflow(scene, domain)
 
 
