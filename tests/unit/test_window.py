@@ -151,6 +151,15 @@ def test_a_disk_falls_as_in_the_whole_channel() -> None:
     assert part.summary["unknowns"] < 0.6 * whole.summary["unknowns"]
 
 
+def test_the_end_of_the_domain_is_reached_to_the_last_bit() -> None:
+    domain = box([0.0, 0.3], [2.0, 10.3])
+    for start in np.linspace(5.0, 9.0, 50).tolist():
+        window = Window(domain, body=0, axis=1, start=start, behind=start + 1.0, ahead=start - 1.1)
+        floor = Pose(np.array([[1.0, 0.425]]), np.zeros((1, 1)))
+        assert window.interval(floor)[0] == 0.3
+        assert window.left_by(floor, np.array([0.125])) is None
+
+
 def test_a_body_that_stops_stops_its_window() -> None:
     run = Simulation(scene(WINDOW, {"velocity": [0.0, -5.0]}, fluid={"gravity": None}, time={"end": 0.5}))
     run.go()

@@ -38,9 +38,7 @@ class Window:
     @property
     def way(self) -> float:
         """How far it can go until it reaches the end of the domain [length]."""
-        lower, upper = self.domain.extent
-        end = (upper if self.sign > 0.0 else lower)[self.axis]
-        return self.sign * float(end - self.ahead)
+        return self.sign * (self._end - self.ahead)
 
     @property
     def ends(self) -> tuple[int, int]:
@@ -61,8 +59,9 @@ class Window:
     def interval(self, pose: Pose) -> tuple[float, float]:
         """Lower and upper coordinate along the axis, while the bodies are at ``pose`` [length]."""
         moved = self.displacement(pose)
-        lower, upper = sorted((self.behind, self.ahead))
-        return lower + moved, upper + moved
+        ahead = self._end if abs(moved) == self.way else self.ahead + moved  # there to the last bit
+        lower, upper = sorted((self.behind + moved, ahead))
+        return lower, upper
 
     def at(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""
@@ -78,3 +77,9 @@ class Window:
         along, apart = pose.position[:, self.axis], CLEARANCE * radius
         left = ((along - apart < low) & (low > lower)) | ((along + apart > high) & (high < upper))
         return int(np.argmax(left)) if left.any() else None
+
+    @property
+    def _end(self) -> float:
+        """Of the domain, ahead [length]."""
+        lower, upper = self.domain.extent
+        return float((upper if self.sign > 0.0 else lower)[self.axis])
