@@ -22,6 +22,15 @@ BELOW = {
     "run": "setup mesh contact output mechanics scene model",
 }
 
+PARTS = {
+    "backends": "core.mesh taylor_hood",
+    "bodies": "",
+    "detectors": "core.contact marching",
+    "forces": "core.contact",
+    "domains": "core.mesh core.scene core.setup registry",
+}
+"""What built-in parts import besides the model and mechanics; obstacles of domains are tables in a scene."""
+
 
 def imports(path: Path) -> Iterator[str]:
     """All that a module imports from rigidfluid, for type checkers and within functions too."""
@@ -48,6 +57,13 @@ def test_core_knows_no_plug_in_and_nothing_above_it() -> None:
     beside = {"errors", "registry", "hookspecs"}
     homes = {name.split(".")[1] for path in (SOURCE / "core").rglob("*.py") for name in imports(path)}
     assert homes - {"core"} <= beside
+
+
+@pytest.mark.parametrize("kind", PARTS)
+def test_built_in_parts_import_neither_each_other_nor_the_loop(kind: str) -> None:
+    names = {name for path in (SOURCE / kind).rglob("*.py") for name in imports(path)}
+    rooms = {".".join(name.split(".")[1:3]) if ".core." in name else name.split(".")[1] for name in names}
+    assert rooms <= {kind, "core.model", "core.mechanics", "errors", "hookspecs", *PARTS[kind].split()}
 
 
 def test_no_room_is_more_than_twelve_hundredths_of_all() -> None:
