@@ -905,9 +905,8 @@ the velocity after the bounce is off by up to .022 and .0063 cm/s with fixed ste
 3.3 s; by .022 and .0065 cm/s with tolerances of .0003 and .0001, in 3.5 and 4.4 s."""
 
 
-ARRANGEMENTS = {"stenosis, 20 bodies": 20, "irregular outline, 20 bodies": 20}
-"""How many of each case; of the others one."""
-WAYS = ("fill", "level_set")
+WAYS: dict[Way, int] = {"fill": 20, "level_set": 5}
+"""How many arrangements in the plane are tried in each way; in space it is one."""
 
 INSERTION = """Balls and ellipsoids in turn, at random places and angles, none nearer than 0.12 to anything. The
 stenosis is 32 by 8 with a throat of 1.75, its bodies have radii of .25 to .5, and facets are .1 on them and up to .5
@@ -946,7 +945,7 @@ def insertion() -> None:
 def insertion_row(name: str, way: Way) -> tuple[str, ...]:
     """One row of `insertion`'s first table."""
     case, found, failed = insertions.CASES[name](), [], 0
-    count = ARRANGEMENTS.get(name, 1)
+    count = WAYS[way] if case.domain.dimension == 2 else 1
     for seed in range(count):
         try:
             found.append(insertions.outcome(case, seed, way))
