@@ -924,7 +924,8 @@ SHOWN = """
 
 A collection of shapes in a vessel from a mesh file, and three balls in a row, an egg and bodies from STL files in a
 bent tube from a STEP file, as in the appendix of arXiv:2402.19093. `given vertices kept`: corners of a shape made of
-facets that are in the mesh to the last bit. Colours show the pieces of the boundary, and in space the quality of
+facets that are in the mesh to the last bit. A level set does not come onto the re-entrant corner of the arrow, body 6.
+Colours show the pieces of the boundary, and in space the quality of
 cells in a slice.
 
 """
@@ -971,7 +972,11 @@ def inserted_rows(scene: str, way: Way) -> Iterable[tuple[str, ...]]:
     """A row for each surface of a scene's mesh, whose picture is kept where it was filled."""
     with tempfile.TemporaryDirectory() as folder:
         loaded = rigidfluid.load_scene(ROOT / "scenes" / f"{scene}.toml", [f"mesh.inserter={way}"])
-        figures, _ = insert(loaded, Path(folder))
+        try:
+            figures, _ = insert(loaded, Path(folder))
+        except MeshError as error:
+            yield scene, way, f"fails at {error.subject}: {error.found}", "", "", "", "", ""
+            return
         if way == "fill":
             shutil.copy(Path(folder) / "mesh.png", OUT / f"{scene}.png")
     size = f"{figures.cells} cells, quality {figures.worst_quality:.2f}"
