@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from facet_shapes import L_SHAPE, SQUARE
+from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
 
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.run.simulation import Simulation
@@ -46,3 +47,27 @@ def test_a_polygon_falls_onto_the_floor(shape: str) -> None:
     assert state.mesh.curved is None
     assert cell_volumes(state.mesh.points, state.mesh.cells).sum() == pytest.approx(1.0 - volume, rel=1e-10)
     assert abs(state.ledger.residual) < 0.01 * state.ledger.gravity
+
+
+def test_a_cube_from_a_file_sinks(tmp_path: Path) -> None:
+    """Its facets stay as they are, so that the mesh has the exact volume."""
+    file = binary_stl(tmp_path / "cube.stl", CUBE, TRIANGLES)
+    body = {"type": "stl", "file": str(file), "scale": 0.3, "density": 2.0, "orientation": [0.97, 0.1, 0.2, 0.05]}
+    tables: dict[str, Any] = {
+        "scene": {"name": "cube", "dimension": 3},
+        "fluid": {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.02, "gravity": [0.0, 0.0, -4.0]},
+        "domain": {"lower": [0.0, 0.0, 0.0], "upper": [1.0, 1.0, 1.0]},
+        "mesh": {"size": 0.4, "size_body": 0.3},
+        "body": [body | {"position": [0.5, 0.5, 0.4]}],
+        "contact": {"law": "contact", "range": 0.05, "epsilon": "auto"},
+        "time": {"end": 0.1, "step": 0.02},
+        "output": {"every": 0.1},
+    }
+    simulation = Simulation(scene_from_dict(tables), None, False)
+    simulation.go()
+    state = simulation.state
+    assert state.pose.position[0, 2] < 0.4
+    assert state.mesh is not None
+    volume = simulation.system.bodies[0].volume
+    assert cell_volumes(state.mesh.points, state.mesh.cells).sum() == pytest.approx(1.0 - volume, rel=1e-10)
+    assert abs(state.ledger.residual) < 0.02 * state.ledger.gravity

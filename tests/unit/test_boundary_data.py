@@ -113,7 +113,7 @@ def test_profiles_in_2d(profile: str, expected: list[float]) -> None:
     ("profile", "peak"), [("uniform", 15.0), ("parabolic", 15.0 * 9 / 4), ("poiseuille", 15.0 * 1.9918)]
 )
 def test_a_flux_makes_the_velocity_that_carries_it(profile: str, peak: float) -> None:
-    """Through a face of 1 × 2, of which the middle has the peak; of a duct 1.992 times the mean (Shah and London 1978)."""
+    """Through a face of 1 × 2, of which the middle has the peak; of a duct 1.992 times the mean."""
     table = {"type": "velocity", "flux": "3*t", "profile": profile, "over_time": [[0.0, 1.0], [2.0, 5.0]]}
     face = Piece("left", Plane(np.zeros(3), np.eye(3)[0], (np.zeros(3), np.array([0.0, 1.0, 2.0]))), 2.0)
     points, weights = quadrature(face, DUCT)

@@ -124,11 +124,10 @@ class FormedSurface(Surface):
 
     def _go_on(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
         """Where faces pass into one another, the form of the face that is near a point may end before its foot: then
-        the next face goes on, unless that is farther."""
+        the next face goes on."""
         there = _Feet(found.foot[rows], found.normal[rows], found.face[rows], found.bounded[rows])
         following = self._on_forms(points[rows], there)
-        before, after = (np.linalg.norm(points[rows] - foot, axis=1) for foot in (found.foot[rows], following.foot))
-        taken = following.bounded & (after <= before + self.slack)
+        taken = following.bounded
         found.foot[rows[taken]], found.normal[rows[taken]] = following.foot[taken], following.normal[taken]
 
     def _on_forms(self, points: FloatArray, near: _Feet) -> _Feet:

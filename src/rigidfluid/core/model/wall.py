@@ -43,6 +43,7 @@ def centre_of(shape: Surface) -> FloatArray:
     lower, upper = shape.bounds
     middle = 0.5 * (lower + upper)
     steps = np.stack(np.meshgrid(*[[-0.5, 0.0, 0.5]] * len(middle)), axis=-1).reshape(-1, len(middle))
+    steps = steps[np.any(steps != 0.0, axis=1)]  # no point is nearest to the centre
     points = shape.closest_point(middle + steps * (upper - lower)) - middle
     system = np.column_stack([2.0 * points, np.ones(len(points))])
     return np.asarray(middle + np.linalg.lstsq(system, np.sum(points**2, axis=1))[0][:-1])

@@ -372,12 +372,13 @@ class Scene(_Table):
     def to_dict(self) -> dict[str, Any]:
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
-        # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
+        # Without keys that came later a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}
-        if self.mesh is not None and not self.mesh.refine:
-            left_out["mesh"] = {"refine"}
+        if self.mesh is not None:
+            defaults = {name: MeshTable.model_fields[name].default for name in ("refine", "mesher_timeout")}
+            left_out["mesh"] = {name for name, value in defaults.items() if getattr(self.mesh, name) == value}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 
 

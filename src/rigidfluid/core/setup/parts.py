@@ -139,8 +139,8 @@ def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tup
     -------
     str, str
         The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
-        walls are flat, round bumps or whole round hollows; ``facets`` for balls, polygons and polyhedra where all walls
-        are flat, round or of facets; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+        walls are flat, round bumps or whole round hollows; ``facets`` where there are polygons and polyhedra too, and
+        walls may be of facets; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"
@@ -149,13 +149,21 @@ def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tup
         if all(piece.shape.plane or _is_whole(piece) for piece in domain.pieces):
             return "ellipsoid", "all bodies are balls or ellipsoids"
         reason = "not all bodies are balls and not all walls are flat or round"
-    elif all(body.radius is not None or body.facets is not None for body in bodies):
-        if all(piece.shape.radius is not None or isinstance(piece.shape, FacetSurface) for piece in domain.pieces):
-            return "facets", "all bodies are balls or made of facets"
+    elif all(body.semi_axes is not None or body.facets is not None for body in bodies):
+        long = any(body.semi_axes is not None and body.radius is None for body in bodies)
+        if all(_meets_facets(piece, long) for piece in domain.pieces):
+            return "facets", "all bodies are balls, ellipsoids or made of facets"
         reason = "not all bodies are balls and a wall is neither flat nor round nor made of facets"
     if mesh:
         return "narrow_band", f"{reason}, and there is a mesh and a law"
     return "brute_force", f"{reason}, and there is no mesh or no law"
+
+
+def _meets_facets(piece: Piece, long: bool) -> bool:
+    """Whether the detector of facets takes a piece; ``long``: some bodies are ellipsoids that are no balls."""
+    if isinstance(piece.shape, FacetSurface) or piece.shape.plane:
+        return True
+    return _is_whole(piece) if long else is_round(piece.shape)
 
 
 def _is_whole(piece: Piece) -> bool:
