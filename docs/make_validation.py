@@ -23,14 +23,16 @@ from matplotlib.patches import Circle
 
 import rigidfluid
 from rigidfluid.core.mesh.coarsening import relative_sizes
+from rigidfluid.core.mesh.inserter import Way
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import StepError
+from rigidfluid.errors import MeshError, StepError
 from rigidfluid.evaluation.crosscheck import crosscheck
 from rigidfluid.evaluation.crosscheck.comparison import PARTED
+from rigidfluid.evaluation.insertion import insert
 from rigidfluid.evaluation.studies import load_study, run_study
 from rigidfluid.evaluation.studies.results import Results
 from rigidfluid.evaluation.studies.rows import cells, short_text
@@ -44,11 +46,13 @@ sys.path.append(str(ROOT / "tests" / "support"))
 
 import adaptive_step as adaptive  # noqa: E402
 import curved_channels  # noqa: E402
+import insertion_cases as insertions  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
 from fluid_contact_table import made  # noqa: E402
 from fluid_contacts import created_and_lost, put_in  # noqa: E402
+from periodic_arrays import array_of_balls, exact_array  # noqa: E402
 from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_SPEED  # noqa: E402
 
 Row = tuple[str, str, str, str]
@@ -216,7 +220,7 @@ def dfg_unsteady() -> None:
     lift.set(xlabel="time [s]", ylabel="lift coefficient")
     rows = []
     for name, overrides in UNSTEADY.items():
-        history, seconds = run("dfg_2d3.toml", overrides)
+        history, _ = run("dfg_2d3.toml", overrides)
         time_of, (of_drag, of_lift, _) = history.bodies["time"], unsteady_coefficients(history)
         drag.plot(time_of[1:], of_drag[1:], label=name)
         lift.plot(time_of[1:], of_lift[1:])
@@ -224,13 +228,13 @@ def dfg_unsteady() -> None:
         off = [
             f"{value:.6g} ({value / exact - 1.0:+.2%})" for value, exact in zip(found, JOHN_2004.values(), strict=True)
         ]
-        rows.append((name, *off, f"{history.summary['unknowns']}", f"{seconds:.0f}"))
+        rows.append((name, *off, str(history.summary["unknowns"]), str(history.summary["steps"])))
     drag.plot(3.93625, 2.950921575, "k+", markersize=12, label="John 2004")
     lift.plot(5.693125, 0.47795, "k+", markersize=12)
     drag.legend()
     figure.savefig(OUT / "dfg_unsteady.png", dpi=120)
     reference = ("John 2004", *(f"{value:.10g}" for value in JOHN_2004.values()), "", "")
-    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "wall time [s]"), [reference, *rows]) + ABOUT_UNSTEADY
+    text = table(("", *map(str.strip, JOHN_2004), "unknowns", "steps"), [reference, *rows]) + ABOUT_UNSTEADY
     write_page("dfg_unsteady", "DFG cylinder 2D-3", "python docs/make_validation.py dfg_unsteady", text)
 
 
@@ -362,12 +366,12 @@ def window() -> None:
     figure = Figure(figsize=(8.0, 4.2), layout="constrained")
     speed, off = figure.subplots(1, 2)
     speed.set(xlabel="time [s]", ylabel="speed of the disk [cm/s]")
-    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [%]")
+    off.set(xlabel="time [s]", ylabel="off the whole channel's speed [1]", yscale="log", ylim=(1e-7, 1e-1))
     for ends, history in runs.items():
         bodies = history.bodies
         label, style = ("whole channel", "k") if ends is None else ("{:g} ahead, {:g} behind".format(*ends), "--")
         speed.plot(bodies["time"], -bodies["vy"], style, label=label)
-        off.plot(bodies["time"], 100.0 * off_the_whole(history, whole), style)
+        off.plot(bodies["time"], np.abs(off_the_whole(history, whole)), style)
     speed.legend()
     figure.savefig(OUT / "window.png", dpi=120)
     head = ("ahead [cm]", "behind [cm]", *window_figures(whole, whole))
@@ -377,7 +381,7 @@ def window() -> None:
     write_page("window", "A window in a long channel", "python docs/make_validation.py window", text)
 
 
-WINDOWS = (None, (2.0, 6.0), (1.0, 6.0), (4.0, 6.0), (2.0, 3.0), (2.0, 12.0), (4.0, 12.0))
+WINDOWS = (None, (2.0, 3.0), (1.0, 3.0), (4.0, 3.0), (2.0, 1.5), (2.0, 6.0), (4.0, 6.0))
 WINDOW = """`scenes/falling_disk_window.toml`: the disk of the [falling disk](falling_disk.md) falls through a channel
 20 times as long as wide. Its mesh is a window of the channel that goes with it. For comparison the whole channel is
 meshed, with the same wanted sizes of cells. The final speed is that of the last tenth of a second; the largest
@@ -386,8 +390,9 @@ run.
 
 {figures}
 
-Ahead the fluid is held at rest, which the disk feels. Behind, where the end is open and the wake leaves, it feels
-less."""
+Ahead the fluid is held at rest, which the disk feels: half a channel's width from it by more than a per cent, two
+widths from it no more than the new mesh of the whole channel after 2.1 s. Behind the wake leaves through the open end.
+The energy that it takes along is in the balance."""
 
 
 def in_window(ends: tuple[float, float] | None) -> History:
@@ -588,6 +593,19 @@ def walls() -> None:
         "disk against 4πμ(Ω₂ - Ω₁)R₁²R₂²/(R₂² - R₁²). In brackets the order of convergence.\n\n"
     )
     text += table(("layers", *columns), rows)
+    arrays = [
+        (str(layers), name, f"{(force := array_of_balls(d, layers)):.3f}", f"{force / exact_array(d) - 1.0:+.2%}")
+        for d, name in ((2, "cylinders"), (3, "spheres"))
+        for layers in ((2, 4, 8, 16) if d == 2 else (2, 4, 6))
+    ]
+    text += (
+        "\n\n## Periodic surfaces\n\n"
+        "Cubic arrays of balls of radius 0.2 and distance 1 in Stokes flow that a pressure drop drives, periodic in "
+        "all directions: force on each over viscosity and mean velocity, against the series of Sangani and Acrivos "
+        "1982, doi:10.1016/0301-9322(82)90029-5 and 10.1016/0301-9322(82)90047-7. The first of them has coefficients "
+        "of three digits and ends with the cube of the volume fraction, which is 0.126 here.\n\n"
+    )
+    text += table(("layers", "of", "force", "off"), arrays)
     write_page("walls", "Curved walls and oblique ends", "python docs/make_validation.py walls", text)
 
 
@@ -1055,7 +1073,86 @@ the velocity after the bounce is off by up to .022 and .0063 cm/s with fixed ste
 3.3 s; by .022 and .0065 cm/s with tolerances of .0003 and .0001, in 3.5 and 4.4 s."""
 
 
+ARRANGEMENTS = {"stenosis, 20 bodies": 20, "irregular outline, 20 bodies": 20}
+"""How many of each case; of the others one."""
+WAYS = ("fill", "level_set")
+
+INSERTION = """Balls and ellipsoids in turn, at random places and angles, none nearer than 0.12 to anything. The
+stenosis is 32 by 8 with a throat of 1.75, its bodies have radii of .25 to .5, and facets are .1 on them and up to .5
+on the walls; the tube has radius 1, its bodies .2 to .35, and facets are .08 and .4. `quality` is that of the worst
+cell, the least of all arrangements and the median. `vertices off`: farthest vertex of a body from its shape.
+`middles`: farthest middle of a facet, over what facets as long as the longest cut off the narrowest curvature, h²/8R
+in the plane and h²/6R in space. `walls kept`: share of the vertices of curved walls that are in the mesh to the last
+bit. Seconds are CPU seconds of one arrangement.
+
+"""
+
+SHOWN = """
+
+## The scenes `insertion_2d.toml` and `insertion_3d.toml`
+
+A collection of shapes in a vessel from a mesh file, and three balls in a row, an egg and bodies from STL files in a
+bent tube from a STEP file, as in the appendix of arXiv:2402.19093. `given vertices kept`: corners of a shape made of
+facets that are in the mesh to the last bit. Colours show the pieces of the boundary, and in space the quality of
+cells in a slice.
+
+"""
+
+
+def insertion() -> None:
+    """Bodies in curved and irregular domains by filling between facets, and by cutting along a level set."""
+    head = ("case", "way", "failed", "cells", "quality", "vertices off", "middles", "walls kept", "walls' area", "s")
+    rows = [insertion_row(name, way) for name in insertions.CASES for way in WAYS]
+    text = INSERTION + table(head, rows) + SHOWN
+    head = ("scene", "way", "surface", "shape", "facets", "given vertices kept", "vertices off", "middles off")
+    shown = [("insertion_2d", "fill"), ("insertion_2d", "level_set"), ("insertion_3d", "fill")]
+    text += table(head, (row for scene, way in shown for row in inserted_rows(scene, way)))
+    text += "\n\n![Shapes in a vessel](insertion_2d.png)\n\n![Bodies in a bent tube](insertion_3d.png)"
+    write_page("insertion", "Insertion of bodies", "python docs/make_validation.py insertion", text, plot=False)
+
+
+def insertion_row(name: str, way: Way) -> tuple[str, ...]:
+    """One row of `insertion`'s first table."""
+    case, found, failed = insertions.CASES[name](), [], 0
+    count = ARRANGEMENTS.get(name, 1)
+    for seed in range(count):
+        try:
+            found.append(insertions.outcome(case, seed, way))
+        except MeshError as error:
+            print(f"{name}, {way}, seed {seed}: {error}")
+            failed += 1
+    qualities = [outcome.quality for outcome in found]
+    return (
+        name,
+        way,
+        f"{failed} of {count}",
+        f"{np.mean([outcome.cells for outcome in found]):.0f}",
+        f"{min(qualities):.2f} / {np.median(qualities):.2f}",
+        f"{max(outcome.vertices_off for outcome in found):.0e}",
+        f"{max(outcome.middles_off for outcome in found):.2f}",
+        f"{min(outcome.kept for outcome in found):.0%}",
+        f"{max(outcome.area_change for outcome in found):.0e}",
+        f"{np.mean([outcome.seconds for outcome in found]):.1f}",
+    )
+
+
+def inserted_rows(scene: str, way: Way) -> Iterable[tuple[str, ...]]:
+    """A row for each surface of a scene's mesh, whose picture is kept where it was filled."""
+    with tempfile.TemporaryDirectory() as folder:
+        loaded = rigidfluid.load_scene(ROOT / "scenes" / f"{scene}.toml", [f"mesh.inserter={way}"])
+        figures, _ = insert(loaded, Path(folder))
+        if way == "fill":
+            shutil.copy(Path(folder) / "mesh.png", OUT / f"{scene}.png")
+    size = f"{figures.cells} cells, quality {figures.worst_quality:.2f}"
+    yield scene, way, size, "", "", "", "", ""
+    for surface in figures.surfaces:
+        kept = "" if surface.given_corners is None else f"{surface.kept_corners} of {surface.given_corners}"
+        off = f"{surface.vertices_off:.0e}", f"{surface.middles_off:.1e}"
+        yield "", "", surface.name, surface.kind, str(surface.facets), kept, *off
+
+
 CASES = {
+    "insertion": insertion,
     "adaptive_step": adaptive_step,
     "hundred_disks": hundred_disks,
     "falling_disk": falling_disk,

@@ -124,6 +124,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
         report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
             _write_json(report.to_dict(), json_file)
+        _print_domain(report)
         _print_features(report)
         _print_bodies(report)
         _print_findings(report)
@@ -439,6 +440,20 @@ def _print_features(report: Report) -> None:
     for feature in report.features:
         table.add_row(feature.name, "on" if feature.on else "off", feature.why)
     _console().print(table)
+
+
+def _print_domain(report: Report) -> None:
+    domain = report.domain
+    _print(f"domain: {domain.type}" + (f", from {domain.file}" if domain.file else ""))
+    _print(f"from {_figure(domain.lower)} to {_figure(domain.upper)}, of size {_figure(domain.volume)}")
+    table = Table("surface", "shape", "area", "condition")
+    for surface in domain.surfaces[:MOST_BODIES]:
+        table.add_row(surface.name, surface.shape, _figure(surface.area), surface.condition)
+    _console().print(table)
+    if len(domain.surfaces) > MOST_BODIES:
+        _print(f"and {len(domain.surfaces) - MOST_BODIES} more surfaces")
+    for remark in domain.remarks:
+        _print(f"{remark}.")
 
 
 def _print_bodies(report: Report) -> None:

@@ -44,7 +44,6 @@ class TestEllipsoidDetector(DetectorContract):
 class TestFacetDetector(DetectorContract):
     gap_tolerance = 1e-14
     point_tolerance = 1e-13
-    balls_only = True
 
     def make_detector(self, arrangement: Arrangement) -> Detector:
         return FacetDetector(PartOptions(), arrangement.bodies, arrangement.walls)

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from dish import dish
 from drawn import bent_tube, drawn, plate
+from mesh_files import meshed, write_by_meshio, write_gmsh41
+from mesh_tools import nobody
 from wedge import wedge
 
+from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.domains.box import Box, BoxOptions
@@ -76,6 +79,28 @@ class TestPlateFromStep(DomainContract):
     @pytest.fixture
     def domain(self, tmp_path):
         return drawn(plate(), tmp_path, 2)
+
+
+class TestBentTubeFromMesh(DomainContract):
+    coarse = 0.1
+
+    @pytest.fixture
+    def domain(self, tmp_path):
+        tube = drawn(bent_tube(), tmp_path)
+        mesh = generate_mesh([], nobody(3), tube, 1.0, 1.0, 0.3)
+        write_gmsh41(tmp_path / "tube.msh", mesh, tube.names)
+        return meshed(tmp_path / "tube.msh")
+
+
+class TestPlateFromMesh(DomainContract):
+    coarse = 0.1
+
+    @pytest.fixture
+    def domain(self, tmp_path):
+        sheet = drawn(plate(), tmp_path, 2)
+        mesh = generate_mesh([], nobody(2), sheet, 0.4, 0.4, 0.3)
+        write_by_meshio(tmp_path / "plate.med", mesh, sheet.names)
+        return meshed(tmp_path / "plate.med", 2)
 
 
 class TestDish(DomainContract):

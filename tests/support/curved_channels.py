@@ -86,6 +86,19 @@ def error_in_bend(flow: Flow) -> float:
     return float(np.linalg.norm(velocity - exact) / np.linalg.norm(exact))
 
 
+def flow_from_within(layers: int, outside: str) -> Flow:
+    """Steady Stokes flow out of the inner circle, u = x/|x|²; ``outside`` no "pressure", or the "velocity"."""
+    within = BoundaryCondition(0, "inner", "velocity", None, from_within)
+    value = from_within if outside == "velocity" else None
+    faces = within, BoundaryCondition(1, "outer", outside, None, value)  # type: ignore[arg-type]
+    return Flow.start(_backend(0, faces), bend(layers, None), nobody(2)).after(None)
+
+
+def from_within(_time: float, at: FloatArray) -> FloatArray:
+    """x/|x|²; its stress across circles is -2μ/|x|² beside the pressure."""
+    return at / np.sum(at**2, axis=1, keepdims=True)
+
+
 def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
     """Steady Stokes flow round a disk that turns with the angular velocity ``inner`` in a round wall that turns with
     ``outer``."""

@@ -11,17 +11,19 @@ import numpy as np
 from facet_domain import along_the_tube, bent_tube, irregular_outline
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
+from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.meshing import netgen_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facets import area_vectors
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis
@@ -82,6 +84,24 @@ CASES = {
     "bent tube, 1 body": lambda: tube_case(1),
     "bent tube, 10 bodies": lambda: tube_case(10),
 }
+
+
+def peanut() -> FacetBody:
+    """Two balls and a box in one, of facets with sharp edges."""
+    from netgen import occ
+
+    balls = occ.Sphere(occ.Pnt(-0.2, 0, 0), 0.28) + occ.Sphere(occ.Pnt(0.2, 0, 0), 0.22)
+    shape = balls + occ.Box(occ.Pnt(-0.05, -0.05, 0), occ.Pnt(0.05, 0.05, 0.45))
+    netgen = netgen_mesh(shape, 3, 0.08, 0.3, surfaces_alone=True)
+    vertices = netgen.Elements2D().NumPy()["nodes"][:, :3].astype(np.int64) - 1
+    used, compact = np.unique(vertices, return_inverse=True)
+    facets = Facets(netgen.Coordinates()[used].copy(), compact.reshape(-1, 3), np.zeros(len(vertices), dtype=np.int64))
+    return FacetBody(PartOptions(), facets, "peanut")
+
+
+def peanut_in_a_tube() -> tuple[Pose, Domain]:
+    """Where it is, not turned, and what it is in."""
+    return Pose(np.array([[-2.0, 0.1, 0.0]]), np.array([[1.0, 0.0, 0.0, 0.0]])), bent_tube()
 
 
 def arranged(case: Case, seed: int) -> tuple[list[Body], Pose]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +17,22 @@ from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.boundary_samples import quadrature
-from rigidfluid.core.setup.boundary_values import BoundaryPressure
+from rigidfluid.core.setup.boundary_values import BoundaryPressure, BoundaryVelocity
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
+from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.testing.fluid.boxes import box, nobody
 from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, problem
 from rigidfluid.testing.fluid.flow import Flow
 
 OPEN = {"on": "right", "type": "pressure", "pressure": 0.0}
+
+
+DUCT = Box(BoxOptions(lower=(0.0, 0.0, 0.0), upper=(3.0, 3.0, 4.0)), 3)
 
 
 def tables(boundary: list[dict[str, Any]], dimension: int = 2, **changes: Any) -> dict[str, Any]:
@@ -103,6 +109,20 @@ def test_profiles_in_2d(profile: str, expected: list[float]) -> None:
     np.testing.assert_allclose(found[:, 0], 2.0 * np.array(expected), atol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("profile", "peak"), [("uniform", 15.0), ("parabolic", 15.0 * 9 / 4), ("poiseuille", 15.0 * 1.9918)]
+)
+def test_a_flux_makes_the_velocity_that_carries_it(profile: str, peak: float) -> None:
+    """Through a face of 1 × 2, of which the middle has the peak; of a duct 1.992 times the mean."""
+    table = {"type": "velocity", "flux": "3*t", "profile": profile, "over_time": [[0.0, 1.0], [2.0, 5.0]]}
+    face = Piece("left", Plane(np.zeros(3), np.eye(3)[0], (np.zeros(3), np.array([0.0, 1.0, 2.0]))), 2.0)
+    points, weights = quadrature(face, DUCT)
+    found = value_on_left(table, 2.0, points[:, 1:], dimension=3)
+    assert weights @ found[:, 0] == pytest.approx(30.0)
+    np.testing.assert_array_equal(found[:, 1:], 0.0)
+    assert value_on_left(table, 2.0, [[0.5, 1.0]], dimension=3)[0, 0] == pytest.approx(peak, rel=2e-3)
+
+
 def test_a_profile_multiplies_an_expression() -> None:
     found = value_on_left(inflow(velocity=["t + y", 0.0], profile="parabolic", ramp=1.0), 1.0, [0.5])
     np.testing.assert_allclose(found, [[1.5, 0.0]])
@@ -119,7 +139,7 @@ def test_flow_through_a_duct_has_a_constant_laplacian_and_the_published_mean() -
     edge = np.array([[0.0, 0.5, 0.3], [0.0, 0.2, 1.0], [0.0, -0.5, -1.0]])
     np.testing.assert_allclose(poiseuille(duct, edge), 0.0, atol=1e-4)
     piece = Piece("inlet", Plane(np.zeros(3), np.eye(3)[0], (np.array([0, -0.5, -1]), np.array([0, 0.5, 1]))), 2.0)
-    nodes, weights = quadrature(piece)
+    nodes, weights = quadrature(piece, DUCT)
     mean = weights @ poiseuille(duct, nodes) / 2.0
     assert mean == pytest.approx(-0.02858 * 4.0 / 2.0 * laplacian[-1] / 1.0, rel=1e-3)
 
@@ -131,7 +151,7 @@ def test_flow_through_a_pipe() -> None:
     disk = Piece("end", Plane(centre, turned, (centre - half, centre + half)), np.pi * 0.25)
     shape = section(disk)
     assert shape is not None
-    nodes, weights = quadrature(disk)
+    nodes, weights = quadrature(disk, DUCT)
     assert weights @ poiseuille(shape, nodes) == pytest.approx(0.5 * np.pi * 0.25, rel=1e-12)
     np.testing.assert_allclose((nodes - centre) @ turned, 0.0, atol=1e-15)
     rim = centre + 0.5 * np.array([[0.0, 1.0, 0.0], [0.8, 0.0, -0.6]])
@@ -168,6 +188,27 @@ def test_the_fastest_inflow_is_found_between_start_and_end() -> None:
     assert system.loads.speed[0] == pytest.approx(30.0, rel=1e-3)
 
 
+def test_the_greatest_value_of_a_long_table_is_seen() -> None:
+    rows = [[0.001 * number, 30.0 if number == 1234 else 0.1] for number in range(2001)]
+    table = {"on": "left", **inflow(velocity=[1.0, 0.0], over_time=rows)}
+    scene = tables([table, OPEN], contact={"law": "centre", "range": 0.1, "epsilon": 1.0})
+    scene["body"][0]["fixed"] = False
+    assert build_system(scene_from_dict(scene)).loads.speed[0] == pytest.approx(30.0)
+
+
+def test_velocities_on_a_curved_surface_are_sampled_all_over_it() -> None:
+    obstacle = {"name": "roll", "type": "sphere", "radius": 0.2, "position": [2.0, 0.5]}
+    scene = tables([OPEN, {"on": "roll", "type": "velocity", "velocity": ["0.5 - y", "x - 2"]}])
+    scene["domain"] |= {"type": "channel", "obstacle": [obstacle]}
+    scene["contact"] = {"law": "centre", "range": 0.1, "epsilon": 1.0}
+    scene["body"][0]["fixed"] = False
+    assert build_system(scene_from_dict(scene)).loads.speed[0] == pytest.approx(0.2)
+    scene["boundary"][1]["velocity"][0] = "log(x - 1.81)"
+    with pytest.raises(SceneError, match=r"boundary\.1\.velocity\.0 on 'roll': found nan"):
+        scene_from_dict(scene)
+
+
+FLUX = {"on": "left", "type": "velocity", "flux": 1.0}
 LEFT, THROUGH = {"on": "left", **inflow()}, [{"on": "left", **inflow()}, {"on": "right", **inflow()}]
 BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
     "components": ([LEFT | {"velocity": ["y"]}, OPEN], "boundary.0.velocity: found ['y'], 1 of them", "2 dimensions"),
@@ -181,6 +222,10 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
         "boundary.0.over_time.2: found time 1 after 1",
         "Sort",
     ),
+    "flux and velocity": ([LEFT | {"flux": 1.0}, OPEN], "boundary.0.flux: found it beside `velocity`", "Keep one"),
+    "flux on a wall": ([{"on": "left", "type": "wall", "flux": 1.0}], "boundary.0.flux: found it on a 'wall'", "Keep"),
+    "flux in space": ([FLUX | {"flux": "y"}, OPEN], "boundary.0.flux: found an unknown name: 'y'", "t, pi"),
+    "unbalanced flux": ([FLUX, FLUX | {"on": "right", "flux": "-t"}], "a net inflow of 1 [", "pressure"),
     "truth": ([LEFT | {"velocity": [True, 0.0]}, OPEN], "boundary.0.velocity.0: found True", "Velocity"),
     "row of one": ([LEFT | {"over_time": [[0.0], [1.0, 1.0]]}, OPEN], "boundary.0.over_time.0: found", "Factor"),
     "no table": ([LEFT | {"over_time": 3.0}, OPEN], "boundary.0.over_time: found 3.0", "Factor"),
@@ -236,6 +281,7 @@ def test_a_profile_that_the_surface_has_not() -> None:
         [LEFT | {"velocity": ["pi/2*sin(pi*y)*t", 0.0]}, THROUGH[1] | {"velocity": ["t", 0.0]}],
         [table | {"ramp": 0.5, "over_time": [[0.0, 1.0], [3.0, -1.0]]} for table in THROUGH],
         [LEFT | {"velocity": [1.5, 0.0], "profile": "poiseuille"}, THROUGH[1] | {"velocity": [1.0, 0.0]}],
+        [FLUX | {"flux": "1 + t", "profile": "parabolic"}, FLUX | {"on": "right", "flux": "-1 - t"}],
     ],
 )
 def test_what_balances_needs_no_outlet(boundary: list[dict[str, Any]]) -> None:
@@ -315,3 +361,31 @@ def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> No
     flow = flow.after(0.01)
     with pytest.raises(SceneError, match=r"boundary: found a net inflow of 0\.\d* at time 0\.31.*Balance"):
         flow.after(0.3)
+
+
+def developed(dimension: int, divisions: int, inlet: Any, kind: str) -> Flow:
+    """The steady flow through a unit box from its face at x = 0, where something is given, to that at x = 1."""
+    values = {"x0": inlet, "x1": BoundaryPressure(Expression(0.0, "p", dimension))}
+    posed = problem(dimension, {"x0": kind, "x1": "pressure"}, values)
+    posed = replace(posed, initial="steady", inertia=False)
+    return Flow.start(ScikitFem(ScikitFem.Options(), posed), box(dimension, divisions), nobody(dimension))
+
+
+def test_flux_against_pressure_drop_between_plates() -> None:
+    """Q = Δp h³/(12 μ L) for h = L = 1, and the parabola is in the space."""
+    flow = developed(2, 2, BoundaryPressure(Expression("24*exp(0*x)", "p", 2)), "pressure")
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    velocity, _ = flow.probe(np.column_stack([np.full(3, 0.3), 0.5 * (nodes + 1.0)]))
+    assert 0.5 * weights @ velocity[:, 0] == pytest.approx(24.0 / (12.0 * VISCOSITY), rel=1e-8)
+
+
+def test_flux_against_pressure_drop_in_a_square_duct() -> None:
+    """Q = 0.035144 Δp h⁴/(μ L) (White 2006): an inflow with this profile is developed at once."""
+    shape = Rectangle(np.array([0.0, 0.5, 0.5]), np.ones(2), np.eye(3)[1:])
+    inflow = BoundaryVelocity(VectorExpression.of([1.0, 0.0, 0.0], "u"), partial(poiseuille, shape))
+    flow = developed(3, 5, inflow, "velocity")
+    middle = np.array([[x, 0.5, 0.5] for x in (0.25, 0.5, 0.75)])
+    velocity, pressure = flow.probe(middle)
+    np.testing.assert_allclose(velocity, [[1.0, 0.0, 0.0]] * 3, atol=0.01)
+    mean = 0.035144 / 0.073671  # of the peak
+    assert (pressure[0] - pressure[2]) / 0.5 == pytest.approx(VISCOSITY * mean / 0.035144, rel=0.02)

@@ -14,6 +14,7 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.profiles import Disk, Rectangle, section
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.closed_form import Flat, Offset, form_of_face
 from rigidfluid.errors import SceneError
@@ -33,9 +34,12 @@ def test_a_tube_written_and_read_back_is_exact(tmp_path: Path) -> None:
     tube = drawn(bent_tube(), tmp_path)
     assert set(tube.names) == {"wall", "inflow", "outflow"}
     assert tube.volume == pytest.approx(np.pi * (8.0 + 1.5 * np.pi), rel=1e-12)
-    points = np.random.default_rng(0).uniform(*tube.extent, (3000, 3))
+    lower, upper = tube.extent
+    points = np.random.default_rng(0).uniform(lower, upper, (3000, 3))
     inside = points[tube.contains(points)]
     assert len(inside) == pytest.approx(3000 * tube.volume / np.prod(tube.size), rel=0.05)
+    where_leg_and_bend_meet = np.random.default_rng(1).uniform([-0.7, -0.7, 3.98], [0.7, 0.7, 4.02], (3000, 3))
+    inside = np.concatenate([inside, where_leg_and_bend_meet])
     wall = tube.pieces[tube.names.index("wall")].shape
     distance, foot = wall.signed_distance(inside), wall.closest_point(inside)
     np.testing.assert_allclose(distance, to_the_tube(inside), rtol=0, atol=ROUND_OFF)
@@ -44,10 +48,62 @@ def test_a_tube_written_and_read_back_is_exact(tmp_path: Path) -> None:
     assert wall.least_radius == pytest.approx(1.0, rel=1e-12)
 
 
+def test_a_leg_ends_where_its_face_does(tmp_path: Path) -> None:
+    """Its cylinder goes on through the bend."""
+    tube = drawn(bent_tube(), tmp_path, faces={"leg": 4, "rest": (1, 2), "inflow": 5, "outflow": 3})
+    leg = tube.pieces[0].shape
+    on_the_axis = np.array([[0.0, 0.0, 2.0], [0.5, 0.0, 5.0], [1.0, 0.0, 6.0]])
+    to_the_rim = [1.0, np.hypot(0.5, 1.0), 2.0]
+    np.testing.assert_allclose(leg.signed_distance(on_the_axis), to_the_rim, rtol=0, atol=0.01)
+    np.testing.assert_allclose(leg.closest_point(on_the_axis)[1:], [[1.0, 0.0, 4.0]] * 2, rtol=0, atol=0.1)
+
+
+def test_fluid_behind_a_plate_is_not_in_it(tmp_path: Path) -> None:
+    from netgen import occ
+
+    plate = occ.Box(occ.Pnt(0.9, 0.5, 0.5), occ.Pnt(1.0, 1.5, 1.5))
+    plate.faces.name = "edge"
+    plate.faces.Min(occ.X).name, plate.faces.Max(occ.X).name = "front", "back"
+    box = occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(2, 2, 2))
+    box.faces.name = "box"
+    domain = drawn(box - plate, tmp_path)
+    sides = {piece.name: piece.shape for piece in domain.pieces}
+    points = np.array([[0.5, 1.0, 1.0], [0.93, 1.0, 1.0], [1.5, 1.0, 1.0]])
+    np.testing.assert_allclose(sides["front"].signed_distance(points), [0.4, -0.03, 0.6], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(sides["back"].signed_distance(points), [0.5, -0.07, 0.5], rtol=0, atol=1e-12)
+
+
+def test_a_wall_of_a_cylinder_and_its_caps_is_exact(tmp_path: Path) -> None:
+    from netgen import occ
+
+    can = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 1, 2)
+    can.faces.name = "can"
+    (piece,) = drawn(can, tmp_path).pieces
+    points = np.random.default_rng(1).uniform([-0.7, -0.7, 0.0], [0.7, 0.7, 0.3], (4000, 3))
+    exact = np.minimum(1.0 - np.hypot(points[:, 0], points[:, 1]), np.minimum(points[:, 2], 2.0 - points[:, 2]))
+    found = piece.shape.signed_distance(points)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-3)  # of facets, where two faces are as near
+    assert np.mean(np.abs(found - exact) < ROUND_OFF) > 0.99
+
+
 def test_points_outside_a_wall_are_at_negative_distances(tmp_path: Path) -> None:
     tube = drawn(bent_tube(), tmp_path)
     wall = tube.pieces[tube.names.index("wall")].shape
     np.testing.assert_allclose(wall.signed_distance(np.array([[0.0, 1.25, 2.0], [5.0, 0.0, 9.0]])), [-0.25, -1.0])
+
+
+def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
+    """So that they can have a Poiseuille profile; and rectangles beside curved faces as rectangles."""
+    tube = drawn(bent_tube(), tmp_path)
+    end = section(tube.pieces[tube.names.index("outflow")])
+    assert isinstance(end, Disk)
+    np.testing.assert_allclose(end.centre, [7.0, 0.0, 7.0], rtol=0, atol=1e-12)
+    assert end.radius == pytest.approx(1.0, rel=1e-12)
+    box = ball_in_a_box()
+    for face, name in zip(sorted(box.faces, key=lambda face: face.center.x)[:1], ("left",), strict=True):
+        face.name = name
+    left = drawn(box, tmp_path)
+    assert isinstance(section(left.pieces[left.names.index("left")]), Rectangle)
 
 
 def test_a_body_is_meshed_in_a_tube(tmp_path: Path) -> None:
@@ -77,7 +133,7 @@ def test_units_of_the_file_are_scaled(tmp_path: Path) -> None:
     domain = drawn(plate(), tmp_path, 2, scale=0.01)
     assert domain.volume == pytest.approx(1e-4 * (8.0 - np.pi * 0.09), rel=1e-12)
     assert domain.pieces[domain.names.index("hole")].shape.radius == pytest.approx(0.003, rel=1e-12)
-    np.testing.assert_allclose(domain.extent, [[0.0, 0.0], [0.04, 0.02]], atol=1e-15)
+    np.testing.assert_allclose(domain.extent, [[0.0, 0.0], [0.04, 0.02]], rtol=0, atol=1e-12)
 
 
 def test_faces_without_names_get_them_by_number(tmp_path: Path) -> None:

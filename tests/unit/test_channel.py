@@ -2,36 +2,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from channels import CHANNEL, PIN, THROAT, scene
+from mesh_files import CUBE, TRIANGLES, write_stl
+from mesh_tools import nobody, upright
 
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.remesh import initial_mesh
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.detectors.sphere import SphereDetector
+from rigidfluid.domains.channel import Channel, ChannelOptions
+from rigidfluid.domains.obstacles import ObstacleTable
+from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.errors import RigidfluidError
-
-CHANNEL = {"type": "channel", "lower": [0.0, 0.0], "upper": [4.0, 1.0]}
-PIN = {"type": "sphere", "radius": 0.2, "position": [2.0, 0.4], "name": "pin"}
-THROAT = {"type": "stenosis", "length": 32.0, "width": 8.0, "radius": 3.125}
-
-
-def scene(domain: dict[str, Any], **tables: Any) -> dict[str, Any]:
-    found = {
-        "scene": {"name": "channel", "dimension": 2},
-        "fluid": {"density": 1.0, "viscosity": 0.1},
-        "domain": domain,
-        "body": [{"type": "sphere", "radius": 0.1, "density": 2.0, "position": [1.0, 0.5]}],
-        "mesh": {"size": 0.2, "size_body": 0.05},
-        "time": {"end": 1.0, "step": 0.1},
-        "output": {"every": 1.0},
-    }
-    return found | tables
 
 
 def channel(*obstacles: dict[str, Any]) -> dict[str, Any]:
@@ -86,6 +82,29 @@ def test_keys_of_an_obstacle_are_in_the_schema() -> None:
     schema = jsonschema.Draft202012Validator(json_schema())
     assert not list(schema.iter_errors(scene(channel(PIN))))
     assert list(schema.iter_errors(scene(channel({"type": "sphere", "radius": 0.1}))))
+
+
+def test_a_polygon_is_an_obstacle_with_sharp_corners() -> None:
+    star = {"type": "polygon", "points": [[0.0, 0.0], [0.3, 0.1], [0.0, 0.2], [0.1, 0.1]], "position": [2.0, 0.5]}
+    parts = known_parts(scene_from_dict(scene(channel(star | {"name": "star", "angle": 0.4}))))
+    domain, piece = parts.domain, parts.domain.pieces[4]
+    assert domain.volume == pytest.approx(4.0 - 0.02, rel=1e-14)
+    assert piece.area == pytest.approx(2.0 * np.hypot(0.3, 0.1) + 2.0 * np.hypot(0.1, 0.1), rel=1e-14)
+    body, pose = parts.bodies[0], upright([1.0, 0.5])
+    mesh = initial_mesh([body], pose, domain, surfaces_of(domain, 1), Sizes(0.2, 0.05))
+    on_star = mesh.points[np.unique(mesh.facets[mesh.markers == 5])]
+    assert np.abs(piece.shape.signed_distance(on_star)).max() < 1e-14
+    disk = 0.5 * np.abs(np.linalg.det(mesh.points[mesh.facets[mesh.markers == 0]] - pose.position[0])).sum()
+    assert cell_volumes(mesh.points, mesh.cells).sum() + disk == pytest.approx(domain.volume, rel=1e-12)
+
+
+def test_a_polyhedron_is_an_obstacle(tmp_path: Path) -> None:
+    write_stl(tmp_path / "cube.stl", CUBE, facing_the_fluid(Facets(CUBE, TRIANGLES, TRIANGLES[:, 0]), "x").vertices)
+    tables = (ObstacleTable(type="stl", file=str(tmp_path / "cube.stl"), scale=0.5, position=(1.0, 1.0, 1.0)),)
+    domain = Channel(ChannelOptions(lower=(0.0, 0.0, 0.0), upper=(2.0, 2.0, 2.0), obstacle=tables), 3)
+    assert domain.volume == pytest.approx(8.0 - 0.125, rel=1e-12)
+    mesh = generate_mesh([], nobody(3), domain, 0.5, 0.5, 0.3)
+    assert cell_volumes(mesh.points, mesh.cells).sum() == pytest.approx(domain.volume, rel=1e-12)
 
 
 def test_a_body_in_an_obstacle_is_refused() -> None:

@@ -397,7 +397,7 @@ def test_command_writes_json_and_its_exit_code_says_whether_there_are_errors(
     result = CliRunner().invoke(app, ["check", str(path), "--json", str(written)], env={"COLUMNS": "200"})
     assert result.exit_code == code
     data = json.loads(written.read_text())
-    assert list(data) == ["scene", "errors", "warnings", "notes", "features", "bodies", "findings"]
+    assert list(data) == ["scene", "errors", "warnings", "notes", "domain", "features", "bodies", "findings"]
     assert set(data["features"][0]) == {"name", "on", "why"}
     assert data["bodies"][0]["impact_speed"] == pytest.approx(np.sqrt(2 * GRAVITY * (HEIGHT - RANGE)))
     assert (data["bodies"][0]["smallest_gap"], data["bodies"][0]["nearest"]) == (pytest.approx(HEIGHT), "bottom")
@@ -556,3 +556,14 @@ def test_the_check_asks_a_law_at_as_many_gaps_as_the_run(monkeypatch: pytest.Mon
     asked = (RANGE - gaps) * (3 * gaps - RANGE) / 1e-12
     assert finding.found["stiffness"] == pytest.approx(asked.max(), rel=1e-6)
     assert asked.max() < RANGE**2 / 3 / 1e-12 * 0.9999
+
+
+def test_a_polygon_is_told_by_its_facets_volume_and_centre() -> None:
+    corners = [[3.0, 1.0], [3.4, 1.0], [3.4, 1.1], [3.1, 1.1], [3.1, 1.2], [3.0, 1.2]]
+    shape = {"type": "polygon", "points": corners, "density": 3.0}
+    answer = only("shape", shape | {"position": [0.5, 0.5]}, shape | {"position": [1.5, 0.5]})
+    assert answer.grade == "note"
+    assert answer.subject == ("body0",)
+    expected = {"facets": 6, "volume": 0.05, "centre_x": (0.04 * 3.2 + 0.01 * 3.05) / 0.05, "centre_y": 1.07}
+    assert answer.found == pytest.approx(expected)
+    assert found("shape", BALL) == []

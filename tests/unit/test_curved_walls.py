@@ -20,9 +20,13 @@ from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.contact_results import refuse_lost_contacts
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.run.run import run
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.core.setup.build import build_system
@@ -112,17 +116,99 @@ def test_a_detector_on_the_mesh_sees_the_facets() -> None:
     np.testing.assert_array_equal(marched.radius_b[marched.at_wall], -1.0)
 
 
-def test_the_detector_of_ellipsoids_refuses_a_wall_that_is_not_flat_by_name() -> None:
-    with pytest.raises(SceneError, match=r"contact.detector: found .ellipsoid. with the wall 'rim', which is not flat"):
-        EllipsoidDetector(PartOptions(), [ellipsoid(0.2, 0.1)], [rim(1)])
-    with pytest.raises(SceneError, match="'rim', which is not flat"):
-        build_system(built(ELLIPSE, contact={"detector": "ellipsoid"}))
+def test_the_detector_of_ellipsoids_refuses_a_wall_that_is_neither_flat_nor_round_by_name() -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    facets = Facets(corners, np.array([[1, 0], [2, 1], [0, 2]]), np.zeros(3, dtype=np.int64))
+    with pytest.raises(
+        SceneError, match=r"contact.detector: found .ellipsoid. with the wall 'corner'; .* flat or round"
+    ):
+        EllipsoidDetector(PartOptions(), [ellipsoid(0.2, 0.1)], [Wall(1, "corner", FacetSurface(facets))])
 
 
 def test_auto_takes_what_can() -> None:
     assert build_system(built(DISK)).detector.name == "sphere"
-    assert build_system(built(ELLIPSE)).detector.name == "narrow_band"
-    assert build_system(built(ELLIPSE, fluid=DRY)).detector.name == "brute_force"
+    assert build_system(built(ELLIPSE)).detector.name == "ellipsoid"
+    square = {"type": "polygon", "points": [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2], [0.0, 0.2]], "density": 3.0}
+    assert (
+        build_system(built(DISK | {"position": [0.0, -0.5]}, square | {"position": [0, 0]})).detector.name == "facets"
+    )
+
+
+def random_ellipsoids_in_the_dish(dimension: int, elongated: bool) -> tuple[list[Any], Pose]:
+    """Long and flat ones in all directions, near the rim of radius 1."""
+    rng, bodies, positions, turns = np.random.default_rng(dimension), [], [], []
+    for _ in range(20):
+        axes = rng.uniform(0.05, 0.4, dimension) if elongated else np.full(dimension, rng.uniform(0.1, 0.3))
+        bodies.append(ellipsoid(*axes))
+        away = rng.normal(size=dimension)
+        positions.append((1.02 - axes.max()) * rng.uniform(0.5, 1.0) * away / np.linalg.norm(away))
+        turn = rng.normal(size=4)
+        turns.append(turn / np.linalg.norm(turn) if dimension == 3 else rng.uniform(0, 7, 1))
+    return bodies, Pose(np.array(positions), np.array(turns))
+
+
+@pytest.mark.parametrize("elongated", [True, False])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_ellipsoids_meet_the_rim_as_a_search_says(dimension: int, elongated: bool) -> None:
+    bodies, pose = random_ellipsoids_in_the_dish(dimension, elongated)
+    for i in range(len(bodies)):
+        one, wall = Pose(pose.position[i : i + 1], pose.orientation[i : i + 1]), rim(1, dimension=dimension)
+        exact = at_walls(EllipsoidDetector(PartOptions(), bodies[i : i + 1], [wall]), one)
+        searched = at_walls(BruteForceDetector(BruteForceOptions(), bodies[i : i + 1], [wall]), one)
+        assert exact.gap[0] == pytest.approx(searched.gap[0], abs=1e-12)
+        assert exact.gap[0] == exact.gap.min()
+        np.testing.assert_allclose(np.linalg.norm(exact.point_b, axis=1), 1.0, rtol=1e-14)
+        np.testing.assert_allclose(exact.point_a, exact.point_b + exact.gap[:, None] * exact.normal, atol=1e-14)
+
+
+def test_an_ellipse_that_lies_in_the_dish_touches_it_with_both_ends() -> None:
+    """At (0, -y), longer than the rim is round there: the ends are where |x| is largest, equally or nearly so."""
+    bodies = [ellipsoid(0.4, 0.05)]
+    detector = EllipsoidDetector(PartOptions(), bodies, [rim(1)])
+    for tilt in (0.0, 0.01, -0.01):
+        found = at_walls(detector, Pose(np.array([[0.0, -0.9]]), np.array([[tilt]])))
+        angle = np.linspace(0, 2 * np.pi, 200_001)
+        ellipse = np.stack([0.4 * np.cos(angle), 0.05 * np.sin(angle)])
+        turn = np.array([[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]])
+        x, y = turn @ ellipse + np.array([[0.0], [-0.9]])
+        away = 1.0 - np.hypot(x, y)
+        ends = sorted([away[x > 0].min(), away[x < 0].min()])
+        np.testing.assert_allclose(found.gap, ends, rtol=0, atol=1e-9)
+    on_end = at_walls(detector, Pose(np.array([[0.0, -0.5]]), np.array([[np.pi / 2]])))
+    np.testing.assert_allclose(on_end.gap, [0.1], atol=1e-14)
+
+
+def test_an_ellipse_rocks_in_the_dish_with_all_its_energy() -> None:
+    scene = built(
+        {"type": "ellipsoid", "semi_axes": [0.4, 0.05], "density": 3.0, "position": [0.0, -0.8]},
+        fluid=DRY,
+        contact={"law": "contact", "range": 0.02, "epsilon": "auto"},
+        time={"end": 0.5, "step": 0.01},
+        output={"every": 0.5},
+    )
+    simulation = Simulation(scene, None, False)
+    simulation.go()
+    state = simulation.state
+    assert abs(state.pose.orientation[0, 0]) < 1e-9  # both ends hold it
+    assert abs(state.pose.position[0, 0]) < 1e-9
+    assert state.ledger.contact + state.ledger.kinetic == pytest.approx(state.ledger.gravity, rel=1e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_ellipsoids_meet_a_round_bump_as_they_meet_a_ball(dimension: int) -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(10):
+        body, post = ellipsoid(*rng.uniform(0.1, 0.5, dimension)), ball(0.4, dimension)
+        away = rng.normal(size=dimension)
+        turn = rng.normal(size=4)
+        turns = [turn / np.linalg.norm(turn), [1.0, 0, 0, 0]] if dimension == 3 else [rng.uniform(0, 7, 1), [0.0]]
+        pose = Pose(np.array([1.1 * away / np.linalg.norm(away), np.zeros(dimension)]), np.array(turns))
+        both = EllipsoidDetector(PartOptions(), [body, post], []).detect(pose, None, np.inf)
+        alone = Pose(pose.position[:1], pose.orientation[:1])
+        found = at_walls(EllipsoidDetector(PartOptions(), [body], [Wall(1, "post", post)]), alone)
+        np.testing.assert_allclose(found.gap, both.gap, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(found.normal, both.normal, rtol=0, atol=1e-7)
+        assert found.radius_b[0] == 0.4
 
 
 @pytest.mark.parametrize(

@@ -343,5 +343,5 @@ def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:
         radius = None  # type: ignore[assignment]
 
     bodies = [ball(1.0), Cross(SphereOptions(radius=1.0), 2)]
-    with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "cross".*brute_force'):
+    with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "cross".*auto'):
         EllipsoidDetector(PartOptions(), bodies, [])

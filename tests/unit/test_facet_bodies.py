@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, binary_stl, polygon, polyhedron
+from mesh_tools import ball
 
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.errors import SceneError
 
 
@@ -27,6 +29,15 @@ def test_an_l_has_the_moments_of_its_two_rectangles() -> None:
     assert found.unit_inertia[0, 0] == pytest.approx((own + moved).sum() / 1.75, rel=1e-13)
     np.testing.assert_allclose(found.facets.points[0] + centre, [9.0, 5.0], rtol=1e-14)
     assert found.bounding_radius == pytest.approx(max(np.hypot(*([11.0, 5.0] - centre)), np.hypot(*([9, 7] - centre))))
+
+
+def test_a_shape_may_be_thick_where_its_centre_is_not() -> None:
+    corner = polygon([(0.0, 0.0), (0.3, 0.0), (0.3, 0.12), (0.12, 0.12), (0.12, 0.3), (0.0, 0.3)])
+    assert half_thickness(corner) == pytest.approx(0.12 * np.sqrt(2) / (1.0 + np.sqrt(2)), rel=0.05)
+    assert 0.0 < inscribed_radius(corner) < 0.01
+    thin = polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 0.1), (0.1, 0.1), (0.1, 1.0), (0.0, 1.0)])
+    assert inscribed_radius(thin) == 0.0
+    assert half_thickness(ball(0.2)) == 0.2
 
 
 def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) -> None:
@@ -95,6 +106,46 @@ def test_a_polyhedron_that_goes_through_itself_is_refused(tmp_path: Path) -> Non
     pushed[7] = [-0.5, -0.5, 0.5]  # out through the opposite side
     with pytest.raises(SceneError, match=r"body\.file: found a surface that crosses itself"):
         polyhedron(binary_stl(tmp_path / "cube.stl", pushed, TRIANGLES))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.1, 2.0])
+def test_facets_in_one_plane_do_not_cross_whatever_rounding_says(turn: float, tmp_path: Path) -> None:
+    """A cube's faces cut into fans about a middle that is off the plane by single precision."""
+    points, triangles = fans_on_a_cube()
+    across = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+    body = polyhedron(binary_stl(tmp_path / "cube.stl", points @ across.T @ across[[1, 2, 0]], triangles))
+    assert body.volume == pytest.approx(1.0, rel=1e-6)
+
+
+def fans_on_a_cube() -> tuple[np.ndarray, list[list[int]]]:
+    """Each face with five vertices on each edge and a fan of triangles from one within."""
+    points: list[tuple[float, ...]] = []
+    triangles: list[list[int]] = []
+
+    def number(point: np.ndarray) -> int:
+        key = tuple(np.round(point, 9).tolist())
+        if key not in points:
+            points.append(key)
+        return points.index(key)
+
+    steps = np.arange(5) / 5.0
+    zeros, ones = np.zeros(5), np.ones(5)
+    around = np.concatenate(
+        [
+            np.stack([steps, zeros], 1),
+            np.stack([ones, steps], 1),
+            np.stack([1 - steps, ones], 1),
+            np.stack([zeros, 1 - steps], 1),
+        ]
+    )
+    for axis in range(3):
+        for side in (0.0, 1.0):
+            ring = [number(np.insert(at, axis, side)) for at in around]
+            middle = number(np.insert(np.array([0.37, 0.41]), axis, side))
+            for a, b in zip(ring, np.roll(ring, -1), strict=True):
+                outwards = (axis != 1) == (side == 1.0)
+                triangles.append([middle, a, int(b)] if outwards else [middle, int(b), a])
+    return np.array(points), triangles
 
 
 @pytest.mark.parametrize("content", [b"", b"solid\nendsolid\n", b"solid\nvertex 0 0\n", b"\x00" * 200])

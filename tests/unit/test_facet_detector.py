@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from facet_shapes import BAR, CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl, polygon, polyhedron
-from mesh_tools import ball
+from mesh_tools import ball, ellipsoid
 
+from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets
@@ -17,6 +18,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import Contacts, FloatArray, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.detectors.facets import FacetDetector
+from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError
 
 FLOOR = Wall(9, "floor", Plane(np.zeros(2), np.array([0.0, 1.0])))
@@ -98,10 +100,13 @@ def test_overlap_is_negative_with_and_without_a_corner_inside() -> None:
 
 
 def round_wall(surface: int, radius: float, centre: FloatArray) -> Wall:
+    size = abs(radius)
+
     class Round(Plane):
         """A circle, its inside the fluid where the radius is negative."""
 
         plane, radius = None, property(lambda _: radius)  # type: ignore[assignment]
+        bounds = centre - size, centre + size  # type: ignore[assignment]
 
         def signed_distance(self, points: FloatArray) -> FloatArray:
             return np.asarray(np.sign(radius) * (np.linalg.norm(points - centre, axis=1) - abs(radius)))
@@ -136,15 +141,69 @@ def test_walls_of_facets_have_corners_too() -> None:
     tilted = found([polygon(SQUARE)], pose((1.6, 1.55, np.pi / 4)), step)
     away = np.array([2.0, 1.0]) - [1.6, 1.55]
     assert tilted.gap[0] == pytest.approx(np.abs(away @ np.array([1.0, -1.0])) / np.sqrt(2.0) - 0.5, rel=1e-12)
-    in_corner = found([ball(0.3, 2)], pose((1.65, 0.32, 0.0)), step)
-    np.testing.assert_allclose(in_corner.gap, [0.02, 0.05], rtol=1e-11)
+    for detector in (FacetDetector, SphereDetector):
+        balls = detector(PartOptions(), [ball(0.3, 2)] * 2, [step])
+        in_corner = balls.detect(pose((1.65, 0.32, 0.0), (0.7, 0.4, 0.0)), None, np.inf)
+        at_wall = in_corner.at_wall
+        np.testing.assert_allclose(in_corner.gap[at_wall], [0.02, 0.05, 0.1], rtol=1e-11)
+        np.testing.assert_array_equal(in_corner.body_a[at_wall], [0, 0, 1])
 
 
 def test_other_shapes_are_refused_by_name() -> None:
-    from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
+    class Cross(Sphere):
+        name = "cross"
+        radius = None  # type: ignore[assignment]
 
-    with pytest.raises(SceneError, match=r'"facets" with body\.0 of type "ellipsoid"'):
-        FacetDetector(PartOptions(), [Ellipsoid(EllipsoidOptions(semi_axes=[1.0, 2.0]), 2)], [])
+    with pytest.raises(SceneError, match=r'"facets" with body\.0 of type "cross"'):
+        FacetDetector(PartOptions(), [Cross(SphereOptions(radius=1.0), 2)], [])
+
+
+def searched_gap(bodies: list[Body], at: Pose) -> float:
+    """The least distance of dense samples of the second body to the first, an ellipsoid."""
+    first, second = rotation_matrices(at.orientation)
+    samples = np.concatenate([bodies[1].sample_surface(40_000), bodies[1].facets.points])
+    return float(bodies[0].signed_distance((at.position[1] + samples @ second.T - at.position[0]) @ first).min())
+
+
+def test_ellipses_meet_polygons_as_dense_samples_do() -> None:
+    rng, apart = np.random.default_rng(5), 0
+    for _ in range(60):
+        bodies = [ellipsoid(*rng.uniform(0.1, 1.0, 2)), polygon([SQUARE, L_SHAPE, BAR][rng.integers(3)])]
+        at = pose((*rng.uniform(-2.5, 2.5, 2), rng.uniform(0, 7)), (0.0, 0.0, rng.uniform(0, 7)))
+        expected = searched_gap(bodies, at)
+        for order in (1, -1):
+            contacts = found(bodies[::order], Pose(at.position[::order], at.orientation[::order]))
+            if expected > 1e-3:
+                assert contacts.gap[0] == pytest.approx(expected, abs=1e-7)
+            elif expected < -1e-3:
+                assert contacts.gap[0] < 0
+        apart += expected > 1e-3
+    assert apart > 20
+
+
+def test_an_ellipse_lies_in_the_corner_of_an_l_on_both_arms() -> None:
+    shape = polygon(L_SHAPE)
+    at = pose((*(shape.facets.points[3] + [0.22, 0.13]), 0.0), (0.0, 0.0, 0.0))
+    contacts = found([ellipsoid(0.2, 0.1), shape], at)
+    np.testing.assert_allclose(contacts.gap, [0.02, 0.03], rtol=1e-12)
+    np.testing.assert_allclose(contacts.normal, [[1.0, 0.0], [0.0, 1.0]], atol=1e-14)
+
+
+def test_ellipsoids_meet_cubes_as_dense_samples_do(cube: Body) -> None:
+    rng, apart = np.random.default_rng(6), 0
+    for _ in range(40):
+        turns = rng.normal(size=(2, 4))
+        turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+        bodies = [ellipsoid(*rng.uniform(0.1, 0.8, 3)), cube]
+        at = Pose(np.array([1.3 * rng.normal(size=3), np.zeros(3)]), turns)
+        expected, contacts = searched_gap(bodies, at), found(bodies, at)
+        if expected > 0.01:
+            assert contacts.gap[0] == pytest.approx(expected, abs=2e-3)
+            assert contacts.gap[0] <= expected + 1e-12
+            apart += 1
+        elif expected < -0.01:
+            assert contacts.gap[0] < 0
+    assert apart > 10
 
 
 @pytest.fixture

@@ -43,7 +43,7 @@ def test_a_disk_goes_through_a_slippery_throat_and_the_energy_balance_closes() -
     """Of second order in the step; and walls without slip hold the fluid back."""
     coarse, fine = (run(throat(SLIPPERY, step=step)) for step in (0.04, 0.02))
     assert coarse.bodies["x"][-1] > 0.0
-    assert coarse.summary["remeshes"] > 2
+    assert coarse.summary["remeshes"] > 1
     left = [abs(each.energy["residual"][-1]) / each.energy["boundary"][-1] for each in (coarse, fine)]
     assert left[1] < 5e-4
     assert left[0] > 3.0 * left[1]

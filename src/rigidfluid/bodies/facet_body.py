@@ -49,12 +49,18 @@ class FacetBody(Body):
         vertices = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
         own = Facets(facets.points - moments.centre, np.ascontiguousarray(vertices), np.zeros_like(facets.markers))
         self._surface = FacetSurface(own)
+        self._given_centre = moments.centre
         self._volume, self._unit_inertia = abs(moments.volume), unit_inertia(moments.second)
 
     @property
     def facets(self) -> Facets:
         """The facets, normals outwards, about the centre of mass."""
         return self._surface.facets
+
+    @property
+    def given_centre(self) -> FloatArray:
+        """Centre of mass of the facets as they were given, (d,) [length]."""
+        return self._given_centre
 
     @property
     def volume(self) -> float:
@@ -84,7 +90,8 @@ class FacetBody(Body):
         return self._surface.normal(points)
 
     def sample_surface(self, count: int) -> FloatArray:
-        """``count`` points (count, d), as many on each facet as is due to its area [length]."""
+        """``count`` points, as many on each facet as is due to its area, and the vertices if they are no more
+        [length]."""
         corners = self.facets.points[self.facets.vertices]
         areas = np.cumsum(np.linalg.norm(area_vectors(self.facets.points, self.facets.vertices), axis=1))
         at = (np.arange(count) + 0.5) * areas[-1] / count
@@ -95,7 +102,9 @@ class FacetBody(Body):
         else:
             u, v = ((np.arange(count)[:, None] + 0.5) * _GOLDEN % 1.0).T
             weights = np.stack([1.0 - np.sqrt(u), np.sqrt(u) * (1.0 - v), np.sqrt(u) * v], axis=1)
-        return np.asarray(np.einsum("ni,nij->nj", weights, corners[facet]))
+        points = np.einsum("ni,nij->nj", weights, corners[facet])
+        few = len(self.facets.points) <= count
+        return np.concatenate([self.facets.points, points]) if few else np.asarray(points)
 
     def _refuse_crossings(self, facets: Facets) -> None:
         from rigidfluid.core.model.crossings import crossings

@@ -11,7 +11,7 @@ from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.contact.loads import impact_energy
 from rigidfluid.core.contact.proximity import of_different_bodies
 from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
-from rigidfluid.core.mechanics.shapes import inscribed_radius
+from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body
@@ -117,11 +117,11 @@ def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | Non
         Warnings alone.
     """
     law, key = interaction.law, f"{interaction.field}.range"
-    smallest = min((kind[0] for kind in body_classes(system)), key=lambda body: inscribed_radius(system.bodies[body]))
-    name, size = system.surfaces[smallest], inscribed_radius(system.bodies[smallest])
+    smallest = min((kind[0] for kind in body_classes(system)), key=lambda body: half_thickness(system.bodies[body]))
+    name, size = system.surfaces[smallest], half_thickness(system.bodies[smallest])
     if law.range > size:
-        text = f"the law reaches {figure(law.range)}, further than {name} is thick, {figure(size)} from its centre"
-        remedy, found = f"Set {key} to {at_most(size)} or less.", {"range": law.range, "inscribed_radius": size}
+        text = f"the law reaches {figure(law.range)}, further than the largest ball inside {name}, {figure(size)}"
+        remedy, found = f"Set {key} to {at_most(size)} or less.", {"range": law.range, "half_thickness": size}
         yield Finding("warning", "range", (name,), text, remedy, found, {"range": size})
     if mesh is not None and law.range < mesh.size_body:
         text = f"the law begins at {figure(law.range)}, within one cell of {figure(mesh.size_body)}"

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.checks.design_contacts import design_contacts
+from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
+from rigidfluid.checks.shapes import of_facets
 from rigidfluid.checks.static_load import at_rest, under_a_stack
 from rigidfluid.checks.stepping import in_steps
 from rigidfluid.checks.tolerance import to_a_tolerance
@@ -48,9 +50,10 @@ class BodyRow:
 
 @dataclass(frozen=True)
 class Report:
-    """What a check has found: what is switched on and off, the bodies, and findings, the gravest first."""
+    """What a check has found: the domain, what is switched on and off, the bodies, and findings, the gravest first."""
 
     scene: str
+    domain: DomainRow
     features: tuple[Feature, ...]
     bodies: tuple[BodyRow, ...]
     findings: tuple[Finding, ...]
@@ -64,6 +67,7 @@ class Report:
         return {
             "scene": self.scene,
             **{f"{grade}s": self.count(grade) for grade in GRADES},
+            "domain": asdict(self.domain),
             "features": [asdict(feature) for feature in self.features],
             "bodies": [asdict(body) for body in self.bodies],
             "findings": [finding.to_dict() for finding in self.findings],
@@ -93,13 +97,16 @@ def check(scene: Scene) -> Report:
         scene = parts.scene
         start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
         found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
-        return Report(scene.name, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found))
+        domain = domain_row(scene, system.domain)
+        return Report(
+            scene.name, domain, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found)
+        )
 
 
 def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
-    yield from to_a_tolerance(scene.time)
+    yield from chain(to_a_tolerance(scene.time), of_facets(system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

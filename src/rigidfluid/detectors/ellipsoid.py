@@ -1,30 +1,25 @@
-"""Contacts of the true shapes of balls, ellipses and ellipsoids with each other and with flat walls."""
+"""Contacts of the true shapes of balls, ellipses and ellipsoids with each other and with flat and round walls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import ClassVar
 
-import numpy as np
-
-from rigidfluid.core.contact.broad_phase import near_pairs
-from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, require_plane
-from rigidfluid.errors import SceneError, StepError
-
-_STARTS = 16
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
+from rigidfluid.core.model.wall import Wall, is_round
+from rigidfluid.detectors.smooth_contacts import SmoothContacts
+from rigidfluid.errors import SceneError
 
 
 class EllipsoidDetector(Detector):
     """gap = max over unit n of n·(x_a - x_b) - h_a(n) - h_b(n), with h(n) = |diag(a) Rᵀn| the reach of an ellipsoid.
 
     The gap is the distance of the surfaces, and where they overlap, minus the shortest way apart; n is the normal. At a
-    wall n is known, so that the gap is in closed form.
+    flat wall n is known, so that the gap is in closed form. A round wall that bulges into the fluid is a ball. In a
+    hollow of radius R the gap is R less the largest distance of the surface from the centre; a body has a contact with
+    it at each local maximum of that distance, two at most, if the wall is there.
 
     Parameters
     ----------
@@ -38,17 +33,21 @@ class EllipsoidDetector(Detector):
     Raises
     ------
     SceneError
-        If a body has no semi-axes, or a wall is not flat.
+        If a body has no semi-axes, or a wall is neither flat nor round.
     """
 
     name: ClassVar[str] = "ellipsoid"
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
-        self._axes = [_semi_axes(index, body) for index, body in enumerate(bodies)]
-        self._flat = [(wall.surface, require_plane(wall, self.name)) for wall in walls]
-        self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
-        self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies], dtype=float)
+        for index, body in enumerate(bodies):
+            if body.semi_axes is None:
+                allowed = "balls, ellipses and ellipsoids only"
+                _refuse(f'body.{index} of type "{body.name}"', allowed)
+        for wall in walls:
+            if wall.shape.plane is None and not is_round(wall.shape):
+                _refuse(f"the wall {wall.name!r}", "walls that are flat or round")
+        self._contacts = SmoothContacts(bodies, walls)
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone.
@@ -58,104 +57,10 @@ class EllipsoidDetector(Detector):
         StepError
             If the normal of a pair is not found; it is named.
         """
-        axes = np.reshape(self._axes, pose.position.shape)
-        half = rotation_matrices(pose.orientation) * axes[:, None, :]
-        found = [self._body_contacts(pose.position, half, reach)]
-        found += [self._wall_contacts(pose.position, half, *wall) for wall in self._flat]
-        contacts = in_order(found)
+        contacts = in_order([self._contacts.between(pose, reach), *self._contacts.at_walls(pose, reach)])
         return select(contacts, contacts.gap <= reach)
 
-    def _body_contacts(self, position: FloatArray, half: FloatArray, reach: float) -> Contacts:
-        body_a, body_b = near_pairs(position, self._bounds, reach)
-        normal, near = _normals(position, half, body_a, body_b, reach)
-        body_a, body_b = body_a[near], body_b[near]
-        point_a = position[body_a] - _farthest(half[body_a], normal)
-        point_b = position[body_b] + _farthest(half[body_b], normal)
-        return Contacts(
-            body_a=body_a,
-            body_b=body_b,
-            point_a=point_a,
-            point_b=point_b,
-            normal=normal,
-            gap=np.sum((point_a - point_b) * normal, axis=1),
-            radius_a=self._radii[body_a],
-            radius_b=self._radii[body_b],
-            at_wall=np.zeros(len(body_a), dtype=bool),
-        )
 
-    def _wall_contacts(self, position: FloatArray, half: FloatArray, surface: int, plane: Plane) -> Contacts:
-        normal = np.broadcast_to(plane.unit_normal, position.shape)
-        point_a = position - _farthest(half, normal)
-        gap = plane.signed_distance(point_a)
-        return Contacts(
-            body_a=np.arange(len(position)),
-            body_b=np.full(len(position), surface),
-            point_a=point_a,
-            point_b=point_a - gap[:, None] * normal,
-            normal=normal,
-            gap=gap,
-            radius_a=self._radii,
-            radius_b=np.full(len(position), np.inf),
-            at_wall=np.ones(len(position), dtype=bool),
-        )
-
-
-def _semi_axes(index: int, body: Body) -> FloatArray:
-    if body.semi_axes is not None:
-        return body.semi_axes
-    raise SceneError(
-        "contact.detector",
-        f'"ellipsoid" with body.{index} of type "{body.name}"',
-        "balls, ellipses and ellipsoids only",
-        'Use detector = "fast_marching", or "brute_force", for this shape.',
-    )
-
-
-def _normals(
-    position: FloatArray, half: FloatArray, body_a: IntArray, body_b: IntArray, reach: float
-) -> tuple[FloatArray, IntArray]:
-    """Normals (k, d) of the pairs that are in reach, and which pairs (k,) these are."""
-    dimension = position.shape[1]
-    if len(body_a) == 0:
-        return np.empty((0, dimension)), body_a
-    from rigidfluid.detectors.ellipsoid_separation import BEYOND, LOST, separate
-
-    offset = _in_space(position[body_a] - position[body_b])
-    normal, state = np.empty_like(offset), np.empty(len(offset), dtype=np.int64)
-    directions = _in_space(unit_sphere_points(_STARTS, dimension))
-    separate(offset, body_a, body_b, _solids(half), directions, reach, normal, state)
-    lost = np.flatnonzero(state == LOST)
-    if len(lost):
-        raise _no_normal(int(body_a[lost[0]]), int(body_b[lost[0]]), offset[lost[0], :dimension])
-    near = np.flatnonzero(state != BEYOND)
-    return normal[near, :dimension], near
-
-
-def _no_normal(a: int, b: int, offset: FloatArray) -> StepError:
-    return StepError(
-        f"bodies {a} and {b}",
-        f"no common normal, with their centres {offset.tolist()} apart",
-        "finite positions and orientations",
-        'Look at how the bodies move before this; `detector = "brute_force"` is another way to their gap.',
-    )
-
-
-def _farthest(half: FloatArray, normal: FloatArray) -> FloatArray:
-    """Points S Sᵀn/|Sᵀn| (m, d) of ellipsoids ``half`` S (m, d, d) in directions n (m, d), from their centres."""
-    on_ball = np.einsum("mij,mi->mj", half, normal)
-    on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
-    return np.asarray(np.einsum("mij,mj->mi", half, on_ball))
-
-
-def _in_space(vectors: FloatArray) -> FloatArray:
-    """Vectors (m, d) as triples."""
-    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
-
-
-def _solids(half: FloatArray) -> FloatArray:
-    """The matrices S (n, 3, 3), in the plane with a third semi-axis as long as the first."""
-    if half.shape[1] == 3:
-        return half
-    solids = np.zeros((len(half), 3, 3))
-    solids[:, :2, :2], solids[:, 2, 2] = half, np.linalg.norm(half[:, :, 0], axis=1)
-    return solids
+def _refuse(found: str, allowed: str) -> None:
+    remedy = 'Use detector = "auto", which takes one for these shapes.'
+    raise SceneError("contact.detector", f'"ellipsoid" with {found}', allowed, remedy)

@@ -18,12 +18,14 @@ _FLAT = 1e-9
 @dataclass(frozen=True)
 class Features:
     """``corners`` (c,), rows of points, and ``edges`` (e, 2), empty in the plane, with their mean unit normals
-    ``corner_normals`` (c, d) and ``edge_normals`` (e, d); ``all_edges`` (E, 2), those that do not stick out too."""
+    ``corner_normals`` (c, d) and ``edge_normals`` (e, d); ``downhill`` (e, 2, d), directions across the edge into the
+    facets on both sides; ``all_edges`` (E, 2), those that do not stick out too."""
 
     corners: IntArray
     corner_normals: FloatArray
     edges: IntArray
     edge_normals: FloatArray
+    downhill: FloatArray
     all_edges: IntArray
 
 
@@ -38,6 +40,7 @@ def features_of(surface: FacetSurface) -> Features:
         found.corner_normals[corners],
         found.edges[edges],
         found.edge_normals[edges],
+        found.downhill[edges],
         found.all_edges[own[found.all_edges].all(axis=1)],
     )
 
@@ -56,23 +59,30 @@ def _features(facets: Facets) -> Features:
     np.maximum.at(rise, both_ways[:, 0], np.sum(along * normals[both_ways[:, 0]], axis=1))
     corners = np.flatnonzero((rise < -_FLAT) & np.isfinite(rise))
     if dimension == 2:
-        return Features(corners, normals[corners], np.empty((0, 2), np.int64), np.empty((0, 2)), edges)
-    sharp, mean = _sharp_edges(points, vertices, edges)
-    return Features(corners, normals[corners], edges[sharp], mean[sharp], edges)
+        none = np.empty((0, 2))
+        return Features(corners, normals[corners], none.astype(np.int64), none, none.reshape(0, 2, 2), edges)
+    mean, downhill = _sides(points, vertices, edges)
+    sharp = np.flatnonzero(np.all(np.einsum("esk,ek->es", downhill, mean) < -_FLAT, axis=1))
+    return Features(corners, normals[corners], edges[sharp], mean[sharp], downhill[sharp], edges)
 
 
-def _sharp_edges(points: FloatArray, vertices: IntArray, edges: IntArray) -> tuple[IntArray, FloatArray]:
-    """Rows of ``edges`` from which the facets on both sides go down, and the mean normals of all."""
-    numbers = {tuple(edge): row for row, edge in enumerate(edges.tolist())}
-    normal = unit(area_vectors(points, vertices))
-    mean, across, row = np.zeros((len(edges), 3)), [], []
-    for i in range(3):
-        ends = np.sort(vertices[:, [i, (i + 1) % 3]], axis=1)
-        row.append(np.array([numbers[tuple(end)] for end in ends.tolist()]))
-        np.add.at(mean, row[-1], normal)
-        across.append(vertices[:, (i + 2) % 3])
-    mean, at = unit(mean), np.concatenate(row)
-    down = unit(points[np.concatenate(across)] - points[edges[at, 0]])
-    rise = np.full(len(edges), -np.inf)
-    np.maximum.at(rise, at, np.sum(down * mean[at], axis=1))
-    return np.flatnonzero(rise < -_FLAT), mean
+def _sides(points: FloatArray, vertices: IntArray, edges: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Mean unit normals (E, 3) of the facets at ``edges`` (E, 2), and unit directions (E, 2, 3) across the edge into
+    them, zero where an edge has one facet alone."""
+    ends = np.sort(np.concatenate([vertices[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+    opposite = np.concatenate([vertices[:, (i + 2) % 3] for i in range(3)])
+    at = np.searchsorted(_keys(edges, len(points)), _keys(ends, len(points)))
+    mean = np.zeros((len(edges), 3))
+    np.add.at(mean, at, np.tile(unit(area_vectors(points, vertices)), (3, 1)))
+    along = unit(points[ends[:, 1]] - points[ends[:, 0]])
+    away = points[opposite] - points[ends[:, 0]]
+    across = unit(away - np.sum(away * along, axis=1)[:, None] * along)
+    order = np.argsort(at, kind="stable")
+    second = np.append(False, at[order][1:] == at[order][:-1]).astype(np.int64)
+    downhill = np.zeros((len(edges), 2, 3))
+    downhill[at[order], second] = across[order]
+    return unit(mean), downhill
+
+
+def _keys(edges: IntArray, points: int) -> IntArray:
+    return np.asarray(edges[:, 0] * points + edges[:, 1])

@@ -1,8 +1,9 @@
-"""Contacts of polygons and polyhedra with each other, with balls and with walls, exact and without a mesh."""
+"""Contacts of polygons and polyhedra with each other, with ellipsoids and with walls, exact and without a mesh."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -10,13 +11,15 @@ import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.contacts import in_order
-from rigidfluid.core.model.facet_surface import FacetSurface, Nearby
+from rigidfluid.core.model.contacts import in_order, select
+from rigidfluid.core.model.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoid, ellipsoid_touches
 from rigidfluid.detectors.facet_features import Features, features_of
+from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError
 
 SPREAD = 0.5
@@ -44,16 +47,16 @@ class FacetDetector(Detector):
     """One contact for each corner of a pair that faces the other's surface, so that a box lies on all its corners.
 
     Of a corner at x with the nearest points p of the other surface, gap = |x - p| and normal = (x - p)/|x - p|, and in
-    space the same between edges that pass each other. A ball has a contact with each place that is nearer to its centre
-    than all around it. Overlap is the depth of the deepest corner, or that of the shallowest edge that goes through a
-    facet.
+    space the same between edges that pass each other. A ball or an ellipsoid has a contact with each place that is
+    nearer to it than all around. Overlap is the depth of the deepest corner, or that of the shallowest edge that goes
+    through a facet.
 
     Parameters
     ----------
     options : PartOptions
         None are read.
     bodies : sequence of Body
-        Balls, and bodies of facets.
+        Balls, ellipses, ellipsoids, and bodies of facets.
     walls : sequence of Wall
         Flat, round or made of facets.
 
@@ -68,8 +71,8 @@ class FacetDetector(Detector):
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
         for index, body in enumerate(bodies):
-            if body.facets is None and body.radius is None:
-                _refuse(self.name, f'body.{index} of type "{body.name}"', "balls, and bodies of facets")
+            if body.facets is None and body.semi_axes is None:
+                _refuse(self.name, f'body.{index} of type "{body.name}"', "ellipsoids, and bodies of facets")
         for wall in walls:
             if not is_known(wall.shape):
                 _refuse(self.name, f"the wall {wall.name!r}", "walls that are flat, round or of facets")
@@ -77,25 +80,45 @@ class FacetDetector(Detector):
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
         self._solids = [None if body.facets is None else _Solid(FacetSurface(body.facets)) for body in bodies]
         self._fixed = {wall.surface: _fixed(wall.shape) for wall in walls}
+        smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
+        self._smooth = np.array(smooth, dtype=np.int64)
+        self._smooth_contacts = SmoothContacts([bodies[index] for index in smooth], [])
+        long = [index for index in smooth if bodies[index].radius is None]
+        self._long = np.array(long, dtype=np.int64)
+        closed = [wall for wall in walls if not isinstance(wall.shape, FacetSurface)]
+        self._long_contacts = SmoothContacts([bodies[index] for index in long], closed)
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap), from the shapes alone."""
         rotation = rotation_matrices(pose.orientation)
         placed = [self._placed(i, pose.position[i], rotation[i]) for i in range(len(self.bodies))]
-        found = [_contacts(0, 0, _none(pose.position.shape[1]), 0.0, 0.0, False)]
+        found = self._between_smooth(pose, reach)
         for a, b in zip(*near_pairs(pose.position, self._bounds, reach), strict=True):
-            spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
-            touches = _between(placed[a], placed[b], reach, spread)
-            found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
+            if isinstance(placed[a], _Facets) or isinstance(placed[b], _Facets):
+                spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
+                touches = _between(placed[a], placed[b], reach, spread)
+                found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
         for body, wall in near_walls(pose.position, self._bounds, self.walls, reach):
-            touches = _between(placed[body], self._fixed[wall.surface], reach, SPREAD * float(self._bounds[body]))
-            radii = self._radii[body], radius_of(wall.shape)
-            found.append(_contacts(body, wall.surface, touches, *radii, True))
+            fixed, one = self._fixed[wall.surface], placed[body]
+            if isinstance(fixed, _Facets) or not isinstance(one, _Ellipsoid):
+                touches = _between(one, fixed, reach, SPREAD * float(self._bounds[body]))
+                radii = self._radii[body], radius_of(wall.shape)
+                found.append(_contacts(body, wall.surface, touches, *radii, True))
         return in_order(found)
 
+    def _between_smooth(self, pose: Pose, reach: float) -> list[Contacts]:
+        """Of balls and ellipsoids with each other, and of the latter with flat and round walls."""
+        pairs = self._smooth_contacts.between(_of(pose, self._smooth), reach)
+        pairs = replace(pairs, body_a=self._smooth[pairs.body_a], body_b=self._smooth[pairs.body_b])
+        at_walls = self._long_contacts.at_walls(_of(pose, self._long), reach)
+        found = [pairs, *(replace(each, body_a=self._long[each.body_a]) for each in at_walls)]
+        return [select(each, each.gap <= reach) for each in found]
+
     def _placed(self, index: int, position: FloatArray, rotation: FloatArray) -> _Placed:
-        solid = self._solids[index]
-        return _Ball(position, self._radii[index]) if solid is None else _Facets(solid, position, rotation)
+        solid, body = self._solids[index], self.bodies[index]
+        if solid is not None:
+            return _Facets(solid, position, rotation)
+        return _Ellipsoid(body, position, rotation) if body.radius is None else _Ball(position, body.radius)
 
 
 def is_known(shape: Surface) -> bool:
@@ -119,6 +142,9 @@ class _Ball(NamedTuple):
 
     centre: FloatArray
     radius: float
+
+
+_Ellipsoid = PlacedEllipsoid
 
 
 class _Facets(NamedTuple):
@@ -149,9 +175,7 @@ class _Round(NamedTuple):
     shape: Surface
 
     def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
-        distance = self.shape.signed_distance(points)
-        near = np.flatnonzero(distance <= reach)
-        return Nearby(near, self.shape.closest_point(points[near]), distance[near], self.shape.normal(points[near]))
+        return nearby(self.shape, points, reach, spread)
 
     def ball(self, beside: FloatArray) -> _Ball | None:
         """The wall as a ball, if it bulges into the fluid; ``beside`` (d,) is any point there."""
@@ -162,7 +186,7 @@ class _Round(NamedTuple):
         return _Ball((foot - radius * normal)[0], radius)
 
 
-_Placed = _Ball | _Facets
+_Placed = _Ball | _Ellipsoid | _Facets
 _Wall = _Facets | _Round
 
 
@@ -175,49 +199,70 @@ def _fixed(shape: Surface) -> _Wall:
 
 def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
     """All contacts of a pair, the nearest first."""
-    if isinstance(a, _Ball):
-        parts = [_ball_touches(a, b, reach, spread)]
-    elif isinstance(b, _Ball):
-        parts = [_ball_touches(b, a, reach, spread).turned()]
+    if isinstance(a, _Facets):
+        if isinstance(b, _Facets | _Round):
+            parts = _facet_touches(a, b, reach, spread)
+        else:
+            parts = [_smooth_touches(b, a, reach, spread).turned()]
     else:
-        parts = _facet_touches(a, b, reach, spread)
+        assert isinstance(b, _Facets | _Round)
+        parts = [_smooth_touches(a, b, reach, spread)]
     found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
     least = found.gap.min(initial=np.inf)
     found = found.at((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
     return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
 
 
-def _ball_touches(ball: _Ball, other: _Placed | _Wall, reach: float, spread: float) -> Touches:
-    if isinstance(other, _Ball):
-        away = ball.centre - other.centre
-        distance = float(np.linalg.norm(away))
-        normal = away / distance if distance > 0 else np.eye(len(away))[0]
-        gap = distance - ball.radius - other.radius
-        points = ball.centre - ball.radius * normal, other.centre + other.radius * normal
-        return Touches(points[0][None], points[1][None], normal[None], np.array([gap]))
-    near = other.nearby(ball.centre[None], reach + ball.radius, spread)
-    return Touches(ball.centre - ball.radius * near.normal, near.foot, near.normal, near.distance - ball.radius)
+def _smooth_touches(body: _Ball | _Ellipsoid, other: _Facets | _Round, reach: float, spread: float) -> Touches:
+    if isinstance(body, _Ball):
+        near = other.nearby(body.centre[None], reach + body.radius, spread)
+        return Touches(body.centre - body.radius * near.normal, near.foot, near.normal, near.distance - body.radius)
+    assert isinstance(other, _Facets)
+    turned = _Ellipsoid(body.shape, other.local(body.position), other.rotation.T @ body.rotation)
+    near = ellipsoid_touches(turned, other.solid.surface, other.solid.features, reach)
+    foot, normal = other.lab(near.foot), near.normal @ other.rotation.T
+    return Touches(foot + near.distance[:, None] * normal, foot, normal, near.distance)
 
 
 def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> list[Touches]:
+    reach = min(reach, _some_gap(a, b) + spread)
     parts = [_corner_touches(a, b, reach, spread)]
     if isinstance(b, _Round):
         ball = b.ball(a.position)
-        return parts if ball is None else [*parts, _ball_touches(ball, a, reach, spread).turned()]
+        return parts if ball is None else [*parts, _smooth_touches(ball, a, reach, spread).turned()]
     parts += [_corner_touches(b, a, reach, spread).turned(), _edge_touches(a, b, reach)]
     if all(part.gap.min(initial=np.inf) > 0 for part in parts):
         parts.append(_pierced(a, b))
     return parts
 
 
+def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
+    """Of a vertex of a that is near b; the least gap is no larger [length]."""
+    foot = b.nearby(a.position[None], np.inf, 0.0).foot[0]
+    points = a.points
+    nearest = np.argmin(np.linalg.norm(points - foot, axis=1))
+    return max(float(b.nearby(points[nearest : nearest + 1], np.inf, 0.0).distance[0]), 0.0)
+
+
 def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> Touches:
     features = a.solid.features
-    corners = a.lab(a.solid.surface.facets.points[features.corners])
+    corners = a.points[features.corners]
+    close = np.flatnonzero(_beside(corners[:, None], b, reach))
+    corners = corners[close]
     near = b.nearby(corners, reach, spread)
-    outwards = features.corner_normals[near.point] @ a.rotation.T
+    outwards = features.corner_normals[close[near.point]] @ a.rotation.T
     faces = np.sum(outwards * near.normal, axis=1) < 0
     nearest = near.distance <= near.distance.min(initial=np.inf)
     return Touches(corners[near.point], near.foot, near.normal, near.distance).at(faces | nearest)
+
+
+def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
+    """Which groups of points (m, k, d) have a box within ``reach`` of that around another surface, in its frame."""
+    if isinstance(other, _Round):
+        return np.ones(len(groups), dtype=bool)
+    lower, upper = other.solid.surface.bounds
+    inside = other.local(groups)
+    return np.asarray(np.all((inside.max(axis=1) >= lower - reach) & (inside.min(axis=1) <= upper + reach), axis=1))
 
 
 def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
@@ -226,13 +271,16 @@ def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
         return _none(dimension)
     from rigidfluid.detectors.edge_pairs import passing_edges
 
-    edges_a, edges_b = a.solid.features, b.solid.features
-    first, second, point_a, point_b = passing_edges(a.points, edges_a.edges, b.points, edges_b.edges, reach)
+    points_a, points_b, both = a.points, b.points, (a.solid.features, b.solid.features)
+    close_a = _beside(points_a[both[0].edges], b, reach)
+    close_b = _beside(points_b[both[1].edges], a, reach)
+    edges_a, edges_b = both[0].edges[close_a], both[1].edges[close_b]
+    first, second, point_a, point_b = passing_edges(points_a, edges_a, points_b, edges_b, reach)
     away = point_a - point_b
     gap = np.linalg.norm(away, axis=1)
     normal = away / gap[:, None]
-    towards_b = np.sum(edges_a.edge_normals[first] @ a.rotation.T * normal, axis=1) < 0
-    towards_a = np.sum(edges_b.edge_normals[second] @ b.rotation.T * normal, axis=1) > 0
+    towards_b = np.sum(both[0].edge_normals[close_a][first] @ a.rotation.T * normal, axis=1) < 0
+    towards_a = np.sum(both[1].edge_normals[close_b][second] @ b.rotation.T * normal, axis=1) > 0
     return Touches(point_a, point_b, normal, gap).at(towards_a & towards_b)
 
 
@@ -260,6 +308,10 @@ def _through(a: _Facets, b: _Facets) -> Touches:
     rows = np.arange(len(met))
     gap, end = np.minimum(heights[rows, deeper], 0.0), ends[rows, deeper]
     return Touches(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
+
+
+def _of(pose: Pose, bodies: IntArray) -> Pose:
+    return Pose(pose.position[bodies], pose.orientation[bodies])
 
 
 def _none(dimension: int) -> Touches:

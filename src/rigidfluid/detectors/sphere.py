@@ -8,10 +8,14 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.model.contacts import in_order
+from rigidfluid.core.model.facet_surface import nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of
 from rigidfluid.errors import SceneError
+
+SPREAD = 0.5
+"""Of the smallest radius: places of one wall that are farther than this behind the nearest are left out."""
 
 
 class SphereDetector(Detector):
@@ -83,11 +87,13 @@ class SphereDetector(Detector):
         )
 
     def _curved_contacts(self, position: FloatArray, wall: Wall, reach: float) -> Contacts:
-        """Of balls with one wall, h by its signed distance."""
-        gap = wall.shape.signed_distance(position) - self._radii
-        near = np.flatnonzero(gap <= reach)
-        gap, centre, radius = gap[near], position[near], self._radii[near]
-        normal = wall.shape.normal(centre)
+        """Of balls with one wall, h by its signed distance; with facets at all places that are nearest around."""
+        found = nearby(wall.shape, position, reach + float(self._radii.max()), SPREAD * float(self._radii.min()))
+        gap = found.distance - self._radii[found.point]
+        order = np.argsort(gap, kind="stable")
+        chosen = order[gap[order] <= reach]
+        near, gap, normal = found.point[chosen], gap[chosen], found.normal[chosen]
+        centre, radius = position[near], self._radii[near]
         return Contacts(
             body_a=near,
             body_b=np.full(len(near), wall.surface),

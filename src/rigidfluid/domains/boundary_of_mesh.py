@@ -5,9 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.types import FloatArray, IntArray
@@ -136,6 +133,10 @@ def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArr
 
 def _joined(points: FloatArray, vertices: IntArray) -> IntArray:
     """For each point the number of the one that stands for it."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     used = np.unique(vertices)
     size = float(np.ptp(points[used], axis=0).max())
     pairs = used[cKDTree(points[used]).query_pairs(SAME * size, output_type="ndarray")]

@@ -12,9 +12,9 @@ from pydantic import Field
 from rigidfluid.core.mesh.meshing import sides, surfaces_of
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.closed_form import Flat, Form, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
@@ -28,6 +28,9 @@ _FACETS = 30
 
 _FACETS_PER_RADIUS = 8.0
 """And along a radius of curvature."""
+
+_SAME = 1e-9
+"""Areas and distances that differ by less, relatively, are equal."""
 
 _SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")
 
@@ -85,9 +88,8 @@ class Cad(Domain):
 
     @property
     def extent(self) -> tuple[FloatArray, FloatArray]:
-        """Corners of the box around all pieces [length]."""
-        lower, upper = zip(*(piece.shape.bounds for piece in self.pieces), strict=True)
-        return np.min(lower, axis=0), np.max(upper, axis=0)
+        """Corners of the box around all faces; round ones may be a little within it [length]."""
+        return self._exact.bounds
 
     @property
     def volume(self) -> float:
@@ -115,14 +117,37 @@ class Cad(Domain):
     def _form(self, side: Any) -> Form | None:
         return form_of_edge(side) if self.dimension == 2 else form_of_face(side.surf)
 
+    def _centre(self, number: int) -> FloatArray:
+        centre = self._sides[number].center
+        return np.array([centre.x, centre.y, centre.z])[: self.dimension]
+
     def _piece(self, name: str) -> Piece:
         numbers = [i for i, given in enumerate(self._names) if given == name]
         chosen = np.isin(self._facets.markers, numbers)
         facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
-        all_flat = all(isinstance(self._forms[i], Flat) for i in numbers)
-        plane: Plane | None = plane_around(facets, self._facets.points, self._exact.slack) if all_flat else None
-        shape: Surface = plane or FormedSurface(facets, self._forms, self._whole)
-        return Piece(name, shape, float(sum(self._sides[i].mass for i in numbers)))
+        area = float(sum(self._sides[i].mass for i in numbers))
+        if all(isinstance(self._forms[i], Flat) for i in numbers):
+            plane = plane_around(facets, self._facets.points)
+            if plane is not None:
+                centre = sum(self._sides[i].mass * self._centre(i) for i in numbers) / area
+                return Piece(name, _bounded(plane, facets, area, centre, self._exact.slack), area)
+        return Piece(name, FormedSurface(facets, self._forms, self._whole), area)
+
+
+def _bounded(plane: Plane, facets: Facets, area: float, centre: FloatArray, slack: float) -> Plane:
+    """The plane, bounded as the piece of that ``area`` and ``centre`` is and not as its facets, if its edge is round.
+
+    Whatever has an area of πr² and no point farther than r from its centre is a disk.
+    """
+    areas = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1)
+    if np.isclose(areas.sum(), area, rtol=_SAME):
+        return plane
+    rim, radius = facets.points[np.unique(facets.vertices)], np.sqrt(area / np.pi)
+    across = np.sqrt(1.0 - plane.unit_normal**2)
+    if np.linalg.norm(rim - centre, axis=1).max() <= (1.0 + _SAME) * radius:
+        return Plane(plane.point, plane.unit_normal, (centre - radius * across, centre + radius * across))
+    lower, upper = plane.bounds
+    return Plane(plane.point, plane.unit_normal, (lower - slack * across, upper + slack * across))
 
 
 def _read(options: CadOptions, dimension: int) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
-from rigidfluid.domains.closed_form import Form, Offset
+from rigidfluid.domains.closed_form import Flat, Form, Offset
 
 _SLACK = 2.0
 """A point of a form is on its face if it is no farther from the facets than this many times what they cut off."""
@@ -33,6 +34,16 @@ class _Measured(NamedTuple):
     normal: FloatArray
 
 
+class _Feet(NamedTuple):
+    """``foot`` (N, d), ``normal`` (N, d) there, the ``face`` that is nearest to it (N,), and whether it is the form's
+    own (N,)."""
+
+    foot: FloatArray
+    normal: FloatArray
+    face: IntArray
+    bounded: BoolArray
+
+
 class FormedSurface(Surface):
     """Faces with known forms, each bounded by its facets; a face without is what its facets are.
 
@@ -50,18 +61,22 @@ class FormedSurface(Surface):
     """
 
     def __init__(self, facets: Facets, forms: Sequence[Form | None], whole: FacetSurface | None = None) -> None:
-        self._coarse = FacetSurface(facets, whole)
+        self._coarse, self._whole = FacetSurface(facets), whole
         self._faces: dict[int, _Face] = {}
         for number in np.unique(facets.markers).tolist():
             if (form := forms[number]) is not None:
                 self._faces[number] = _face(facets, facets.markers == number, form)
         self._complete = len(self._faces) == len(np.unique(facets.markers))
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Corners of the box around the facets and what they cut off, (d,) each [length]."""
-        lower, upper = self._coarse.bounds
-        return lower - self.slack, upper + self.slack
+        points, vertices, marked = self._coarse.facets.points, self._coarse.facets.vertices, self._coarse.facets.markers
+        corners = [(number, points[vertices[marked == number].ravel()]) for number in np.unique(marked).tolist()]
+        slack = {number: face.slack for number, face in self._faces.items()}
+        lower = np.min([mine.min(axis=0) - slack.get(number, 0.0) for number, mine in corners], axis=0)
+        upper = np.max([mine.max(axis=0) + slack.get(number, 0.0) for number, mine in corners], axis=0)
+        return lower, upper
 
     @property
     def slack(self) -> float:
@@ -94,29 +109,42 @@ class FormedSurface(Surface):
         return self._measured(points).normal
 
     def _measured(self, points: FloatArray) -> _Measured:
-        """Where faces pass into one another, the form of the face that is near the point may end before the foot."""
-        near = self._on_forms(points, self._face_of(points))
-        return self._on_forms(points, self._face_of(near.foot))
+        facet, coarse_foot, coarse_distance, coarse_normal = self._coarse.nearest(points)
+        face = self._coarse.facets.markers[facet]
+        found = self._on_forms(points, _Feet(coarse_foot, coarse_normal, face, np.zeros(len(points), dtype=bool)))
+        self._go_on(points, found, np.flatnonzero(found.face != face))
+        away = np.linalg.norm(points - found.foot, axis=1)
+        formed = np.isin(face, list(self._faces))
+        above = np.sum((points - found.foot) * found.normal, axis=1)
+        inside = np.where(formed, above, coarse_distance) > 0.0
+        if self._whole is not None:
+            behind = np.flatnonzero(~inside & (away > self.slack))
+            inside[behind] = self._whole.signed_distance(points[behind]) > 0.0
+        return _Measured(found.foot, np.where(inside, away, -away), found.normal)
 
-    def _face_of(self, points: FloatArray) -> IntArray:
-        return self._coarse.facets.markers[self._coarse.nearest_facets(points)]
+    def _go_on(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
+        """Where faces pass into one another, the form of the face that is near a point may end before its foot: then
+        the next face goes on."""
+        there = _Feet(found.foot[rows], found.normal[rows], found.face[rows], found.bounded[rows])
+        following = self._on_forms(points[rows], there)
+        taken = following.bounded
+        found.foot[rows[taken]], found.normal[rows[taken]] = following.foot[taken], following.normal[taken]
 
-    def _on_forms(self, points: FloatArray, face_of: IntArray) -> _Measured:
-        foot, normal = self._coarse.closest_point(points), self._coarse.normal(points)
-        inside = self._coarse.signed_distance(points) > 0.0
-        for number, face in self._faces.items():
-            rows = np.flatnonzero(face_of == number)
-            exact = face.form.closest_point(points[rows])
-            bounded = self._on_facets(exact, face)
-            exact[~bounded] = face.form.closest_point(foot[rows[~bounded]])
-            foot[rows], normal[rows] = exact, face.sense * face.form.outward(exact)
-            above = np.sum((points[rows] - exact) * normal[rows], axis=1) > 0.0
-            inside[rows[bounded]] = above[bounded]
-        away = np.linalg.norm(points - foot, axis=1)
-        return _Measured(foot, np.where(inside, away, -away), normal)
-
-    def _on_facets(self, points: FloatArray, face: _Face) -> BoolArray:
-        return np.asarray(np.abs(self._coarse.signed_distance(points)) <= face.slack)
+    def _on_forms(self, points: FloatArray, near: _Feet) -> _Feet:
+        """The nearest points of the forms of the faces that points are ``near`` to; those there, put onto the form,
+        where the form's are not on the face."""
+        foot, normal, slack = near.foot.copy(), near.normal.copy(), np.full(len(points), np.inf)
+        rows_of = {number: np.flatnonzero(near.face == number) for number in self._faces}
+        for number, rows in rows_of.items():
+            foot[rows] = self._faces[number].form.closest_point(points[rows])
+            slack[rows] = self._faces[number].slack
+        facet, _, distance, _ = self._coarse.nearest(foot)
+        bounded = np.abs(distance) <= slack
+        for number, rows in rows_of.items():
+            form, off = self._faces[number].form, rows[~bounded[rows]]
+            foot[off] = form.closest_point(near.foot[off])
+            normal[rows] = self._faces[number].sense * form.outward(foot[rows])
+        return _Feet(foot, normal, self._coarse.facets.markers[facet], bounded)
 
 
 def _face(facets: Facets, chosen: BoolArray, form: Form) -> _Face:
@@ -125,4 +153,4 @@ def _face(facets: Facets, chosen: BoolArray, form: Form) -> _Face:
     cut_off = float(np.linalg.norm(form.closest_point(middles) - middles, axis=1).max())
     sense = float(np.sign(np.sum(normals * form.outward(middles))))
     rounding = 1e-12 * float(np.ptp(facets.points, axis=0).max())
-    return _Face(form, sense, max(_SLACK * cut_off, rounding))
+    return _Face(form, sense, rounding if isinstance(form, Flat) else max(_SLACK * cut_off, rounding))

@@ -15,7 +15,7 @@ from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray
-from rigidfluid.domains.boundary_of_mesh import boundary_of, place
+from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of, place
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, in_order, surface_names
 from rigidfluid.domains.orientation import enclosed_volume, facing_the_fluid
@@ -84,6 +84,7 @@ class MeshDomain(Domain):
         super().__init__(options, dimension)
         file = read_mesh(Path(options.file), dimension)
         boundary = boundary_of(file, dimension, options.fluid, options.scale)
+        self._doubled = boundary.doubled
         parts = boundary.parts
         names = surface_names(parts, options.faces)
         self._names = in_order(names, options.faces)
@@ -113,6 +114,12 @@ class MeshDomain(Domain):
     def volume(self) -> float:
         """Of the polyhedron, exactly [length^d]."""
         return enclosed_volume(self._facets)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """How many points were joined, if any."""
+        joined = f"{self._doubled} points of the file were joined with others less than {SAME:g} of the domain away"
+        return (joined,) if self._doubled else ()
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are inside, (N,)."""

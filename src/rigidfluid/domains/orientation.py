@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
@@ -83,6 +81,9 @@ def _turned_alike(facets: Facets, at: str) -> tuple[BoolArray, IntArray]:
 
     Each facet is there twice, as it is and turned round, and linked to what its neighbours then are.
     """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     corners, sense = ridges(facets.vertices)
     count, d = facets.vertices.shape
     _, ridge = np.unique(corners.reshape(count * d, -1), axis=0, return_inverse=True)

@@ -11,9 +11,11 @@ from scipy.special import elliprg
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.meshing import in_space, sides, turned
+from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.domains.cad_of_facets import cad_of_facets
 
 
 class PlacedBody(Surface):
@@ -62,7 +64,7 @@ class PlacedBody(Surface):
         """The shape in its place as a ``netgen.occ`` face or solid, its sides called ``name``."""
         from netgen import occ
 
-        placed = turned(self.shape.cad_shape(), self.pose.orientation[0])
+        placed = turned(self._cad, self.pose.orientation[0])
         placed = placed.Move(occ.Vec(*in_space(self.pose.position[0])))
         for side in sides(placed, self.shape.dimension):
             side.name = name
@@ -70,7 +72,7 @@ class PlacedBody(Surface):
 
     @cached_property
     def area(self) -> float:
-        """Length of the outline (2D) or area of the surface [length^(d-1)].
+        """Length of the outline (2D) or area of the surface [length^(d-1)], of facets their sum.
 
         8 R_G(0, a², b²) of an ellipse and 4π R_G(a²b², b²c², c²a²) of an ellipsoid, with Carlson's R_G (DLMF 19.30 and
         19.33); of other smooth shapes what Open CASCADE finds, by quadrature.
@@ -80,4 +82,12 @@ class PlacedBody(Surface):
             if self.shape.dimension == 2:
                 return float(8.0 * elliprg(0.0, *squares))
             return float(4.0 * np.pi * elliprg(*(squares * np.roll(squares, 1))))
-        return float(sum(side.mass for side in sides(self.shape.cad_shape(), self.shape.dimension)))
+        if self.shape.facets is not None:
+            areas = area_vectors(self.shape.facets.points, self.shape.facets.vertices)
+            return float(np.linalg.norm(areas, axis=1).sum())
+        return float(sum(side.mass for side in sides(self._cad, self.shape.dimension)))
+
+    @property
+    def _cad(self) -> Any:
+        facets = self.shape.facets
+        return self.shape.cad_shape() if facets is None else cad_of_facets(facets)

@@ -12,11 +12,11 @@ _FLAT = 1e-10
 """Over the size of the domain: points that are less off a plane lie in it."""
 
 
-def plane_around(facets: Facets, points: FloatArray, slack: float = 0.0) -> Plane | None:
+def plane_around(facets: Facets, points: FloatArray) -> Plane | None:
     """The plane of all ``facets`` if they lie in one, and all ``points`` (N, d) of the domain on its one side.
 
     Where the domain is on both sides of it, as at a corner that points inwards, the plane goes on inside: then the
-    facets alone are the wall. ``slack``: how far beyond the facets a round edge may be [length].
+    facets alone are the wall.
     """
     total = area_vectors(facets.points, facets.vertices).sum(axis=0)
     length = float(np.linalg.norm(total))
@@ -24,8 +24,7 @@ def plane_around(facets: Facets, points: FloatArray, slack: float = 0.0) -> Plan
     if length <= tolerance:
         return None
     normal = _along_an_axis(total / length)
-    beyond = slack * np.sqrt(1.0 - normal**2)
-    plane = Plane(mine[0], normal, (mine.min(axis=0) - beyond, mine.max(axis=0) + beyond))
+    plane = Plane(mine[0], normal, (mine.min(axis=0), mine.max(axis=0)))
     flat = np.all(np.abs(plane.signed_distance(mine)) <= tolerance)
     return plane if flat and np.all(plane.signed_distance(points) >= -tolerance) else None
 

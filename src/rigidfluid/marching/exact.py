@@ -3,6 +3,8 @@
 A vertex starts from the nearest facet of a neighbour and walks over the surface. On a convex body that ends on the
 nearest facet of all; on any other surface a tree of all facets is asked as well. So no vertex needs a second visit, and
 the wave takes the vertices in the order in which it meets them, without a heap.
+
+The trees of facets are those of `rigidfluid.core.model.facet_tree`.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.

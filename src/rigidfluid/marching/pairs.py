@@ -1,4 +1,7 @@
-"""The nearest points of two surfaces, exact to their facets, from the field of one of them. Arrays in, arrays out."""
+"""The nearest points of two surfaces, exact to their facets, from the field of one of them. Arrays in, arrays out.
+
+The trees of facets are those of `rigidfluid.core.model.facet_tree`.
+"""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False

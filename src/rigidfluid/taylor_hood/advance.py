@@ -40,6 +40,8 @@ def advance(
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
     solution, d = discretisation.solve(system, tolerance), problem.dimension
+    if solution.jump_load is not None:
+        on_faces = on_faces + solution.jump_load
     velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
     state = {
         "velocity": velocity,
@@ -123,6 +125,7 @@ def _system(
         velocity=extrapolated(fluid, step.extrapolation),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
         twist=np.where(controlled[:, None], step.controlled_twist, expected),
+        pressure_jump=surfaces.pressure_jump(step.time, matrix.points[: discretisation.numbering.vertices]),
         scale=step.load_scale,
     )
 

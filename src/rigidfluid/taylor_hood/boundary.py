@@ -9,11 +9,12 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
-    """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d)."""
+    """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d); on a periodic face p
+    is what the pressure is higher there."""
     load = np.zeros_like(node_points)
     with surfaces.ranks.raise_on_all():
         for face in surfaces.faces:
-            if face.condition.type == "pressure" and face.condition.value is not None:
+            if face.condition.type in ("pressure", "periodic") and face.condition.value is not None:
                 nodes = face.facet_nodes
                 pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
                 np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))

@@ -1,8 +1,8 @@
 """The paper's operator P: every velocity on a body is its twist's, every prescribed velocity leaves the unknowns.
 
 All unknowns = P · (free velocities, twists of the free motions, pressures) + given values, where on all bodies that a
-motion carries u = U + ω × r, r from its centre of mass, and free velocities of nodes with axes of their own are along
-these. The coupled system is Pᵀ K P with the inertia of what the
+motion carries u = U + ω × r, r from its centre of mass, free velocities of nodes with axes of their own are along
+these, and what a periodic face has is what the other one has. The coupled system is Pᵀ K P with the inertia of what the
 motions carry added on the twists.
 """
 
@@ -40,6 +40,8 @@ class Constraint:
         self._numbering = numbering = surfaces.numbering
         free = np.concatenate([surfaces.velocity_free.ravel(), np.ones(numbering.vertices, dtype=bool)])
         self.pressure_pin = pinned_vertex(surfaces, mesh) if surfaces.enclosed else None
+        images = surfaces.images[surfaces.images < numbering.vertices]
+        free[surfaces.velocity_free.size + images] = False
         if self.pressure_pin is not None:
             free[surfaces.velocity_free.size + self.pressure_pin] = False
         self.free_unknowns = np.flatnonzero(free)
@@ -58,7 +60,7 @@ class Constraint:
         nodes, self._carrier = joined([self.surfaces.motion_nodes[motion] for motion in free_motions])
         self._carried, self._free_motions = nodes, free_motions
         first = velocities + size * self._carrier
-        spread, which, self._along_axes = self.surfaces.frames.spread(self.free_unknowns)
+        spread, which, self._along_axes = self.surfaces.spread(self.free_unknowns)
         rows = [spread, *(nodes * d + a for a in range(d)), *(nodes * d + a for a, *_ in CROSS[d])]
         columns = [self.free_columns[which], *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])]
         row, column = np.concatenate(rows), np.concatenate(columns)

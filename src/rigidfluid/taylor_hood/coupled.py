@@ -56,7 +56,8 @@ class CoupledSystem:
 
     ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``body_load`` is of
     all bodies. ``given`` (nodes, d): velocities where they are prescribed, zero elsewhere. ``velocity``, ``pressure``,
-    ``twist`` are the guess. ``scale``: the size of the largest parts that the right side is a sum of; where they
+    ``twist`` are the guess. ``pressure_jump`` (vertices,): what the pressure is higher there than at images on periodic
+    faces. ``scale``: the size of the largest parts that the right side is a sum of; where they
     cancel, the residual is held against it. ``again``: the guess is a solution of nearly the same system.
     """
 
@@ -67,6 +68,7 @@ class CoupledSystem:
     velocity: FloatArray
     pressure: FloatArray
     twist: FloatArray
+    pressure_jump: FloatArray
     scale: float = 0.0
     again: bool = False
 
@@ -77,10 +79,13 @@ class Solution:
     given.
 
     ``reaction`` (nodes, d), by which the fluid's own equations are not met: the force on the fluid where its velocity
-    is not free; with several processes a node's is the sum of what they have there.
+    is not free; with several processes a node's is the sum of what they have there. ``jump_load`` (nodes, d): (Δp, ∇·v)
+    of the pressure's jumps at periodic faces, whose power is not zero, since ∇·u = 0 is meant for pressures without
+    jumps; None without any.
     """
 
     velocity: FloatArray
     pressure: FloatArray
     twist: FloatArray
     reaction: FloatArray
+    jump_load: FloatArray | None = None

@@ -68,7 +68,8 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
         controlled=np.ones(len(bodies), dtype=bool),
     )
     given = _given(target, node_points, state)
-    system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies)
+    jump = target.surfaces.pressure_jump(0.0, mesh.points)
+    system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies, jump)
     change = np.inf
     for _ in range(MOST_ITERATIONS):
         try:

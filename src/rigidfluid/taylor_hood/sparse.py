@@ -110,7 +110,7 @@ class SparseDiscretisation:
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
         assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
-        given, load = np.concatenate([s.given.ravel(), zero]), np.concatenate([s.load.ravel(), zero])
+        given, load = np.concatenate([s.given.ravel(), s.pressure_jump]), np.concatenate([s.load.ravel(), zero])
         known = assembled.stiffness @ given if given.any() else 0.0
         right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
@@ -125,7 +125,11 @@ class SparseDiscretisation:
         twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
         velocity, pressure = np.split(everything, [s.given.size])
         reaction = (assembled.stiffness @ everything - load)[: s.given.size]
-        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape))
+        jump_load = None
+        if s.pressure_jump.any():
+            of_jump = assembled.stiffness @ np.concatenate([np.zeros(s.given.size), s.pressure_jump])
+            jump_load = -of_jump[: s.given.size].reshape(s.given.shape)
+        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape), jump_load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.controlled
@@ -214,7 +218,7 @@ class SparseDiscretisation:
         return self._reduced
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
-        constraint, pressure = self._constraint, system.pressure
+        constraint, pressure = self._constraint, system.pressure - system.pressure_jump
         if constraint.pressure_pin is not None:
             pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)

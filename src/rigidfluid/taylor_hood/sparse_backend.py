@@ -19,6 +19,7 @@ class SparseBackend(TaylorHoodBackend):
     """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
 
     oblique_faces: ClassVar[bool] = True
+    periodic_faces: ClassVar[bool] = True
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from rigidfluid.taylor_hood.lagged_factors import LaggedFactors

@@ -14,6 +14,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood.face import Face
 from rigidfluid.taylor_hood.frames import local_frames
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.periodic import originals
 
 MOST_SCALED = 0.1
 """Of prescribed inflow and outflow, what a coarse mesh may make of those that are equal [1]."""
@@ -62,9 +63,13 @@ class Surfaces:
         self.frames = local_frames(self.faces, numbering.node_points(mesh.geometry), numbering.vertices, held)
         """Of nodes on oblique and curved faces; ``velocity_free`` is of components along a node's own axes there."""
         self.velocity_free[self.frames.nodes] = self.frames.free
+        self.originals = originals(self.faces, numbering.node_points(mesh.geometry))
+        """The nodes that all nodes are images of, on periodic faces; else themselves."""
+        self.images = np.flatnonzero(self.originals != np.arange(numbering.nodes))
         self.dirichlet_nodes = np.setdiff1d(
             np.flatnonzero(~self.velocity_free.any(axis=1)), np.concatenate([*self.body_nodes, np.empty(0, np.int64)])
         )
+        self.velocity_free[self.images] = False
         self.enclosed = not any(condition.type == "pressure" for condition in conditions)
 
     def prescribed(
@@ -89,10 +94,47 @@ class Surfaces:
         self.move_with_bodies(velocity, node_points, position, twist, controlled)
         return velocity
 
+    def spread(self, unknowns: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
+        """Entries of P in the columns of the free ``unknowns`` (u,), ascending, without bodies: along the axes of each
+        node, and the same at its images.
+
+        Returns
+        -------
+        rows, which, values : (e,) arrays
+            The row of each entry, the place of its column in ``unknowns``, and the entry.
+        """
+        rows, which, values = self.frames.spread(unknowns)
+        if not len(self.images):
+            return rows, which, values
+        d, velocities = self.velocity_free.shape[1], self.velocity_free.size
+        vertices = self.images[self.images < self.numbering.vertices]
+        image = np.concatenate([(self.images[:, None] * d + np.arange(d)).ravel(), velocities + vertices])
+        original = self.originals[self.images][:, None] * d + np.arange(d)
+        original = np.concatenate([original.ravel(), velocities + self.originals[vertices]])
+        size = self.numbering.unknowns, len(rows)
+        entries = sparse.csr_array((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=size)
+        found = entries[original].tocoo()
+        return (
+            np.concatenate([rows, image[found.row]]),
+            np.concatenate([which, which[found.col]]),
+            np.concatenate([values, values[found.col]]),
+        )
+
+    def pressure_jump(self, time: float, points: FloatArray) -> FloatArray:
+        """What the pressure at vertices (vertices, d) of periodic faces is higher than at their images, (vertices,)."""
+        jump = np.zeros(len(points))
+        for face in self.faces:
+            if face.condition.type == "periodic" and face.condition.value is not None:
+                vertices = face.nodes[face.nodes < len(points)]
+                jump[vertices] += face.condition.value(time, points[vertices])
+        return jump
+
     def held_part(self, velocity: FloatArray) -> FloatArray:
-        """The part of a ``velocity`` (nodes, d) that is not free; on oblique and curved faces that is zero."""
+        """The part of a ``velocity`` (nodes, d) that is not free; zero on oblique, curved and periodic faces, where
+        the velocity that is held is zero, or another node's."""
         held = np.where(self.velocity_free, 0.0, velocity)
         held[self.frames.nodes] = 0.0
+        held[self.images[self.velocity_free[self.originals[self.images]].any(axis=1)]] = 0.0
         return held
 
     def move_with_bodies(
@@ -176,6 +218,6 @@ def _free_components(face: Face, dimension: int) -> BoolArray:
     """Those free on a whole face (d,); of nodes with axes of their own these say which."""
     kind, axis = face.condition.type, face.axis
     if kind not in ("slip", "pressure"):
-        return np.zeros(dimension, dtype=bool)
+        return np.full(dimension, kind == "periodic")
     across: BoolArray = np.arange(dimension) == axis
     return ~across if kind == "slip" or axis is None else across

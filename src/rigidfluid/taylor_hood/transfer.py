@@ -99,6 +99,7 @@ def project(
         velocity=velocity,
         pressure=np.zeros(numbering.vertices),
         twist=np.zeros((bodies, width)),
+        pressure_jump=np.zeros(numbering.vertices),
     )
     return target.solve(system, max(_TIGHTER * tolerance, _TIGHTEST)).velocity
 

@@ -7,8 +7,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 
@@ -19,7 +21,7 @@ _NUDGE = 1e-3
 
 
 class DomainContract:
-    """Geometry of the surfaces, and that meshes made from the CAD shape are of the same domain.
+    """Geometry of the surfaces, and that meshes made from the CAD shape, or the facets, are of the same domain.
 
     Override the fixture ``domain``; parametrise it to hold several domains to the same standard.
     """
@@ -84,6 +86,21 @@ class DomainContract:
             step = _NUDGE * _size(domain) * piece.shape.normal(foot)
             assert domain.contains(foot + step).all()
             assert not domain.contains(foot - step).any()
+
+    def test_a_part_between_two_planes_is_the_same_all_along(self, domain: Domain) -> None:
+        """Where there is one: names as before, flat ends at the planes, and the same points inside between them."""
+        lower, upper = domain.extent
+        for axis in range(len(lower)):
+            low, high = lower[axis] + np.array([0.3, 0.6]) * (upper - lower)[axis]
+            part, points = domain.between(axis, low, high), _probes(domain)
+            if part is None:
+                continue
+            assert part.names == domain.names
+            ends = [p.shape.plane.point[axis] for p in part.pieces if p.shape.plane and p.shape.plane.axis == axis]
+            self._assert_close(np.sort(ends), np.array([low, high]), domain)
+            between = (points[:, axis] > low) & (points[:, axis] < high)
+            np.testing.assert_array_equal(part.contains(points), domain.contains(points) & between)
+            assert part.volume / domain.volume == pytest.approx(0.3)
 
     def test_the_mesh_is_in_the_domain(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
         """What is far from the facets is inside, and the box around all is `extent`."""
@@ -158,6 +175,8 @@ def _probes(domain: Domain) -> FloatArray:
 def _mesh(domain: Domain, relative_size: float) -> Mesh:
     nobody = Pose(np.zeros((0, domain.dimension)), np.zeros((0, 1 if domain.dimension == 2 else 4)))
     size = relative_size * _size(domain)
+    if domain.facets is not None:
+        return fill_mesh([], nobody, domain, [], Sizes(size, size, 0.3))
     return generate_mesh([], nobody, domain, size, size, 0.3)
 
 

@@ -11,6 +11,7 @@ from rigidfluid.testing.fluid.initial import InitialFlowContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
+from rigidfluid.testing.fluid.periodic import PeriodicContract
 from rigidfluid.testing.fluid.responses import ResponsesContract
 from rigidfluid.testing.fluid.transfer import TransferContract
 
@@ -23,6 +24,7 @@ class FluidBackendContract(
     CylinderContract,
     InitialFlowContract,
     ObliqueContract,
+    PeriodicContract,
     ResponsesContract,
     TransferContract,
     MemoryContract,

@@ -88,16 +88,17 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodySte
 
 
 def unforeseen(system: System, state: State, candidate: State) -> bool:
-    """Whether a contact is in range at the end of a step that was out of the detector's sight at its start.
+    """Whether a contact is in range at the end of a step that was out of the detector's sight at its start, or a pair
+    has more of them than were seen.
 
     A detector that needs no mesh is asked on the way, and misses none.
     """
     if system.law is None or not system.detector.needs_mesh:
         return False
-    found, count = candidate.contacts, len(system.surfaces)
-    seen = state.contacts.body_a * count + state.contacts.body_b
-    new = np.isin(found.body_a * count + found.body_b, seen, invert=True)
-    return bool(np.any(new & (found.gap < system.law.range)))
+    count = len(system.surfaces)
+    seen, found = (now.contacts.body_a * count + now.contacts.body_b for now in (state, candidate))
+    pairs, met = np.unique(found[candidate.contacts.gap < system.law.range], return_counts=True)
+    return bool(np.any(met > np.count_nonzero(seen == pairs[:, None], axis=1)))
 
 
 def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:

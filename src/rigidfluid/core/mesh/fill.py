@@ -100,7 +100,7 @@ def filled(surface: Mesh, size: float, growth: float, timeout: float) -> tuple[F
             remedy = f"Raise mesh.mesher_timeout if the mesh is large. {REMEDY}"
             found = "a mesher that had not ended"
             raise MeshError("mesh", found, f"an end within {timeout:g} seconds", remedy) from error
-        if not made.exists():
+        if ended.returncode != 0 or not made.exists():
             found = f"Netgen failed (its process ended with code {ended.returncode})"
             raise MeshError("mesh", found, "surfaces that it can fill between", REMEDY)
         with np.load(made) as arrays:

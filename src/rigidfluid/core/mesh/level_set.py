@@ -44,7 +44,7 @@ ROUNDS = 12
 """How often vertices are moved towards the shapes, and cells improved."""
 
 LEAST_QUALITY = 0.1
-"""Moving vertices onto the shapes leaves cells at this quality, or at what they had if that was less."""
+"""Moving vertices onto the shapes leaves cells at this quality, or at half of what they had if that was less."""
 
 LEAST_SHARE = 1e-3
 """A vertex that can move less than this of its way stays where it is."""
@@ -174,7 +174,7 @@ def _on_shapes(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -
 def _as_far_as_cells_allow(mesh: Mesh, target: FloatArray) -> FloatArray:
     """Points (N, d) moved towards ``target`` (N, d), each halfway back as long as it spoils a cell."""
     share, points = np.ones((len(target), 1)), target
-    allowed = np.minimum(LEAST_QUALITY, cell_quality(mesh.points, mesh.cells))
+    allowed = np.minimum(LEAST_QUALITY, 0.5 * cell_quality(mesh.points, mesh.cells))
     while (bad := cell_quality(points, mesh.cells) < allowed).any():
         back = np.unique(mesh.cells[bad])
         share[back] = np.where(share[back] < LEAST_SHARE, 0.0, 0.5 * share[back])

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -92,6 +93,7 @@ class MeshUpdater:
         if state.reference is None:
             return None
         _refuse_to_leave(self._system, pose)
+        self._refuse_to_cross(pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
@@ -182,6 +184,24 @@ class MeshUpdater:
             geometry = motion.move(pose)
             self._latest = reference, pose, geometry, worst_quality(reference.mesh, curved, geometry)
         return self._latest[2:]
+
+    def _refuse_to_cross(self, pose: Pose) -> None:
+        """Reject a step in which a body comes to a periodic surface: it would have to be in two places of the mesh, and
+        facets there do not get smaller."""
+        s = self._system
+        assert self._sizes is not None
+        for number in chain(*s.domain.periodic):
+            piece, margin = s.domain.pieces[number], self._sizes.size_body
+            radius = np.array([body.bounding_radius for body in s.bodies])
+            reaches = piece.shape.signed_distance(pose.position) <= radius + margin
+            if reaches.any():
+                body = int(np.argmax(reaches))
+                raise StepRejected(
+                    f"body {s.surfaces[body]!r}",
+                    f"it at {pose.position[body].tolist()}, where it reaches the periodic surface {piece.name!r}",
+                    f"bodies that stay away from it by {margin:g}, the mesh.size_body, and their bounding radius",
+                    "Lengthen the domain, end the run before, or hold the body.",
+                )
 
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._motion is None or self._reference is not reference:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import chain
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -118,11 +119,12 @@ class MeshMotion:
 
 def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
     """Which components of the displacement are given, (N, d): the normal one on a flat surface of the domain that lies
-    across an axis, all on other surfaces and on bodies."""
+    across an axis and is not periodic, all on other surfaces and on bodies."""
     planes = [None] * bodies + [piece.shape.plane for piece in domain.pieces]
     held = np.zeros(mesh.points.shape, dtype=bool)
     for surface, plane in enumerate(planes):
-        components = slice(None) if plane is None or plane.axis is None else plane.axis
+        resting = surface - bodies in chain(*domain.periodic)
+        components = slice(None) if plane is None or plane.axis is None or resting else plane.axis
         held[surface_vertices(mesh, surface), components] = True
     return held
 

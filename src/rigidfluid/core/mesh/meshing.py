@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
@@ -60,6 +61,7 @@ def generate_mesh(
     arguments = bodies, pose, domain, size, _size_to_ask(bodies, pose, domain, size, size_body, growth, finer)
     netgen = run_netgen(*arguments, growth, finer)
     mesh = put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain, curved=True)
+    mesh = with_exact_images(mesh, len(bodies), domain)
     refuse_touching_bodies(mesh, len(bodies))
     check_mesh(mesh, quality=0.0)
     return mesh
@@ -193,6 +195,7 @@ def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: F
         for side in sides(placed, domain.dimension):
             side.name, side.maxh = str(i), float(size_body[i])
         shape = shape - placed
+    identify(sides(shape, domain.dimension), len(bodies), domain)
     return shape
 
 

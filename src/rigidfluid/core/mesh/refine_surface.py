@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
@@ -81,6 +82,10 @@ def long_edges(
     """Edges (E, 2) of bodies and curved walls longer than ``longest`` times the size wanted at their middles; on the
     surface above those, points (E, d) and the size wanted there (E,)."""
     edges, owner = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
+    periodic, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(bodies), domain))
+    if len(periodic):
+        alone = edge_numbers(edges, (0, 1), periodic, len(mesh.points)) < 0
+        edges, owner = edges[alone], owner[alone]
     middles = mesh.points[edges].mean(axis=1)
     wanted = wanted_size(middles, bodies, pose, walls, sizes)
     long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
@@ -91,9 +96,10 @@ def long_edges(
 
 
 def on_kept_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Which facets (F,) lie on bodies or on surfaces of the domain that are not flat: MMG must not move those."""
+    """Which facets (F,) lie on bodies or on surfaces of the domain that are not flat, or periodic: MMG must not move
+    those."""
     kept = [True] * bodies + [piece.shape.plane is None for piece in domain.pieces]
-    return np.array(kept)[mesh.markers]
+    return np.array(kept)[mesh.markers] | on_periodic_surfaces(mesh, bodies, domain)
 
 
 def edges_of_facets(mesh: Mesh, chosen: BoolArray) -> tuple[IntArray, IntArray]:

@@ -76,8 +76,12 @@ def wanted_size(
         Wanted edge length [length].
     """
     first, second = two_nearest_bodies(points, bodies, pose, _reach(sizes))
-    gap = first + np.minimum(second, nearest_wall(points, walls))
-    return np.minimum(_size_at(first, points, sizes), np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
+    open_size = _size_at(first, points, sizes)
+    near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
+    gap = first[near] + np.minimum(second[near], nearest_wall(points[near], walls))
+    wanted = open_size.copy()
+    wanted[near] = np.minimum(open_size[near], np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
+    return wanted
 
 
 def size_away_from_gaps(points: FloatArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:

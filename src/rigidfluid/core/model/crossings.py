@@ -10,6 +10,10 @@ from numba import njit
 
 from rigidfluid.core.model.facet_tree import leaves_beside
 
+_FLAT = 1e-7
+"""Volumes of an edge within the plane of a facet are below this, over the cube around both: the single precision of STL
+files puts corners beside their plane."""
+
 
 @njit(cache=True, nogil=True)
 def crossings(points, edges, facets, tree):
@@ -47,10 +51,21 @@ def _meet(points, edge, facet):
             return _within(points, p, a, b) or _within(points, q, a, b) or _within(points, a, p, q)
         return sides[0] * sides[1] <= 0.0 and sides[2] * sides[3] <= 0.0
     a, b, c = facet
-    if _volume(points, a, b, c, p) * _volume(points, a, b, c, q) > 0.0:
+    below, above = _volume(points, a, b, c, p), _volume(points, a, b, c, q)
+    if below * above > 0.0 or max(abs(below), abs(above)) <= _FLAT * _extent(points, p, q, a, b, c) ** 3:
         return False
     u, v, w = _volume(points, p, q, a, b), _volume(points, p, q, b, c), _volume(points, p, q, c, a)
     return (u != 0.0 or v != 0.0 or w != 0.0) and (min(u, v, w) >= 0.0 or max(u, v, w) <= 0.0)
+
+
+@njit(cache=True, nogil=True)
+def _extent(points, p, q, a, b, c):
+    """The longest side of the box around an edge and a facet."""
+    longest = 0.0
+    for axis in range(3):
+        given = points[p, axis], points[q, axis], points[a, axis], points[b, axis], points[c, axis]
+        longest = max(longest, max(given) - min(given))
+    return longest
 
 
 @njit(cache=True, nogil=True)

@@ -46,6 +46,10 @@ class Domain(SpatialPart):
         2 or 3.
     """
 
+    periodic: tuple[tuple[int, int], ...] = ()
+    """Pairs of flat pieces, by their numbers, that a scene makes periodic: what leaves by one comes in by the other.
+    The second is the first displaced; their facets match, and stay."""
+
     @property
     @abstractmethod
     def pieces(self) -> tuple[Piece, ...]:
@@ -80,6 +84,11 @@ class Domain(SpatialPart):
         """The part with ``lower`` ≤ x ≤ ``upper`` along an ``axis`` [length], with pieces of the same names in the same
         order, two of them flat across the axis; None of a domain that is not the same all along it."""
         return None
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to tell a user of how it was read or made; each is a sentence without its full stop."""
+        return ()
 
     @property
     def names(self) -> tuple[str, ...]:

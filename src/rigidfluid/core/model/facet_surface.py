@@ -106,9 +106,10 @@ class FacetSurface(Surface):
         """Unit normals into the fluid of all facets, (F, d)."""
         return self._faces.normals[:, -1]
 
-    def nearest_facets(self, points: FloatArray) -> IntArray:
-        """Rows of the nearest facets, (N,), for ``points`` (N, d) [length]."""
-        return self._nearest(points)[0]
+    def nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+        """Rows of the nearest facets (N,), and `closest_point`, `signed_distance` and `normal` of ``points`` (N, d)."""
+        found = self._nearest(points)
+        return (found[0], *self._measured(points, *found))
 
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the facets, (N, d) for ``points`` (N, d) [length]."""
@@ -202,3 +203,12 @@ class FacetSurface(Surface):
     @cached_property
     def _faces(self) -> Faces:
         return faces_of(self._points, self._vertices)
+
+
+def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:
+    """As `FacetSurface.nearby`; of other shapes, which have no hollows that are known of, the nearest place alone."""
+    if isinstance(shape, FacetSurface):
+        return shape.nearby(points, reach, spread)
+    distance = shape.signed_distance(points)
+    near = np.flatnonzero(distance <= reach)
+    return Nearby(near, shape.closest_point(points[near]), distance[near], shape.normal(points[near]))

@@ -116,6 +116,11 @@ class Body(Surface, SpatialPart):
         """The facets that the shape is made of, in its own frame; None of a smooth one, which has a `cad_shape`."""
         return None
 
+    @property
+    def given_centre(self) -> FloatArray:
+        """Where the centre of mass is in the frame that the options are in, (d,) [length]."""
+        return np.zeros(self.dimension)
+
 
 @dataclass(frozen=True)
 class Component:
@@ -260,6 +265,8 @@ class FluidBackend(Part):
     """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
     oblique_faces: ClassVar[bool] = False
     """Whether it takes slip and pressure conditions on faces that lie across no axis."""
+    periodic_faces: ClassVar[bool] = False
+    """Whether it takes periodic conditions."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 

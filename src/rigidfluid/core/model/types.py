@@ -166,14 +166,17 @@ class BoundaryCondition:
 
     ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
     along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
-    is -p, no flow along the piece. ``normal`` (d,) points into the fluid; None where the piece is not flat.
+    is -p, no flow along the piece; ``periodic``: velocity and traction are those on the surface of number ``image``,
+    but for the pressure, which is higher by ``value(time, points)`` (N,); that surface has neither image nor value.
+    ``normal`` (d,) points into the fluid; None where the piece is not flat.
     """
 
     surface: int
     name: str
-    type: Literal["wall", "velocity", "slip", "pressure"]
+    type: Literal["wall", "velocity", "slip", "pressure", "periodic"]
     normal: FloatArray | None
     value: Callable[[float, FloatArray], FloatArray] | None = None
+    image: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

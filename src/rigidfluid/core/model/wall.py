@@ -38,6 +38,22 @@ def wall_radii(walls: Sequence[Wall], surfaces: IntArray) -> FloatArray:
     return np.array([known[surface] for surface in surfaces.tolist()], dtype=float)
 
 
+def centre_of(shape: Surface) -> FloatArray:
+    """The centre (d,) of a round surface or a part of one, from points of it: |x|² = 2c·x + const. [length]"""
+    lower, upper = shape.bounds
+    middle = 0.5 * (lower + upper)
+    steps = np.stack(np.meshgrid(*[[-0.5, 0.0, 0.5]] * len(middle)), axis=-1).reshape(-1, len(middle))
+    steps = steps[np.any(steps != 0.0, axis=1)]  # no point is nearest to the centre
+    points = shape.closest_point(middle + steps * (upper - lower)) - middle
+    system = np.column_stack([2.0 * points, np.ones(len(points))])
+    return np.asarray(middle + np.linalg.lstsq(system, np.sum(points**2, axis=1))[0][:-1])
+
+
+def is_round(shape: Surface) -> bool:
+    """Whether it is a ball's surface, seen from outside or inside, or a part of one."""
+    return shape.plane is None and shape.radius is not None and bool(np.isfinite(shape.radius))
+
+
 def require_plane(wall: Wall, detector: str) -> Plane:
     """The plane of a wall, for a detector that knows no other shapes.
 

@@ -39,7 +39,7 @@ InitialAngularVelocity = Annotated[
 # A component that is a number, or an expression of place and time.
 Formula = float | str
 Condition = Annotated[
-    Literal["wall", "velocity", "pressure", "slip", "symmetry"],
+    Literal["wall", "velocity", "pressure", "slip", "symmetry", "periodic"],
     AfterValidator(lambda value: "slip" if value == "symmetry" else value),
 ]
 
@@ -126,12 +126,18 @@ class BoundaryTable(_Table):
 
     on: str = Field(description="Name of a surface of the domain, or `all`")
     type: Condition = Field(
-        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`; "
+        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`, "
+        "`periodic` (on two opposite surfaces); "
         "on `slip` no fluid passes, on `pressure` none moves along the surface"
     )
     velocity: tuple[Formula, ...] | None = Field(
         default=None,
         description="Velocity on a `velocity` surface, its peak; of a `wall` along itself, in numbers [length/time]",
+    )
+    flux: Formula | None = Field(
+        default=None,
+        description="Instead of `velocity`, what flows in through a `velocity` surface, out if negative: a number or "
+        "an expression of t alone [length^d/time]",
     )
     profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
         default="uniform",
@@ -146,6 +152,10 @@ class BoundaryTable(_Table):
         default=None, description="Point that such a wall turns about; the origin if not given [length]"
     )
     pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
+    pressure_drop: float | None = Field(
+        default=None,
+        description="What the pressure is higher on a `periodic` surface than on the opposite one [force/length^(d-1)]",
+    )
     over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
         default=None,
         description="Factor of velocity or pressure in rows [time, factor], linear between them, from 0 to `time.end`; "
@@ -362,12 +372,13 @@ class Scene(_Table):
     def to_dict(self) -> dict[str, Any]:
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
-        # Without its empty lists a scene is the same as before there were such, and its checkpoints go on.
+        # Without keys that came later a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}
-        if self.mesh is not None and not self.mesh.refine:
-            left_out["mesh"] = {"refine"}
+        if self.mesh is not None:
+            defaults = {name: MeshTable.model_fields[name].default for name in ("refine", "mesher_timeout")}
+            left_out["mesh"] = {name for name, value in defaults.items() if getattr(self.mesh, name) == value}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.setup.boundary_values import prescribed_pressure, prescribed_velocity, wall_velocity
+from rigidfluid.core.setup.boundary_values import prescribed_pressure, prescribed_velocity, pressure_drop, wall_velocity
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BoundaryTable, Scene
@@ -27,7 +27,7 @@ def table_key(scene: Scene, table: BoundaryTable) -> str:
 
 def conditions(scene: Scene, domain: Domain) -> tuple[BoundaryCondition, ...]:
     """The condition on each piece of the boundary, in the order of surface numbers."""
-    return tuple(_condition(scene, len(scene.body) + i, piece) for i, piece in enumerate(domain.pieces))
+    return tuple(_condition(scene, domain, len(scene.body) + i, piece) for i, piece in enumerate(domain.pieces))
 
 
 def surfaces_of(domain: Domain, bodies: int) -> tuple[Wall, ...]:
@@ -46,7 +46,7 @@ def repelling_walls(scene: Scene, domain: Domain) -> tuple[Wall, ...]:
     return tuple(walls)
 
 
-def _condition(scene: Scene, surface: int, piece: Piece) -> BoundaryCondition:
+def _condition(scene: Scene, domain: Domain, surface: int, piece: Piece) -> BoundaryCondition:
     plane, table = piece.shape.plane, boundary_table(scene, piece.name)
     normal = None if plane is None else plane.unit_normal
     if table is None:
@@ -55,9 +55,13 @@ def _condition(scene: Scene, surface: int, piece: Piece) -> BoundaryCondition:
     if table.type == "wall":
         sliding = wall_velocity(table, scene.dimension)
         value = None if sliding is None else sliding.steadily
-    elif table.velocity is not None:
+    elif table.type == "velocity":
         value = prescribed_velocity(piece, table, table_key(scene, table))
     elif table.pressure is not None:
         value = prescribed_pressure(piece, table, scene.dimension, table_key(scene, table))
+    elif table.pressure_drop is not None:
+        value = pressure_drop(table, scene.dimension, table_key(scene, table))
     kind = "slip" if table.type == "symmetry" else table.type
-    return BoundaryCondition(surface, piece.name, kind, normal, value)
+    number = surface - len(scene.body)
+    image = next((len(scene.body) + second for first, second in domain.periodic if first == number), None)
+    return BoundaryCondition(surface, piece.name, kind, normal, value, image)

@@ -14,6 +14,7 @@ from rigidfluid.core.setup.boundary_values import (
     BoundaryVelocity,
     prescribed_pressure,
     prescribed_velocity,
+    pressure_drop,
     wall_velocity,
 )
 from rigidfluid.core.setup.time_factor import check_rows
@@ -57,7 +58,7 @@ def check_boundary(scene: Scene, domain: Domain) -> None:
         held = boundary_table(scene, piece.name)
         if held is not None:
             _check_sliding(domain, piece, held, table_key(scene, held))
-            _check_values(scene, piece, held, table_key(scene, held))
+            _check_values(scene, domain, piece, held, table_key(scene, held))
     _check_names(scene, domain)
     outside = ~domain.contains(np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension))
     if outside.any():
@@ -112,12 +113,18 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
     if table.on not in allowed:
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+    if table.pressure_drop is not None and table.type != "periodic":
+        found = f"it on a {table.type!r} surface"
+        raise SceneError(f"{at}.pressure_drop", found, "it with type = 'periodic'", "Leave it out.")
     for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
         given = getattr(table, key) is not None
         if given and table.type not in types:
             raise SceneError(f"{at}.{key}", f"it on a {table.type!r} surface", f"it with type = {key!r}", "Keep one.")
-        if table.type == key and not given:
+        if table.type == key and not given and table.flux is None:
             raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
+    if table.flux is not None and (table.type != "velocity" or table.velocity is not None):
+        found = "it beside `velocity`" if table.velocity is not None else f"it on a {table.type!r} surface"
+        raise SceneError(f"{at}.flux", found, "one of both, with type = 'velocity'", "Keep one.")
     if table.profile != "uniform" and table.type != "velocity":
         found = f"{table.profile!r} on a {table.type!r} surface"
         raise SceneError(f"{at}.profile", found, "it with type = 'velocity'", "Leave it out.")
@@ -158,16 +165,18 @@ def _check_sliding(domain: Domain, piece: Piece, table: BoundaryTable, at: str) 
         raise SceneError(f"{at}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
-def _check_values(scene: Scene, piece: Piece, table: BoundaryTable, at: str) -> None:
+def _check_values(scene: Scene, domain: Domain, piece: Piece, table: BoundaryTable, at: str) -> None:
     """Refuse expressions and profiles that cannot be, and values that are not finite where they are sampled."""
     value: BoundaryVelocity | BoundaryPressure
     if table.type == "velocity":
         value = prescribed_velocity(piece, table, at)
     elif table.type == "pressure":
         value = prescribed_pressure(piece, table, scene.dimension, at)
+    elif table.pressure_drop is not None:
+        value = pressure_drop(table, scene.dimension, at)
     else:
         return
-    points, _ = quadrature(piece)
+    points, _ = quadrature(piece, domain)
     for time in sample_times(scene, steady=value.is_steady):
         value(time, points)
 

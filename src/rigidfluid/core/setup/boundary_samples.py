@@ -12,20 +12,20 @@ from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
-from rigidfluid.core.setup.profiles import Disk, Rectangle, section
+from rigidfluid.core.setup.profiles import section
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
 
-_PANELS, _TIMES = 8, 65
-"""A side is integrated in so many panels of three points, and a time in the run looked at so many times."""
+_TIMES, _ROWS = 65, 500
+"""Times in a run, and rows of a table, that are looked at."""
 
 
 @dataclass(frozen=True)
 class SampledInflow:
     """A ``velocity`` prescribed on a ``piece``, with ``points`` (N, d) and ``weights`` (N,) of an integral over it.
 
-    Where the piece's shape is not known there is one point, and only uniform and constant velocities have a flux.
+    Where the section of a flat piece is not known there is one point, and only a uniform velocity has a flux.
     """
 
     piece: Piece
@@ -53,46 +53,39 @@ def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
         table = boundary_table(scene, piece.name)
         if table is not None and table.type == "velocity":
             velocity = prescribed_velocity(piece, table, table_key(scene, table))
-            inflows.append(SampledInflow(piece, velocity, *quadrature(piece)))
+            inflows.append(SampledInflow(piece, velocity, *quadrature(piece, domain)))
     return inflows
 
 
 def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
-    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady."""
-    rows = [time for table in scene.boundary if isinstance(table.over_time, tuple) for time, _ in table.over_time]
-    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), rows])
+    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady.
+
+    Of a long table some rows, and the one of the greatest value.
+    """
+    tables = [table.over_time for table in scene.boundary if isinstance(table.over_time, tuple) and table.over_time]
+    rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
+    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), [time for time, _ in rows]])
     return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
 
 
-def quadrature(piece: Piece) -> tuple[FloatArray, FloatArray]:
-    """Points (N, d) and weights (N,) of an integral over a piece; of one whose shape is not known, one point."""
+def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:
+    """Points (N, d) and weights (N,) of an integral over a piece of the domain.
+
+    Of a curved piece, points all over it; of a flat one whose section is not known, one.
+    """
     shape = section(piece)
-    nodes, weights = _composite()
-    if isinstance(shape, Rectangle):
-        grid = np.meshgrid(*[nodes] * len(shape.sides), indexing="ij")
-        products = np.prod(np.meshgrid(*[weights] * len(shape.sides), indexing="ij"), axis=0)
-        return shape.points(np.stack([axis.ravel() for axis in grid], axis=1)), products.ravel() * piece.area
-    if isinstance(shape, Disk):
-        plane = piece.shape.plane
-        assert plane is not None
-        across = np.linalg.svd(plane.unit_normal[None, :])[2][1:]
-        angle = 2.0 * np.pi * nodes
-        circle = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ across
-        points = shape.centre + shape.radius * nodes[:, None, None] * circle
-        return points.reshape(-1, 3), (2.0 * np.outer(weights * nodes, weights) * piece.area).ravel()
-    lower, upper = piece.shape.bounds
-    middle = 0.5 * (lower + upper)
-    return piece.shape.closest_point(np.where(np.isfinite(middle), middle, 0.0)[None, :]), np.array([piece.area])
+    if shape is not None:
+        return shape.quadrature()
+    points = points_of(piece.shape, domain)
+    points = points if piece.shape.plane is None else points.mean(axis=0, keepdims=True)
+    return points, np.full(len(points), piece.area / len(points))
+
+
+def _size(row: tuple[float, float]) -> float:
+    return abs(row[1])
 
 
 def points_of(shape: Surface, domain: Domain) -> FloatArray:
     """Points all over a surface of the domain, (100, d) [length]."""
     lower, upper = (np.clip(corner, *domain.extent) for corner in shape.bounds)
     return shape.closest_point(np.random.default_rng(0).uniform(lower, upper, (100, domain.dimension)))
-
-
-def _composite() -> tuple[FloatArray, FloatArray]:
-    """Gauss' rule of three points in each panel of [0, 1], exact for polynomials of degree 5."""
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    panels = np.arange(_PANELS)[:, None]
-    return ((panels + 0.5 * (nodes + 1.0)) / _PANELS).ravel(), np.tile(0.5 * weights / _PANELS, _PANELS)

@@ -24,10 +24,27 @@ Profile = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
+class PeakOfFlux:
+    """The velocity Q n/∫ profile at the peak of a profile, of a ``flux`` Q(t); ``per_flux`` (d,): n/∫ profile."""
+
+    flux: Expression
+    per_flux: FloatArray
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names that it uses."""
+        return self.flux.names
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        """The velocity (N, d), the same at all ``points`` (N, d) [length/time]."""
+        return self.flux(time, points)[:, None] * self.per_flux
+
+
+@dataclass(frozen=True)
 class BoundaryVelocity:
     """Velocity prescribed on a surface: u(t, x) · profile(x) · factor(t), the ``profile`` 1 where it is None."""
 
-    velocity: VectorExpression
+    velocity: VectorExpression | PeakOfFlux
     profile: Profile | None = None
     factor: TimeFactor = UNCHANGED
 
@@ -76,7 +93,7 @@ def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> Boundary
     piece : Piece
         For its shape.
     table : BoundaryTable
-        A table with a velocity.
+        A table with a velocity or a flux.
     at : str
         Where it is in the scene, for messages.
 
@@ -88,10 +105,12 @@ def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> Boundary
     Raises
     ------
     SceneError
-        If an expression is none, or the piece has not the shape that the profile is for.
+        If an expression is none, or the piece has not the shape that the profile or a flux is for.
     """
-    assert table.velocity is not None
     profile = _profile(piece, table.profile, f"{at}.profile")
+    if table.flux is not None:
+        return BoundaryVelocity(_peak_of_flux(piece, profile, table.flux, f"{at}.flux"), profile, _factor(table))
+    assert table.velocity is not None
     velocity = VectorExpression.of(table.velocity, f"{at}.velocity", f" on {piece.name!r}")
     return BoundaryVelocity(velocity, profile, _factor(table))
 
@@ -103,6 +122,12 @@ def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: 
     return BoundaryPressure(pressure, _factor(table))
 
 
+def pressure_drop(table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
+    """What the pressure is higher by the periodic surface of a ``table`` at ``at`` than on the opposite one."""
+    assert table.pressure_drop is not None
+    return BoundaryPressure(Expression(table.pressure_drop, f"{at}.pressure_drop", dimension))
+
+
 def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
     """That of a wall by its ``table``, None where it rests."""
     if table.velocity is None and table.angular_velocity is None:
@@ -110,6 +135,17 @@ def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
     still = [0.0] * dimension
     velocity = np.array(table.velocity or still, dtype=float)
     return WallVelocity(velocity, np.array(table.angular_velocity or [0.0]), np.array(table.centre or still))
+
+
+def _peak_of_flux(piece: Piece, profile: Profile | None, flux: float | str, at: str) -> PeakOfFlux:
+    shape, plane = section(piece), piece.shape.plane
+    if shape is None or plane is None:
+        allowed = "it on a surface that is a segment, a rectangle across an axis or a disk"
+        raise SceneError(at, f"it on {piece.name!r}", allowed, "Give `velocity` instead.")
+    points, weights = shape.quadrature()
+    whole = float(weights.sum() if profile is None else weights @ profile(points))
+    # With no coordinates the only names are t and pi.
+    return PeakOfFlux(Expression(flux, at, 0, f" on {piece.name!r}"), plane.unit_normal / whole)
 
 
 def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:

@@ -50,7 +50,6 @@ _FUNCTIONS: dict[str, tuple[int, Callable[..., FloatArray]]] = {
     "where": (3, _chosen),
 }
 _COORDINATES = ("x", "y", "z")
-_ALLOWED = "numbers, x, y, z, t, pi, + - * / **, < <= > >=, and " + ", ".join(_FUNCTIONS)
 
 Names = Mapping[str, FloatArray]
 Operation = Callable[[Names], FloatArray]
@@ -126,7 +125,8 @@ def _compiled(source: float | str, at: str, dimension: int) -> tuple[Operation, 
         tree = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         place = f", at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
-        raise SceneError(at, f"{source!r}, which is no formula{place}", _ALLOWED, "Correct it there.") from None
+        found = f"{source!r}, which is no formula{place}"
+        raise SceneError(at, found, _allowed(_COORDINATES[:dimension]), "Correct it there.") from None
     names = frozenset(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
     return _Reader(text, at, _COORDINATES[:dimension]).operation(tree.body), names
 
@@ -191,7 +191,11 @@ class _Reader:
     def _refusal(self, node: ast.expr, found: str, remedy: str) -> SceneError:
         part = ast.get_source_segment(self.text, node) or self.text
         place = f"{part!r} at character {node.col_offset + 1} of {self.text!r}"
-        return SceneError(self.at, f"{found}: {place}", _ALLOWED, remedy)
+        return SceneError(self.at, f"{found}: {place}", _allowed(self.coordinates), remedy)
+
+
+def _allowed(coordinates: Sequence[str]) -> str:
+    return f"numbers, {', '.join([*coordinates, 't', 'pi'])}, + - * / **, < <= > >=, and {', '.join(_FUNCTIONS)}"
 
 
 def _constant(number: float) -> Operation:

@@ -81,6 +81,7 @@ def initial_contacts(
 
 
 def _check_extent(parts: Parts) -> None:
+    _check_units(parts)
     farthest = float(np.max(np.abs(parts.domain.extent)))
     radii = [body.bounding_radius for body in parts.bodies]
     smallest = min(range(len(radii)), key=radii.__getitem__)
@@ -91,6 +92,16 @@ def _check_extent(parts: Parts) -> None:
             f"at least {SMALLEST_BODY:g} of the domain's largest coordinate",
             "Make the domain smaller, or bring it nearer to the origin.",
         )
+
+
+def _check_units(parts: Parts) -> None:
+    """Refuse a body that cannot be in the domain wherever it is."""
+    width = float(parts.domain.size.max())
+    for number, body in enumerate(parts.bodies):
+        if body.bounding_radius > width:
+            found = f"a bounding radius of {body.bounding_radius:.6g} in a domain of width {width:.6g}"
+            remedy = "Use the same units for both; lengths in a file are multiplied by `domain.scale`."
+            raise SceneError(f"body.{number}", found, "bodies smaller than the domain", remedy)
 
 
 def _check_overlap(scene: Scene, domain: Domain, contacts: Contacts) -> None:

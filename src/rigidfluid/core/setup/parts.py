@@ -5,16 +5,19 @@ from __future__ import annotations
 import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import pi
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
+from rigidfluid.core.model.wall import is_round, radius_of
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
 
@@ -26,6 +29,9 @@ P = TypeVar("P", bound=Part)
 AUTO = "auto"
 """What a scene says that leaves the choice of its detector to `cheapest_detector`."""
 
+
+_ROUNDING = 1e-6
+"""Of the area of a surface."""
 
 _KNOWN: dict[int, Parts] = {}
 """Of the scenes that exist, by their id."""
@@ -133,23 +139,40 @@ def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tup
     -------
     str, str
         The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
-        walls are flat; ``facets`` for balls, polygons and polyhedra where all walls are flat, round or of facets; else
-        ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+        walls are flat, round bumps or whole round hollows; ``facets`` where there are polygons and polyhedra too, and
+        walls may be of facets; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"
     reason = "not all bodies are ellipsoids"
     if all(body.semi_axes is not None for body in bodies):
-        if all(piece.shape.plane for piece in domain.pieces):
+        if all(piece.shape.plane or _is_whole(piece) for piece in domain.pieces):
             return "ellipsoid", "all bodies are balls or ellipsoids"
-        reason = "not all bodies are balls and not all walls are flat"
-    elif all(body.radius is not None or body.facets is not None for body in bodies):
-        if all(piece.shape.radius is not None or isinstance(piece.shape, FacetSurface) for piece in domain.pieces):
-            return "facets", "all bodies are balls or made of facets"
+        reason = "not all bodies are balls and not all walls are flat or round"
+    elif all(body.semi_axes is not None or body.facets is not None for body in bodies):
+        long = any(body.semi_axes is not None and body.radius is None for body in bodies)
+        if all(_meets_facets(piece, long) for piece in domain.pieces):
+            return "facets", "all bodies are balls, ellipsoids or made of facets"
         reason = "not all bodies are balls and a wall is neither flat nor round nor made of facets"
     if mesh:
         return "narrow_band", f"{reason}, and there is a mesh and a law"
     return "brute_force", f"{reason}, and there is no mesh or no law"
+
+
+def _meets_facets(piece: Piece, long: bool) -> bool:
+    """Whether the detector of facets takes a piece; ``long``: some bodies are ellipsoids that are no balls."""
+    if isinstance(piece.shape, FacetSurface) or piece.shape.plane:
+        return True
+    return _is_whole(piece) if long else is_round(piece.shape)
+
+
+def _is_whole(piece: Piece) -> bool:
+    """Whether a piece is round, and a hollow has no end that bodies could meet."""
+    if not is_round(piece.shape):
+        return False
+    radius, dimension = radius_of(piece.shape), len(piece.shape.bounds[0])
+    whole = 2.0 * pi * abs(radius) if dimension == 2 else 4.0 * pi * radius**2
+    return radius > 0 or piece.area > (1.0 - _ROUNDING) * whole
 
 
 def exact_detector(bodies: Sequence[Body], domain: Domain, registry: Registry) -> type[Detector]:
@@ -161,7 +184,9 @@ def _domain(scene: Scene, registry: Registry) -> Domain:
     table = scene.domain
     part = registry.get(DOMAIN, table.type)
     _refuse_unread(table.options, [part], type(table).model_fields, "domain")
-    return part(read_table(part.Options, table.options, "domain"), scene.dimension)
+    domain = part(read_table(part.Options, table.options, "domain"), scene.dimension)
+    domain.periodic = periodic_pairs(scene, domain)
+    return domain
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:

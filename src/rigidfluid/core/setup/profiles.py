@@ -10,6 +10,9 @@ from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
+_PANELS = 8
+"""A side is integrated in so many panels of three points."""
+
 _TERMS = 200
 """Of a duct's series, which then misses its walls by 1e-6 of the peak."""
 
@@ -34,13 +37,30 @@ class Rectangle:
         """The points (N, d) with ``coordinates`` (N, d-1) from 0 to 1 [length]."""
         return np.asarray(self.centre + (coordinates - 0.5) * self.sides @ self.along)
 
+    def quadrature(self) -> tuple[FloatArray, FloatArray]:
+        """Points (N, d) and weights (N,) of an integral over it."""
+        nodes, weights = _composite()
+        grid = np.meshgrid(*[nodes] * len(self.sides), indexing="ij")
+        products = np.prod(np.meshgrid(*[weights] * len(self.sides), indexing="ij"), axis=0)
+        points = self.points(np.stack([axis.ravel() for axis in grid], axis=1))
+        return points, products.ravel() * np.prod(self.sides)
+
 
 @dataclass(frozen=True)
 class Disk:
-    """A flat round piece of ``radius`` about its ``centre`` (3,) [length]."""
+    """A flat round piece of ``radius`` about its ``centre`` (3,) [length], across its ``normal`` (3,)."""
 
     centre: FloatArray
     radius: float
+    normal: FloatArray
+
+    def quadrature(self) -> tuple[FloatArray, FloatArray]:
+        """Points (N, 3) and weights (N,) of an integral over it."""
+        nodes, weights = _composite()
+        along = np.linalg.svd(self.normal[None, :])[2][1:]
+        circle = np.stack([np.cos(2.0 * np.pi * nodes), np.sin(2.0 * np.pi * nodes)], axis=1) @ along
+        points = self.centre + self.radius * nodes[:, None, None] * circle
+        return points.reshape(-1, 3), 2.0 * np.pi * self.radius**2 * np.outer(weights * nodes, weights).ravel()
 
 
 def section(piece: Piece) -> Rectangle | Disk | None:
@@ -70,7 +90,14 @@ def section(piece: Piece) -> Rectangle | Disk | None:
         return Rectangle(centre, np.delete(size, plane.axis), np.delete(np.eye(3), plane.axis, axis=0))
     radius = float(np.sqrt(piece.area / np.pi))
     round_size = 2.0 * radius * np.sqrt(1.0 - plane.unit_normal**2)
-    return Disk(centre, radius) if np.allclose(size, round_size, atol=_SAME * radius) else None
+    return Disk(centre, radius, plane.unit_normal) if np.allclose(size, round_size, atol=_SAME * radius) else None
+
+
+def _composite() -> tuple[FloatArray, FloatArray]:
+    """Gauss' rule of three points in each panel of [0, 1], exact for polynomials of degree 5."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    panels = np.arange(_PANELS)[:, None]
+    return ((panels + 0.5 * (nodes + 1.0)) / _PANELS).ravel(), np.tile(0.5 * weights / _PANELS, _PANELS)
 
 
 def _segment(length: float, plane: Plane, centre: FloatArray, size: FloatArray) -> Rectangle | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
@@ -69,6 +70,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
         tolerance; if the flow at the start is not for this backend.
     """
     check_initial_flow(scene, backend, domain)
+    check_periodic(scene, backend, domain)
     if not backend.needs_mesh:
         if scene.time.tolerance is not None:
             allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"

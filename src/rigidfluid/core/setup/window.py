@@ -149,6 +149,6 @@ def _sliding(scene: Scene, domain: Domain, ends: Sequence[str]) -> str | None:
     """A side that moves the fluid far away from all bodies, if any."""
     for name in domain.names:
         table = boundary_table(scene, name)
-        if name not in ends and table is not None and table.velocity is not None:
+        if name not in ends and table is not None and (table.velocity or table.flux) is not None:
             return name
     return None

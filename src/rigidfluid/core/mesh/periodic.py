@@ -1,0 +1,62 @@
+"""Meshes whose facets on periodic surfaces are the same but for a displacement."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.errors import MeshError
+
+_APART = 1e-6
+"""Netgen's images are so near to where they belong, over the distance of the surfaces."""
+
+
+def identify(sides: Any, first: int, domain: Domain) -> None:
+    """Let Netgen mesh periodic ``sides`` of a shape alike; they are named by surface number, the domain's from
+    ``first`` on."""
+    from netgen import occ
+
+    by_name = {side.name: side for side in sides}
+    for pair in domain.periodic:
+        one, two = (by_name[str(first + piece)] for piece in pair)
+        way = _way(domain, pair)
+        moved = occ.gp_Trsf.Translation(occ.Vec(*way, *[0.0] * (3 - len(way))))
+        one.Identify(two, f"{pair[0]}", occ.IdentificationType.PERIODIC, moved)
+
+
+def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
+    """The mesh with the vertices of the second surface of each pair exactly where those of the first are displaced to.
+
+    Raises
+    ------
+    MeshError
+        If they are not near there.
+    """
+    for pair in domain.periodic:
+        points, way = mesh.points.copy(), _way(domain, pair)
+        one, two = (np.unique(mesh.facets[mesh.markers == bodies + piece]) for piece in pair)
+        distance, place = cKDTree(points[one] + way).query(points[two])
+        if len(one) != len(two) or np.max(distance) > _APART * np.linalg.norm(way):
+            names = " and ".join(repr(domain.names[piece]) for piece in pair)
+            found = f"{len(one)} and {len(two)} vertices on the periodic surfaces {names}"
+            raise MeshError("mesh", found, "the same facets on both", "Choose another mesh.size.")
+        points[two] = points[one[place]] + way
+        mesh = replace(mesh, points=points)
+    return mesh
+
+
+def on_periodic_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
+    """Which facets (F,) are on periodic surfaces, where the one stays as the other is."""
+    return np.isin(mesh.markers - bodies, [piece for pair in domain.periodic for piece in pair])
+
+
+def _way(domain: Domain, pair: tuple[int, int]) -> FloatArray:
+    one, two = (domain.pieces[piece].shape.plane for piece in pair)
+    assert one is not None
+    assert two is not None
+    return np.asarray(float((two.point - one.point) @ one.unit_normal) * one.unit_normal)

@@ -1,0 +1,56 @@
+"""Bodies at random in curved and irregular domains, a few of the arrangements of docs/validation/insertion.md."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from facet_domain import bent_tube
+from insertion_cases import CASES, outcome, peanut, peanut_in_a_tube
+
+from rigidfluid.core.mechanics.facet_moments import facet_moments
+from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.inserter import Way
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.size_field import Sizes
+
+
+@pytest.mark.parametrize("seed", [0, 7])
+@pytest.mark.parametrize("name", ["stenosis, 20 bodies", "irregular outline, 20 bodies"])
+def test_twenty_bodies_in_the_plane(name: str, seed: int) -> None:
+    found = outcome(CASES[name](), seed, "fill")
+    assert found.quality > 0.3
+    assert found.vertices_off < 1e-14
+    assert found.middles_off < 1.2
+    assert found.all_surfaces
+    assert found.kept == 1.0
+    assert found.area_change < 1e-12
+    assert found.cells < 10000
+
+
+@pytest.mark.parametrize("way", ["fill", "level_set"])
+def test_a_body_in_a_bent_tube(way: Way) -> None:
+    found = outcome(CASES["bent tube, 1 body"](), 0, way)
+    assert found.quality > 0.4
+    assert found.vertices_off < 1e-14
+    assert found.middles_off < 1.2
+    assert found.all_surfaces
+    assert found.kept == 1.0
+    assert found.area_change < 1e-12
+
+
+def test_a_body_with_sharp_edges_keeps_its_facets_to_the_last_bit() -> None:
+    body, pose, domain = peanut(), *peanut_in_a_tube()
+    mesh = fill_mesh([body], pose, domain, (), Sizes(0.4, 0.2, 0.3))
+    assert body.facets is not None
+    given = body.facets.points + pose.position[0]
+    number = {tuple(point): k for k, point in enumerate(given.tolist())}
+    facets = mesh.points[mesh.facets[mesh.markers == 0]].tolist()
+    kept = {tuple(sorted(number[tuple(corner)] for corner in corners)) for corners in facets}
+    assert kept == set(map(tuple, np.sort(body.facets.vertices, axis=1).tolist()))
+    volume = cell_volumes(mesh.points, mesh.cells).sum()
+    assert volume == pytest.approx(domain.volume - facet_moments(body.facets).volume, rel=1e-13)
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.2
+
+
+def test_the_tube_is_closed() -> None:
+    assert bent_tube(0.6).volume == pytest.approx(np.pi * (8.0 + 0.5 * np.pi * 3.0), rel=0.1)

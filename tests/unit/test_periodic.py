@@ -1,0 +1,178 @@
+"""Scenes with periodic surfaces: meshes that match, bodies that go along, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mesh_tools import ball, upright
+
+from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.mesh.inserter import Inserter
+from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.periodic import with_exact_images
+from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges
+from rigidfluid.core.mesh.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.run.run import run
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.periodic import check_periodic
+from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.errors import MeshError, SceneError, StepError
+
+ENDS = [{"on": "left", "type": "periodic", "pressure_drop": 6.0}, {"on": "right", "type": "periodic"}]
+
+
+def channel(boundary: list[dict[str, Any]] = ENDS, dimension: int = 2, **tables: Any) -> Scene:
+    """A ball of the fluid's density in a channel of length 2."""
+    d = dimension
+    body = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [0.6, 0.6, 0.5][:d]}
+    scene = {
+        "scene": {"name": "periodic", "dimension": d},
+        "domain": {"lower": [0.0] * d, "upper": [2.0, 1.0, 1.0][:d]},
+        "fluid": {"density": 1.0, "viscosity": 0.5},
+        "body": [body],
+        "contact": {},
+        "boundary": boundary,
+        "mesh": {"size": 0.2, "size_body": 0.06} if d == 2 else {"size": 0.35, "size_body": 0.15},
+        "time": {"end": 0.8, "step": 0.04},
+        "output": {"every": 0.4},
+    }
+    return scene_from_dict(scene | tables)
+
+
+def across(mesh: Mesh, surface: int, axis: int) -> FloatArray:
+    """Vertices of a surface without their coordinate across it, in order."""
+    vertices = np.delete(mesh.points[np.unique(mesh.facets[mesh.markers == surface])], axis, axis=1)
+    return np.unique(vertices, axis=0)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None:
+    d = dimension
+    domain = Box(BoxOptions(lower=(0.0,) * d, upper=(2.0, 1.0, 1.0)[:d]), d)
+    domain.periodic = ((0, 1),) if d == 2 else ((0, 1), (5, 4))
+    body, sizes = ball(0.15, d), Sizes(0.3, 0.1) if d == 2 else Sizes(0.5, 0.25)
+    poses = [upright([x, 0.6, 0.5][:d]) for x in (0.6, 0.8, 1.0)]
+    mesh = initial_mesh([body], poses[0], domain, [], sizes)
+    for before, pose in pairwise(poses):
+        mesh = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(pose))
+        mesh = remesh(mesh, [body], pose, domain, [], sizes)
+        for pair in domain.periodic:
+            one, two = (across(mesh, 1 + piece, pair[0] // 2) for piece in pair)
+            assert len(one) > d
+            np.testing.assert_array_equal(one, two)
+
+
+def test_images_are_put_exactly_where_they_belong_and_lost_ones_are_told() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    mesh = initial_mesh([ball(0.15)], upright([0.6, 0.6]), domain, [], Sizes(0.3, 0.1))
+    right = np.unique(mesh.facets[mesh.markers == 2])
+    points = mesh.points.copy()
+    points[right, 1] += 1e-9 * np.sin(np.arange(len(right)))
+    np.testing.assert_array_equal(with_exact_images(replace(mesh, points=points), 1, domain).points, mesh.points)
+    points[right[0], 1] += 0.01
+    with pytest.raises(MeshError, match=r"vertices on the periodic surfaces 'left' and 'right'"):
+        with_exact_images(replace(mesh, points=points), 1, domain)
+
+
+def test_facets_of_periodic_surfaces_are_not_halved() -> None:
+    """Though they are longer than wanted by now, as those of the ball are."""
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    around = [ball(0.15)], upright([0.3, 0.6]), domain, []
+    mesh = initial_mesh(*around, Sizes(0.3, 0.1))
+    edges, _, _ = long_edges(mesh, *around, Sizes(0.02, 0.01), LONGEST)
+    assert len(edges)
+    assert set(edges.ravel()) <= set(mesh.facets[mesh.markers == 0].ravel())
+
+
+def test_a_pressure_drop_takes_a_ball_along_and_the_energy_balance_closes() -> None:
+    """Through several meshes; of the fluid's density it goes nearly with the flow."""
+    coarse, fine = (run(channel(time={"end": 1.8, "step": step})) for step in (0.04, 0.02))
+    assert min(coarse.summary["remeshes"], fine.summary["remeshes"]) > 0
+    left = [each.energy["residual"][-1] / each.energy["boundary"][-1] for each in (coarse, fine)]
+    assert abs(left[1]) < 5e-4
+    assert abs(left[1]) < 0.6 * abs(left[0])
+    assert fine.bodies["x"][-1] == pytest.approx(coarse.bodies["x"][-1], abs=1e-3)
+
+
+def test_in_a_box_that_is_periodic_all_around_a_drop_accelerates_all_alike() -> None:
+    """dU/dt = G/ρ of fluid and ball, in 3D: nothing holds them. The mesh misses .1 % of the ball's volume."""
+    around = [{"on": "all", "type": "periodic"}, {"on": "left", "type": "periodic", "pressure_drop": 2.0}]
+    history = run(channel(around, 3, time={"end": 0.12, "step": 0.04}))
+    np.testing.assert_allclose(history.bodies["vx"], history.bodies["time"], rtol=2e-3)
+    assert abs(history.energy["residual"][-1]) < 1e-4 * history.energy["boundary"][-1]
+
+
+def test_a_run_starts_with_the_steady_flow_that_the_drop_drives() -> None:
+    """Poiseuille flow past a ball that is held: what the drop gives is dissipated from the start on."""
+    held = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [0.6, 0.6], "fixed": True}
+    fluid = {"density": 1.0, "viscosity": 0.5, "initial": "steady"}
+    history = run(channel(body=[held], fluid=fluid, time={"end": 0.08, "step": 0.04}, output={"every": 0.08}))
+    power, lost = (np.diff(history.energy[name]) for name in ("boundary", "dissipation"))
+    np.testing.assert_allclose(power, lost, rtol=1e-6)
+    assert power[-1] > 0.01
+
+
+def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
+    run(channel(), tmp_path / "whole")
+    run(channel(time={"end": 0.4, "step": 0.04}), tmp_path / "parts")
+    run(channel(), tmp_path / "parts", resume=True)
+    for name in ("bodies.csv", "energy.csv"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_body_that_comes_to_a_periodic_surface_ends_the_run_by_name() -> None:
+    body = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [1.7, 0.6], "name": "swimmer"}
+    with pytest.raises(StepError, match=r"body 'swimmer' .*reaches the periodic surface 'right'"):
+        run(channel(body=[body]))
+
+
+@pytest.mark.parametrize(
+    ("boundary", "message"),
+    [
+        ([ENDS[0]], r"boundary.0.type: found 'periodic' on 'left' alone; .* Set type = 'periodic' on 'right' too"),
+        ([ENDS[0], ENDS[1] | {"pressure_drop": 1.0}], r"boundary.0.pressure_drop: found it on 'left' and on 'right'"),
+        ([{"on": "top", "type": "slip", "pressure_drop": 1.0}], r"pressure_drop: found it on a 'slip' surface"),
+        ([ENDS[0] | {"velocity": [1.0, 0.0]}, ENDS[1]], r"boundary.0.velocity: found it on a 'periodic' surface"),
+    ],
+)
+def test_what_periodic_surfaces_cannot_be_is_refused_by_name(boundary: list[dict[str, Any]], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        channel(boundary)
+
+
+def test_a_surface_without_an_opposite_one_is_refused() -> None:
+    bumps = [{"on": "bottom_bump", "type": "periodic"}]
+    with pytest.raises(SceneError, match=r"'periodic' on 'bottom_bump', which has no equal surface opposite to it"):
+        channel(bumps, domain={"type": "stenosis", "length": 6.0, "width": 3.0, "radius": 0.8})
+
+
+def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
+    scene = channel()
+    with pytest.raises(SceneError, match=r"boundary.0.type: found 'periodic' with backend 'dolfinx'"):
+        check_periodic(scene, Dolfinx, known_parts(scene).domain)
+    with pytest.raises(SceneError, match=r"found 'periodic' with backend 'dry'"):
+        channel(fluid={"backend": "dry"}, mesh=None)
+
+
+def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:
+    domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
+    domain.periodic = ((0, 1),)
+    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is 'cad'"):
+        Inserter("fill").chosen([ball(0.15)], domain)
+    assert Inserter().chosen([ball(0.15)], domain) == "cad"
+
+
+def test_no_periodic_surface_repels() -> None:
+    assert [wall.name for wall in build_system(channel()).walls] == ["bottom", "top"]
