@@ -107,17 +107,13 @@ class FacetBody(Body):
         return np.concatenate([self.facets.points, points]) if few else np.asarray(points)
 
     def _refuse_crossings(self, facets: Facets) -> None:
-        from rigidfluid.core.model.crossings import crossings
-        from rigidfluid.core.model.facet_tree import build_tree
+        from rigidfluid.core.model.crossings import first_crossing
 
-        points, corners = np.ascontiguousarray(facets.points), facets.vertices.astype(np.int32)
-        edges = np.concatenate([corners[:, [i, (i + 1) % self.dimension]] for i in range(self.dimension)])
-        tree = build_tree(points, corners, np.arange(len(corners), dtype=np.int32))
-        met = crossings(points, edges, corners, tree)
-        if len(met):
-            a, b = points[edges[met[0, 0]]].tolist()
+        crossing = first_crossing(facets.points, facets.vertices)
+        if crossing is not None:
+            one, other = facets.points[facets.vertices[list(crossing)]].tolist()
             self._refuse(
-                f"a surface that crosses itself at the edge from {a} to {b}",
+                f"a surface that crosses itself, where the facets {one} and {other} meet",
                 "facets that meet at their edges alone",
                 "Move the corners, or make it several bodies.",
             )

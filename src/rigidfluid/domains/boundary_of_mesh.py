@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.facets import Facets, place
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
 from rigidfluid.domains.naming import Part, listed
@@ -77,11 +77,6 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
     used, compact = np.unique(vertices[sound], return_inverse=True)
     facets = Facets(points[used, :dimension], compact.reshape(-1, dimension).astype(np.int64), numbers[sound])
     return Boundary(facets, file.facets.names, doubled)
-
-
-def place(points: FloatArray) -> str:
-    """The middle of points (N, d), as messages show it."""
-    return "(" + ", ".join(f"{x:.6g}" for x in points.mean(axis=0)) + ")"
 
 
 def _in_space(file: MeshFile, dimension: int) -> FloatArray:

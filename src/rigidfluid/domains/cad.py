@@ -124,7 +124,7 @@ class Cad(Domain):
     def _piece(self, name: str) -> Piece:
         numbers = [i for i, given in enumerate(self._names) if given == name]
         chosen = np.isin(self._facets.markers, numbers)
-        facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
+        facets = self._facets.part(chosen)
         area = float(sum(self._sides[i].mass for i in numbers))
         if all(isinstance(self._forms[i], Flat) for i in numbers):
             plane = plane_around(facets, self._facets.points)

@@ -9,16 +9,15 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.mesh.surface_checks import first_crossing
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.facets import Facets, area_vectors, enclosed_volume, place
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray
-from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of, place
+from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, in_order, surface_names
-from rigidfluid.domains.orientation import enclosed_volume, facing_the_fluid
+from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.domains.planes import plane_around
 from rigidfluid.errors import SceneError
 
@@ -113,7 +112,7 @@ class MeshDomain(Domain):
     @property
     def volume(self) -> float:
         """Of the polyhedron, exactly [length^d]."""
-        return enclosed_volume(self._facets)
+        return -enclosed_volume(self._facets.points, self._facets.vertices)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -126,14 +125,15 @@ class MeshDomain(Domain):
         return np.asarray(self._whole.signed_distance(points) > 0.0)
 
     def _piece(self, number: int, name: str) -> Piece:
-        chosen = self._facets.markers == number
-        facets = Facets(self._facets.points, self._facets.vertices[chosen], self._facets.markers[chosen])
+        facets = self._facets.part(self._facets.markers == number)
         area = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1).sum()
         plane = plane_around(facets, self._facets.points)
         return Piece(name, plane or FacetWall(facets, self._whole), float(area))
 
 
 def _refuse_crossing(facets: Facets) -> None:
+    from rigidfluid.core.model.crossings import first_crossing
+
     crossing = first_crossing(facets.points, facets.vertices)
     if crossing is not None:
         one, other = (place(facets.points[facets.vertices[facet]]) for facet in crossing)

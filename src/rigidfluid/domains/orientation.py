@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.facets import Facets, enclosed_volume
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
@@ -39,7 +39,7 @@ def facing_the_fluid(facets: Facets, at: str) -> Facets:
     facets = _flipped(facets, flip)
     for number in range(int(surface.max()) + 1):
         mine, others = surface == number, surface != number
-        outwards = _enclosed(facets.points, facets.vertices[mine]) > 0.0
+        outwards = enclosed_volume(facets.points, facets.vertices[mine]) > 0.0
         within = _depth(facets, surface, facets.points[facets.vertices[mine][0, 0]], others)
         facets = _flipped(facets, mine & (outwards == (within % 2 == 0)))
     return facets
@@ -108,25 +108,12 @@ def _flipped(facets: Facets, flip: BoolArray) -> Facets:
     return replace(facets, vertices=vertices)
 
 
-def _enclosed(points: FloatArray, vertices: IntArray) -> float:
-    """Volume that facets with normals outwards enclose, negative of normals inwards, ∮ x·n / d [length^d]."""
-    normals = area_vectors(points, vertices)
-    middles = points[vertices].mean(axis=1) - points[vertices[0, 0]]
-    return float(np.sum(middles * normals) / points.shape[1])
-
-
 def _depth(facets: Facets, surface: IntArray, point: FloatArray, others: BoolArray) -> int:
     """How many of the other surfaces are around a point."""
     around = 0
     for number in np.unique(surface[others]):
-        chosen = surface == number
-        shape = FacetSurface(replace(facets, vertices=facets.vertices[chosen], markers=facets.markers[chosen]))
-        outwards = _enclosed(facets.points, facets.vertices[chosen]) > 0.0
-        inside = shape.signed_distance(point[None])[0] < 0.0
+        one = facets.part(surface == number)
+        outwards = enclosed_volume(one.points, one.vertices) > 0.0
+        inside = FacetSurface(one).signed_distance(point[None])[0] < 0.0
         around += bool(inside == outwards)
     return around
-
-
-def enclosed_volume(facets: Facets) -> float:
-    """Exact volume of the polyhedron (area of the polygon) of facets that face the fluid inside [length^d]."""
-    return -_enclosed(facets.points, facets.vertices)

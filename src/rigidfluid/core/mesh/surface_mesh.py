@@ -73,12 +73,6 @@ def part_of(surface: Mesh, chosen: BoolArray) -> Mesh:
     return _without_cells(surface.points[used], facets, surface.markers[chosen])
 
 
-def enclosed(surface: Mesh) -> float:
-    """What a closed surface encloses, Σ det(x_1, …, x_d) / d!, > 0 where its normals point out of it [length^d]."""
-    corners = surface.points[surface.facets]
-    return float(np.linalg.det(corners).sum()) / (2.0 if corners.shape[1] == 2 else 6.0)
-
-
 def _as_mesh(facets: Facets) -> Mesh:
     """The vertices that facets use, and the facets."""
     whole = _without_cells(facets.points, facets.vertices, facets.markers)

@@ -8,11 +8,21 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.model.facet_tree import leaves_beside
+from rigidfluid.core.model.facet_tree import build_tree, leaves_beside
+from rigidfluid.core.model.types import FloatArray, IntArray
 
 _FLAT = 1e-7
 """Volumes of an edge within the plane of a facet are below this, over the cube around both: the single precision of STL
 files puts corners beside their plane."""
+
+
+def first_crossing(points: FloatArray, facets: IntArray) -> tuple[int, int] | None:
+    """Two of the ``facets`` (F, d) between ``points`` (N, d) that meet without sharing a vertex; None if no two do."""
+    corners, d = facets.astype(np.int32), points.shape[1]
+    edges = corners if d == 2 else np.concatenate([corners[:, [i, (i + 1) % d]] for i in range(d)])
+    points = np.ascontiguousarray(points, dtype=float)
+    met = crossings(points, edges, corners, build_tree(points, corners, np.arange(len(corners), dtype=np.int32)))
+    return (int(met[0, 0]) % len(facets), int(met[0, 1])) if len(met) else None
 
 
 @njit(cache=True, nogil=True)
@@ -24,12 +34,28 @@ def crossings(points, edges, facets, tree):
     found = [(0, 0) for _ in range(0)]
     for edge in range(len(edges)):
         for facet in leaves_beside(points, edges[edge], tree):
-            if not _share(edges[edge], facets[facet]) and _meet(points, edges[edge], facets[facet]):
+            if _apart(points, edges[edge], facets[facet]) or _share(edges[edge], facets[facet]):
+                continue
+            if _meet(points, edges[edge], facets[facet]):
                 found.append((edge, facet))
     pairs = np.empty((len(found), 2), np.int64)
     for row in range(len(found)):
         pairs[row, 0], pairs[row, 1] = found[row]
     return pairs
+
+
+@njit(cache=True, nogil=True)
+def _apart(points, edge, facet):
+    """Whether the boxes around both do not meet: of parts of one straight line, rounding alone says on which side of
+    each other they are."""
+    for k in range(points.shape[1]):
+        low, high = min(points[edge[0], k], points[edge[1], k]), max(points[edge[0], k], points[edge[1], k])
+        below = above = True
+        for corner in facet:
+            below, above = below and points[corner, k] < low, above and points[corner, k] > high
+        if below or above:
+            return True
+    return False
 
 
 @njit(cache=True, nogil=True)

@@ -15,7 +15,7 @@ from rigidfluid.core.model.types import FloatArray, IntArray
 if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
 
-_FLAT = 1e-10
+FLAT = 1e-10
 """Over the size of the surface: points that are less off a plane lie in it."""
 
 _TOUCHING = 1e-8
@@ -71,9 +71,7 @@ class FacetSurface(Surface):
 
     def piece(self, marker: int) -> FacetSurface:
         """The facets with this marker, a part of this closed surface."""
-        chosen = self.facets.markers == marker
-        part = Facets(self.facets.points, self.facets.vertices[chosen], self.facets.markers[chosen])
-        return FacetSurface(part, whole=self)
+        return FacetSurface(self.facets.part(self.facets.markers == marker), whole=self)
 
     @property
     def whole(self) -> FacetSurface:
@@ -88,13 +86,7 @@ class FacetSurface(Surface):
     @cached_property
     def plane(self) -> Plane | None:
         """The plane that all facets lie in, bounded as they are; None if there is no such plane."""
-        total = area_vectors(self._points, self._vertices).sum(axis=0)
-        length = np.linalg.norm(total)
-        if length == 0:
-            return None
-        normal, origin = total / length, self._points[self._vertices[0, 0]]
-        heights = (self._points[np.unique(self._vertices)] - origin) @ normal
-        return Plane(origin, normal, self._bounds) if np.all(np.abs(heights) <= _FLAT * self._size) else None
+        return plane_of(self.facets, FLAT * self._size)
 
     @property
     def radius(self) -> float | None:
@@ -203,6 +195,24 @@ class FacetSurface(Surface):
     @cached_property
     def _faces(self) -> Faces:
         return faces_of(self._points, self._vertices)
+
+
+def plane_of(facets: Facets, tolerance: float) -> Plane | None:
+    """The plane that all facets lie in but for a ``tolerance`` [length], bounded as they are; None if there is none.
+
+    A normal that lies along an axis but for rounding is put there.
+    """
+    vectors = area_vectors(facets.points, facets.vertices)
+    total = vectors.sum(axis=0)
+    length = float(np.linalg.norm(total))
+    if length <= FLAT * np.linalg.norm(vectors, axis=1).sum():
+        return None
+    normal, rounded = total / length, np.round(total / length)
+    if np.all(np.abs(normal - rounded) <= FLAT):
+        normal = rounded
+    mine = facets.points[np.unique(facets.vertices)]
+    plane = Plane(facets.points[facets.vertices[0, 0]], normal, (mine.min(axis=0), mine.max(axis=0)))
+    return plane if np.all(np.abs(plane.signed_distance(mine)) <= tolerance) else None
 
 
 def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:

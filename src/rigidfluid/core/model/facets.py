@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import factorial
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,10 @@ class Facets:
     vertices: IntArray
     markers: IntArray
 
+    def part(self, chosen: BoolArray) -> Facets:
+        """The ``chosen`` facets (F,), between the same points."""
+        return Facets(self.points, self.vertices[chosen], self.markers[chosen])
+
 
 def area_vectors(points: FloatArray, vertices: IntArray) -> FloatArray:
     """Area (length in 2D) times unit normal of each facet, (F, d), for ``points`` and ``vertices`` as in `Facets`
@@ -31,3 +36,15 @@ def area_vectors(points: FloatArray, vertices: IntArray) -> FloatArray:
     if points.shape[1] == 2:
         return np.stack([edges[:, 0, 1], -edges[:, 0, 0]], axis=1)
     return np.asarray(0.5 * np.cross(edges[:, 0], edges[:, 1]))
+
+
+def enclosed_volume(points: FloatArray, vertices: IntArray) -> float:
+    """What closed facets enclose, Σ det(x_1, …, x_d)/d! about one of their corners, negative where their normals point
+    inwards, for ``points`` and ``vertices`` as in `Facets` [length^d]."""
+    corners = points[vertices] - points[vertices[0, 0]]
+    return float(np.linalg.det(corners).sum()) / factorial(corners.shape[1])
+
+
+def place(points: FloatArray) -> str:
+    """The middle of points (N, d), as messages show it."""
+    return "(" + ", ".join(f"{x:.6g}" for x in points.mean(axis=0)) + ")"
