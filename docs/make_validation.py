@@ -47,6 +47,7 @@ sys.path.append(str(ROOT / "tests" / "support"))
 import adaptive_step as adaptive  # noqa: E402
 import curved_channels  # noqa: E402
 import insertion_cases as insertions  # noqa: E402
+from curved_gaps import CurvedGap, curved_gaps  # noqa: E402
 from dry_scenes import sphere_gas  # noqa: E402
 from extreme_cases import rows as extremes  # noqa: E402
 from fluid_contact_table import CASES as CONTACT_CASES  # noqa: E402
@@ -54,6 +55,7 @@ from fluid_contact_table import made  # noqa: E402
 from fluid_contacts import created_and_lost, put_in  # noqa: E402
 from periodic_arrays import array_of_balls, exact_array  # noqa: E402
 from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_SPEED  # noqa: E402
+from wall_drift import wall_drift  # noqa: E402
 
 Row = tuple[str, str, str, str]
 FALLS = {
@@ -1099,6 +1101,24 @@ cells in a slice.
 """
 
 
+WALLS_THAT_STAY = """
+## Walls that stay
+
+A disk of diameter 1 goes through the throat of the stenosis, and the mesh is made anew at 50 stops. Facets of the bumps
+are kept or halved with the new vertex on the circle. `vertices off`: farthest vertex of a bump from its circle.
+
+"""
+
+GAPS = """
+
+## Gaps to curved walls
+
+Of a disk of radius .5 and an ellipse with semi-axes .6 and .3 beside and in the throat, by the detector on the mesh,
+against the exact one. Bound: (h_w²/R + h_b²/r)/8 for the facets of wall and body that are nearest to each other.
+
+"""
+
+
 def insertion() -> None:
     """Bodies in curved and irregular domains by filling between facets, and by cutting along a level set."""
     head = ("case", "way", "failed", "cells", "quality", "vertices off", "middles", "walls kept", "walls' area", "s")
@@ -1107,8 +1127,32 @@ def insertion() -> None:
     head = ("scene", "way", "surface", "shape", "facets", "given vertices kept", "vertices off", "middles off")
     shown = [("insertion_2d", "fill"), ("insertion_2d", "level_set"), ("insertion_3d", "fill")]
     text += table(head, (row for scene, way in shown for row in inserted_rows(scene, way)))
-    text += "\n\n![Shapes in a vessel](insertion_2d.png)\n\n![Bodies in a bent tube](insertion_3d.png)"
+    text += "\n\n![Shapes in a vessel](insertion_2d.png)\n\n![Bodies in a bent tube](insertion_3d.png)\n"
+    text += WALLS_THAT_STAY + table(
+        ("new meshes", "area less the exact one", "vertices off", "quality", "facets"), drift()
+    )
+    head = ("body", "at", "facets", "gap", "error", "bound")
+    text += GAPS + table(head, map(gap_row, curved_gaps()))
     write_page("insertion", "Insertion of bodies", "python docs/make_validation.py insertion", text, plot=False)
+
+
+def drift() -> Iterable[tuple[str, ...]]:
+    """Rows of what becomes of the stenosis' walls, after every tenth new mesh, and the worst of all."""
+    found = list(wall_drift())
+    for one in found[::10]:
+        yield _drift_row(str(one.remeshings), one.area_error, one.off_wall, one.quality, one.curved_facets)
+    worst = max(one.off_wall for one in found), min(one.quality for one in found)
+    yield _drift_row("worst of all", max(one.area_error for one in found), *worst, found[-1].curved_facets)
+
+
+def _drift_row(name: str, area: float, off: float, quality: float, facets: int) -> tuple[str, ...]:
+    return name, f"{area:.4f}", f"{off:.0e}", f"{quality:.2f}", str(facets)
+
+
+def gap_row(gap: CurvedGap) -> tuple[str, ...]:
+    """One row of `insertion`'s last table."""
+    place = f"({gap.place[0]:g}, {gap.place[1]:g})"
+    return gap.shape, place, f"{gap.size:g}", f"{gap.exact:.4f}", f"{gap.error:.1e}", f"{gap.bound:.1e}"
 
 
 def insertion_row(name: str, way: Way) -> tuple[str, ...]:
