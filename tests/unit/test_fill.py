@@ -144,7 +144,7 @@ def test_an_open_surface_is_refused_with_its_place(dimension):
     whole = surface_mesh(bodies, pose, domain, walls, sizes)
     left = np.arange(len(whole.facets)) != np.flatnonzero(whole.markers == 1)[0]
     leaking = replace(whole, facets=whole.facets[left], markers=whole.markers[left])
-    with pytest.raises(MeshError, match=r"body.1: found a surface that is open.* at \[-0"):
+    with pytest.raises(MeshError, match=r"body.1: found a surface that is open.* at \(-0"):
         refuse_unfillable(leaking, bodies, pose, domain)
 
 

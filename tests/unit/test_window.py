@@ -228,6 +228,17 @@ WRONG = [
 ]
 
 
+def test_a_side_that_turns_in_itself_is_refused_beside_a_wall_at_the_end() -> None:
+    turning = {"on": "front", "type": "wall", "angular_velocity": [0.0, 0.0, 1.0]}
+    ball = {"name": "disk", "type": "sphere", "radius": 0.125, "density": 1.2, "position": [1.0, 10.0, 1.0]}
+    given = tables(boundary=[AT_REST, turning]) | {"body": [ball]}
+    given["scene"]["dimension"] = 3
+    given["domain"] |= {"lower": [0.0, 0.0, 0.0], "upper": [2.0, LENGTH, 2.0]}
+    given["fluid"]["gravity"] = [0.0, -981.0, 0.0]
+    with pytest.raises(SceneError, match="boundary: found a velocity on 'front', along a window"):
+        build_system(scene_from_dict(given))
+
+
 @pytest.mark.parametrize(("window", "more", "message"), WRONG)
 def test_windows_that_cannot_be_are_refused_by_name(window: Tables, more: Tables, message: str) -> None:
     given = tables(window)

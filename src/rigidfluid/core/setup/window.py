@@ -149,6 +149,7 @@ def _sliding(scene: Scene, domain: Domain, ends: Sequence[str]) -> str | None:
     """A side that moves the fluid far away from all bodies, if any."""
     for name in domain.names:
         table = boundary_table(scene, name)
-        if name not in ends and table is not None and (table.velocity or table.flux) is not None:
+        given = () if table is None else (table.velocity, table.flux, table.angular_velocity)
+        if name not in ends and any(value is not None for value in given):
             return name
     return None
