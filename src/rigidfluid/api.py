@@ -11,10 +11,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
+from rigidfluid.bodies.polygon import Polygon, PolygonOptions
+from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import (
     Body,
     Component,
@@ -94,6 +98,8 @@ __all__ = [
     "Domain",
     "Ellipsoid",
     "EllipsoidOptions",
+    "FacetSurface",
+    "Facets",
     "Fields",
     "FloatArray",
     "FluidBackend",
@@ -113,6 +119,10 @@ __all__ = [
     "Piece",
     "Plane",
     "PluginError",
+    "Polygon",
+    "PolygonOptions",
+    "Polyhedron",
+    "PolyhedronOptions",
     "Pose",
     "Registry",
     "Response",

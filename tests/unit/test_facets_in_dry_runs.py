@@ -12,6 +12,7 @@ from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 
 ELASTIC = {"law": "contact", "epsilon": "auto", "range": 0.02}
 BOX = (0.2 * np.array(SQUARE)).tolist()
@@ -85,6 +86,28 @@ def test_a_cube_dropped_flat_lies_on_four_corners(tmp_path: Path) -> None:
     simulation, energy, most = energies(scene)
     assert np.linalg.norm(simulation.state.twist.angular_velocity) < 1e-9
     assert np.ptp(energy) < 1e-9 * most
+
+
+def test_a_square_dropped_flat_onto_an_obstacle_of_facets_does_not_turn() -> None:
+    """The ledge is the arm of an L, which belongs to the domain."""
+    table = {"type": "polygon", "points": (0.25 * np.array(L_SHAPE)).tolist(), "position": [0.5, 0.3]}
+    domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [table]}
+    scene = scene_from_dict(
+        {
+            "scene": {"name": "ledge", "dimension": 2},
+            "fluid": {"backend": "dry", "gravity": [0.0, -1.0]},
+            "domain": domain,
+            "body": [block(BOX, [0.65, 0.55])],
+            "contact": ELASTIC,
+            "time": {"end": 0.8, "step": 0.01},
+            "output": {"every": 0.8},
+        }
+    )
+    simulation, energy, most = energies(scene)
+    assert simulation.system.detector.name == "facets"
+    assert abs(simulation.state.pose.orientation[0, 0]) < 1e-12
+    assert np.ptp(energy) < 1e-3 * most
+    assert most > 1e-3
 
 
 def test_a_scene_with_overlapping_polygons_is_refused() -> None:

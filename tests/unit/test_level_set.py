@@ -64,7 +64,7 @@ def test_no_body_makes_no_cut():
 def test_vertices_that_do_not_come_onto_their_shape_are_refused(monkeypatch):
     monkeypatch.setattr(level_set, "ROUNDS", 1)
     monkeypatch.setattr(level_set, "_as_far_as_cells_allow", lambda mesh, _: mesh.points)
-    with pytest.raises(MeshError, match=r"mesh.inserter: found vertices .* off their shape"):
+    with pytest.raises(MeshError, match=r"body.[01]: found vertices up to .* off the shape"):
         level_set_mesh(*in_a_dish(2), timeout=60.0)
 
 

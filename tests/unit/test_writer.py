@@ -150,6 +150,13 @@ def test_a_run_that_gets_stuck_says_where_and_keeps_what_it_has(tmp_path):
     assert read_rows(tmp_path / "bodies.csv")[-1][0] == pytest.approx(summary["time"])
 
 
+def test_a_body_that_leaves_through_an_opening_is_named_with_it():
+    open_floor = {"boundary": [{"on": "bottom", "type": "pressure", "pressure": 0.0}]}
+    heavy = {**SHORT, "time": {"step": 0.004, "end": 0.1}, "body": {"density": 100.0, "position": [1.0, 0.3]}}
+    with pytest.raises(rigidfluid.errors.StepError, match=r"body disk is .* from 'bottom'.*make the domain longer"):
+        rigidfluid.run(rigidfluid.scene_from_dict(falling_disk(**heavy).to_dict() | open_floor))
+
+
 def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkeypatch):
     """It is tried again once a nominal step, and not at each of the short ones at the start."""
     tried = []

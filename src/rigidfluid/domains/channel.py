@@ -62,7 +62,7 @@ class Channel(Domain):
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The faces of the box, then the obstacles in the scene's order."""
-        obstacles = (Piece(name, placed, placed.area) for name, placed in self._obstacles.items())
+        obstacles = (Piece(name, placed.surface, placed.area) for name, placed in self._obstacles.items())
         return (*self._box.pieces, *obstacles)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -11,6 +12,7 @@ from scipy.special import elliprg
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.meshing import in_space, sides, turned
+from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Surface
@@ -59,6 +61,14 @@ class PlacedBody(Surface):
         """R (the shape's normal at Rᵀ(x - c)), (N, d), for ``points`` x (N, d)."""
         turn = rotation_matrices(self.pose.orientation)[0]
         return np.asarray(self.shape.normal(to_body_frame(self.pose, 0, points)) @ turn.T)
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The facets in their place, if the shape is made of some, else this."""
+        if self.shape.facets is None:
+            return self
+        points = to_world(self.pose, 0, self.shape.facets.points)
+        return FacetSurface(replace(self.shape.facets, points=points))
 
     def cad_shape(self, name: str) -> Any:
         """The shape in its place as a ``netgen.occ`` face or solid, its sides called ``name``."""

@@ -109,11 +109,13 @@ def level_set_mesh(
         target = _on_shapes(mesh, bodies, pose, domain)
         mesh = replace(mesh, points=_as_far_as_cells_allow(mesh, target))
         mesh = orient(_improved(mesh, size_at(mesh.points)))
-        off = float(np.linalg.norm(_on_shapes(mesh, bodies, pose, domain) - mesh.points, axis=1).max())
-        if off <= ON_SHAPE * sizes.size_body:
+        off = np.linalg.norm(_on_shapes(mesh, bodies, pose, domain) - mesh.points, axis=1)
+        if off.max() <= ON_SHAPE * sizes.size_body:
             break
     else:
-        raise MeshError("mesh.inserter", f"vertices {off:.3g} off their shape", "all on it", "Use 'fill' instead.")
+        body = mesh.markers[(mesh.facets == off.argmax()).any(axis=1)][0]
+        found = f"vertices up to {off.max():.3g} off the shape after cutting"
+        raise MeshError(f"body.{body}", found, "all on it", "Use mesh.inserter = 'fill'.")
     mesh = replace(mesh, points=_on_shapes(mesh, bodies, pose, domain))
     kept = np.ones(len(background.facets), dtype=bool)
     mesh = orient(with_kept_facets(mesh, mesh.markers < len(bodies), background, kept, background.points))

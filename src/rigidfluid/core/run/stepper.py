@@ -21,7 +21,8 @@ from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
 from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
-from rigidfluid.errors import StepError, StepRejected
+from rigidfluid.core.run.stuck import stuck
+from rigidfluid.errors import StepRejected
 
 MOST_ATTEMPTS = 4
 """Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
@@ -89,7 +90,8 @@ class Stepper:
                 self.counts.rejected += 1
                 level, path = level + 1, None
                 if level > self._clock.levels:
-                    raise self._stuck(state, rejection) from rejection
+                    time, shortest = self._clock.time(state.tick), self._clock.size(self._clock.levels)
+                    raise stuck(self.system, state, rejection, time, shortest) from rejection
             else:
                 self.counts.unsettled += not agreed
                 return new
@@ -197,16 +199,6 @@ class Stepper:
         film = state.gaps < (self.system.law.range if self.system.law else 0.0)
         opens = film & (gaps > WIDEST_OPENING * state.gaps)
         return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())
-
-    def _stuck(self, state: State, rejection: StepRejected) -> StepError:
-        shortest, nearest = self._clock.size(self._clock.levels), int(np.argmin(state.gaps))
-        body, gap = self.system.surfaces[nearest], state.gaps[nearest]
-        return StepError(
-            f"{rejection.subject} at time {self._clock.time(state.tick):g}",
-            f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from the nearest surface",
-            rejection.allowed,
-            f"{rejection.remedy} What was computed until then is kept, and --resume goes on from the last output.",
-        )
 
 
 def _too_fast() -> StepRejected:

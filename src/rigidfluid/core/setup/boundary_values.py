@@ -174,5 +174,6 @@ def _profile(piece: Piece, name: str, at: str) -> Profile | None:
         "poiseuille": "that is a segment, a rectangle across an axis or a disk",
         "couette": "that is a segment, in 2D",
     }[name]
-    remedy = "Give `velocity` as expressions of x, y, z instead."
+    developed = name == "parabolic" and shape is not None
+    remedy = "Set it to 'poiseuille'." if developed else "Give `velocity` as expressions of x, y, z instead."
     raise SceneError(at, f"{name!r} on {piece.name!r}", f"it on a surface {needed}", remedy)

@@ -1,0 +1,43 @@
+"""What a run that cannot go on says: which body is near what."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.errors import StepError, StepRejected
+
+_SAMPLES = 200
+"""Points of each body's surface whose distances are looked at."""
+
+_LEAVES = "Bodies cannot pass through the domain's surfaces: end the run before, or make the domain longer there."
+
+
+def stuck(system: System, state: State, rejection: StepRejected, time: float, shortest: float) -> StepError:
+    """The error of a step that was rejected at its ``shortest`` size, from a state at a ``time``."""
+    nearest = int(np.argmin(state.gaps))
+    body, gap, surface, remedy = system.surfaces[nearest], state.gaps[nearest], "the nearest surface", rejection.remedy
+    for opening_gap, leaving, opening in _near_openings(system, state):
+        if opening_gap < gap:
+            body, gap, surface, remedy = leaving, opening_gap, repr(opening), _LEAVES
+    return StepError(
+        f"{rejection.subject} at time {time:g}",
+        f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from {surface}",
+        rejection.allowed,
+        f"{remedy} What was computed until then is kept, and --resume goes on from the last output.",
+    )
+
+
+def _near_openings(system: System, state: State) -> list[tuple[float, str, str]]:
+    """Gap, body and name of the surface, of each body and each surface that does not repel: those are in no contact."""
+    walls = {wall.name for wall in system.walls}
+    openings = [piece for piece in system.meshed(state.pose).pieces if piece.name not in walls]
+    found = []
+    for number, body in enumerate(system.bodies):
+        points = to_world(state.pose, number, body.sample_surface(_SAMPLES))
+        for piece in openings:
+            gap = float(piece.shape.signed_distance(points).min())
+            found.append((gap, system.surfaces[number], piece.name))
+    return found
