@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fill import fill_between
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.mmg import as_mmg, from_mmg, run_mmg, with_kept_facets
@@ -21,7 +22,7 @@ from rigidfluid.core.mesh.surface_mesh import part_of, surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, boundary_facets, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
 
@@ -160,15 +161,11 @@ def _distances(points: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatA
     return np.array([distance_to_body(pose, i, body, points) for i, body in enumerate(bodies)])
 
 
-def _vertices(mesh: Mesh, surface: int) -> IntArray:
-    return np.unique(mesh.facets[mesh.markers == surface])
-
-
 def _on_shapes(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
     """The points (N, d) with those of each body's facets on its shape."""
     points = mesh.points.copy()
     for i in range(len(bodies)):
-        mine = _vertices(mesh, i)
+        mine = surface_vertices(mesh, i)
         points[mine] = on_surface(i, points[mine], bodies, pose, domain)
     return points
 

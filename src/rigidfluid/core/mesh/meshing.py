@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
@@ -180,7 +181,7 @@ def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
     for number in sorted(range(len(flat)), key=flat.__getitem__):
         if not (flat[number] or curved):
             continue
-        vertices = np.unique(mesh.facets[mesh.markers == bodies + number])
+        vertices = surface_vertices(mesh, bodies + number)
         points[vertices] = domain.pieces[number].shape.closest_point(points[vertices])
     return replace(mesh, points=points)
 

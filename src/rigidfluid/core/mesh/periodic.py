@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 from rigidfluid.errors import MeshError
@@ -39,7 +40,7 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
     """
     for pair in domain.periodic:
         points, way = mesh.points.copy(), _way(domain, pair)
-        one, two = (np.unique(mesh.facets[mesh.markers == bodies + piece]) for piece in pair)
+        one, two = (surface_vertices(mesh, bodies + piece) for piece in pair)
         distance, place = cKDTree(points[one] + way).query(points[two])
         if len(one) != len(two) or np.max(distance) > _APART * np.linalg.norm(way):
             names = " and ".join(repr(domain.names[piece]) for piece in pair)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import enclosed_volume, place
 from rigidfluid.core.model.interfaces import Body
@@ -40,7 +41,7 @@ def refuse_unfillable(surface: Mesh, bodies: Sequence[Body], pose: Pose, domain:
     _refuse_inside_out(surface, len(bodies))
     _refuse_crossing(surface, names)
     for i, body in enumerate(bodies):
-        mine = surface.points[np.unique(surface.facets[surface.markers == i])]
+        mine = surface.points[surface_vertices(surface, i)]
         outside = mine[~domain.contains(mine)]
         if len(outside):
             allowed, remedy = f"all of it inside the {domain.name}", "Move the body or enlarge the domain."
