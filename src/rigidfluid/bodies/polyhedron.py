@@ -11,6 +11,7 @@ from pydantic import Field
 from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.ridges import ridges_of
 from rigidfluid.core.model.stl_file import read_stl
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
@@ -74,17 +75,14 @@ def _refuse_open(points: FloatArray, vertices: IntArray) -> None:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    edges = np.concatenate([vertices[:, [i, (i + 1) % 3]] for i in range(3)])
-    forward, times = np.unique(edges, axis=0, return_counts=True)
-    backward = np.unique(edges[:, ::-1], axis=0)
-    if times.max() > 1:
-        found = f"{np.count_nonzero(times > 1)} edges that triangles go along in one sense"
+    edges, triangles, turn, *_ = ridges_of(vertices)
+    unlike, alone = (np.abs(turn) > 1) | (triangles > 2), triangles == 1
+    if unlike.any():
+        found = f"{np.count_nonzero(unlike)} edges that triangles go along in one sense"
         allowed = "triangles that all go round alike, two at each edge"
-        raise SceneError("body.file", f"{found}{_at(points, forward, times > 1)}", allowed, "Repair the file.")
-    pairs = forward[:, 0] * len(points) + forward[:, 1]
-    alone = np.isin(pairs, backward[:, 0] * len(points) + backward[:, 1], invert=True)
+        raise SceneError("body.file", f"{found}{_at(points, edges, unlike)}", allowed, "Repair the file.")
     if alone.any():
-        found = f"an open surface, {np.count_nonzero(alone)} edges with one triangle{_at(points, forward, alone)}"
+        found = f"an open surface, {np.count_nonzero(alone)} edges with one triangle{_at(points, edges, alone)}"
         raise SceneError("body.file", found, "two triangles at each edge", "Close the holes, or join double points.")
     joined = coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(len(points),) * 2)
     pieces = connected_components(joined, directed=False)[0]

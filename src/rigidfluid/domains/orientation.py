@@ -8,6 +8,7 @@ import numpy as np
 
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, enclosed_volume
+from rigidfluid.core.model.ridges import ridges_of
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
@@ -45,28 +46,8 @@ def facing_the_fluid(facets: Facets, at: str) -> Facets:
     return facets
 
 
-def ridges(vertices: IntArray) -> tuple[IntArray, IntArray]:
-    """What facets share with their neighbours: corners of edges, edges of triangles; and in which sense they go round.
-
-    Parameters
-    ----------
-    vertices : (F, d) array
-        Corners of the facets.
-
-    Returns
-    -------
-    (F, d, d-1) array, (F, d) array
-        Vertex numbers, ascending; 1 or -1, different for two neighbours that are turned alike.
-    """
-    if vertices.shape[1] == 2:
-        return vertices[:, :, None], np.tile([-1, 1], (len(vertices), 1))
-    ends = np.stack([vertices, np.roll(vertices, -1, axis=1)], axis=2)
-    return np.sort(ends, axis=2), np.where(ends[:, :, 0] < ends[:, :, 1], 1, -1)
-
-
 def _refuse_open(facets: Facets, at: str) -> None:
-    corners, _ = ridges(facets.vertices)
-    unique, count = np.unique(corners.reshape(-1, corners.shape[2]), axis=0, return_counts=True)
+    unique, count, *_ = ridges_of(facets.vertices)
     what = "corner" if facets.vertices.shape[1] == 2 else "edge"
     for wrong, found in ((count == 1, "an open surface"), (count > 2, "surfaces that branch")):
         if wrong.any():
@@ -84,12 +65,11 @@ def _turned_alike(facets: Facets, at: str) -> tuple[BoolArray, IntArray]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    corners, sense = ridges(facets.vertices)
+    ridges = ridges_of(facets.vertices)
     count, d = facets.vertices.shape
-    _, ridge = np.unique(corners.reshape(count * d, -1), axis=0, return_inverse=True)
-    order = np.argsort(ridge.ravel(), kind="stable").reshape(-1, 2)
+    order = np.argsort(ridges.number.ravel(), kind="stable").reshape(-1, 2)
     first, second = order.T // d
-    alike = (sense.ravel()[order[:, 0]] != sense.ravel()[order[:, 1]]).astype(np.int64)
+    alike = (np.diff(ridges.sense.ravel()[order], axis=1)[:, 0] != 0).astype(np.int64)
     rows = np.concatenate([first, first + count])
     columns = np.concatenate([second + count * (1 - alike), second + count * alike])
     links = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))

@@ -11,7 +11,8 @@ from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import enclosed_volume, place
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.ridges import ridges_of
+from rigidfluid.core.model.types import BoolArray, Mesh, Pose
 from rigidfluid.errors import MeshError
 
 _MEND = "Mend the surface: each edge of a facet belongs to one other facet, all normals point to the same side."
@@ -53,41 +54,12 @@ def refuse_unfillable(surface: Mesh, bodies: Sequence[Body], pose: Pose, domain:
 
 
 def _refuse_open(surface: Mesh, names: Sequence[str]) -> None:
-    """A surface is closed when each side of its facets is met once, from the other side, by a facet beside it."""
-    sides, facet = _sides(surface.facets)
-    order = np.lexsort(sides.T[::-1])
-    sides, facet = sides[order], facet[order]
-    count = np.unique(sides, axis=0, return_counts=True)[1]
-    met = _found_in(_reversed(sides), sides) & np.repeat(count == 1, count)
-    if met.all():
-        return
-    at = int(np.flatnonzero(~met)[0])
-    where = place(surface.points[sides[at][sides[at] >= 0]])
-    found = f"a surface that is open, folded or turned over at {where}"
-    raise MeshError(names[surface.markers[facet[at]]], found, "closed surfaces with normals into the fluid", _MEND)
-
-
-def _sides(facets: IntArray) -> tuple[IntArray, IntArray]:
-    """Directed sides of facets (S, 2), of an edge its first vertex as (v, -1) and its last as (-1, v); and the facet of
-    each (S,)."""
-    number = np.arange(len(facets))
-    if facets.shape[1] == 3:
-        sides = np.concatenate([facets[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
-        return sides, np.tile(number, 3)
-    none = np.full(len(facets), -1)
-    sides = np.concatenate([np.stack([facets[:, 0], none], axis=1), np.stack([none, facets[:, 1]], axis=1)])
-    return sides, np.tile(number, 2)
-
-
-def _reversed(sides: IntArray) -> IntArray:
-    return sides[:, ::-1]
-
-
-def _found_in(wanted: IntArray, rows: IntArray) -> BoolArray:
-    """Which of ``wanted`` (S, 2) are among ``rows`` (R, 2), (S,)."""
-    base = int(rows.max()) + 2
-    keys = (rows + 1) @ np.array([base, 1])
-    return np.isin((wanted + 1) @ np.array([base, 1]), keys)
+    ridges = ridges_of(surface.facets)
+    wrong = np.flatnonzero((ridges.facets_at != 2) | (ridges.turn != 0))
+    if len(wrong):
+        facet = int(np.argmax((ridges.number == wrong[0]).any(axis=1)))
+        found = f"a surface that is open, folded or turned over at {place(surface.points[ridges.corners[wrong[0]]])}"
+        raise MeshError(names[surface.markers[facet]], found, "closed surfaces with normals into the fluid", _MEND)
 
 
 def _refuse_inside_out(surface: Mesh, bodies: int) -> None:
