@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -48,6 +49,8 @@ def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> 
     for name in found:
         if name == "all" or not name:
             raise SceneError(AT, f"a surface named {name!r}", "a name other than 'all'", "Rename it.")
+        if re.search(r"[\x00-\x1f\x7f]", name):  # it would break tables and plots, as in names of bodies
+            raise SceneError(AT, f"a surface named {name!r}", "a name without control characters", "Rename it.")
     return found
 
 
