@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rigidfluid.core.scene.scene import PRINTABLE
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -49,7 +50,7 @@ def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> 
     for name in found:
         if name == "all" or not name:
             raise SceneError(AT, f"a surface named {name!r}", "a name other than 'all'", "Rename it.")
-        if re.search(r"[\x00-\x1f\x7f]", name):  # it would break tables and plots, as in names of bodies
+        if not re.fullmatch(PRINTABLE, name):
             raise SceneError(AT, f"a surface named {name!r}", "a name without control characters", "Rename it.")
     return found
 
