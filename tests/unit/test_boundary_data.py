@@ -292,6 +292,7 @@ def test_what_balances_needs_no_outlet(boundary: list[dict[str, Any]]) -> None:
     "text",
     [
         "0.0, 0.0\n1.0\n",
+        "",
         "0.0, zero\n",
         "0, 0, 0\n2, 0, 0\n",
         "0.0, nan\n2.0, 1.0\n",

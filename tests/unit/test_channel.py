@@ -40,6 +40,8 @@ def channel(*obstacles: dict[str, Any]) -> dict[str, Any]:
         (channel(PIN, PIN), r"domain.obstacle.1.name: found 'pin' for the second time"),
         (channel(PIN | {"name": "left"}), r"domain.obstacle.0.name: found 'left'; allowed is a name other than all, l"),
         (channel(PIN | {"name": "all"}), r"domain.obstacle.0.name: found 'all'"),
+        (channel(PIN | {"name": "a\nb"}), r"domain.obstacle.0.name: found 'a\\nb'"),
+        (channel(PIN | {"position": [2.0, 0.1], "radius": 0.1}), r"obstacle.0.position: .*overlaps 'bottom' by 0;"),
         (channel(PIN | {"position": [2.0, 0.15]}), r"obstacle.0.position: .*'pin' overlaps 'bottom' by 0.05;"),
         (channel(PIN | {"position": [2.0, 9.0]}), r"obstacle.0.position: found \[2.0, 9.0\]; allowed is inside"),
         (

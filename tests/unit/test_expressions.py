@@ -46,6 +46,7 @@ def test_a_vector_has_its_components() -> None:
 
 BAD = {
     "unknown name": ("sin(x) + yy", "an unknown name: 'yy' at character 10", "Did you mean 'y'"),
+    "function alone": ("2*sin", "a function without arguments: 'sin' at character 3", r"Write sin\(…\)."),
     "no z in 2D": ("x + z", "an unknown name: 'z'", "x, y, t, pi"),
     "unknown function": ("sinh(x)", "not allowed: 'sinh(x)'", "Use what is allowed"),
     "caret": ("x^2", "not allowed: 'x^2'", r"\*\* for powers"),

@@ -163,3 +163,15 @@ def test_a_point_in_the_notch_of_a_cube_is_near_its_four_sides_and_not_its_edges
     assert len(found.distance) == 4
     above = surface.nearby(np.array([[0.5, 0.5, 3.0]]), np.inf, np.inf)
     np.testing.assert_allclose(above.distance, np.hypot(2.0, 0.5), rtol=1e-14)  # the middles of the rim's edges
+
+
+def test_a_piece_asks_the_whole_surface_only_about_points_behind_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All facets are as far from the middle of a round hollow, so that each query there looks at all of them."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 50, endpoint=False)
+    whole = FacetSurface(polygon(np.stack([np.cos(angles), -np.sin(angles)], axis=1)))
+    piece, asked = FacetSurface(whole.facets, whole), []
+    monkeypatch.setattr(whole, "signed_distance", lambda points: asked.extend(points) or -np.ones(len(points)))
+    assert len(piece.nearby(np.zeros((1, 2)), 2.0, 0.5).distance) == 50
+    assert not asked
+    assert piece.signed_distance(np.array([[2.0, 0.0], [0.2, 0.3]]))[0] < 0.0
+    np.testing.assert_array_equal(asked, [[2.0, 0.0]])

@@ -160,6 +160,11 @@ def test_a_flat_piece_is_all_of_its_plane_only_where_the_domain_is_beside_it(tmp
             np.vstack([TRIANGLES, TRIANGLES + 8]),
             r"domain.file: found facets that cross each other, the first two about \(.*\) and \(",
         ),
+        (
+            np.vstack([CUBE, CUBE + [2.0, 0.0, 0.0]]),
+            np.vstack([TRIANGLES, TRIANGLES + 8]),
+            r"domain.file: found fluid in 2 regions .* about \[0.5, 0.5, 0.5\] and \[2.5, 0.5, 0.5\]; allowed is one",
+        ),
     ],
 )
 def test_surfaces_that_enclose_nothing_sound_are_refused(
@@ -176,6 +181,7 @@ def test_surfaces_that_enclose_nothing_sound_are_refused(
         (None, r"domain.faces: found nothing, and no names in the file for 1 \(12 facets about \(0.5, 0.5, 0.5\)\)"),
         ({"wall": 2}, r"domain.faces.wall: found 2, which is not in the file; allowed is 1 \(12 facets"),
         ({}, r"domain.faces: found no surface for 1"),
+        ({"a\nb": 1}, r"domain.faces: found a surface named 'a\\nb'; allowed is a name without control characters"),
     ],
 )
 def test_facets_without_a_surface_are_refused(tmp_path: Path, faces: dict[str, Any] | None, message: str) -> None:
@@ -185,7 +191,7 @@ def test_facets_without_a_surface_are_refused(tmp_path: Path, faces: dict[str, A
 
 
 @pytest.mark.parametrize("name", ["empty.msh", "empty.vtu", "empty.mesh", "empty.med", "empty.vol", "empty.stl"])
-def test_unreadable_files_are_refused(tmp_path: Path, name: str) -> None:
+def test_unreadable_files_are_refused(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SceneError, match=r"domain.file: found .*allowed is a file that is there"):
         meshed(tmp_path / name)
     (tmp_path / name).touch()
@@ -194,6 +200,7 @@ def test_unreadable_files_are_refused(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text("nonsense\n1 2 3\n")
     with pytest.raises(SceneError, match=r"domain.file: found "):
         meshed(tmp_path / name)
+    assert capsys.readouterr() == ("", "")
 
 
 def test_files_of_another_dimension_or_kind_are_refused(tmp_path: Path, tube: tuple[Mesh, list[str]]) -> None:

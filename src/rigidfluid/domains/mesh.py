@@ -87,8 +87,8 @@ class MeshDomain(Domain):
         parts = boundary.parts
         names = surface_names(parts, options.faces)
         self._names = in_order(names, options.faces)
+        _refuse_crossing(boundary.facets)
         facets = facing_the_fluid(boundary.facets, FIELD)
-        _refuse_crossing(facets)
         piece_of = {part.number: self._names.index(name) for part, name in zip(parts, names, strict=True)}
         markers = np.array([piece_of[number] for number in facets.markers.tolist()], dtype=np.int64)
         self._facets = Facets(facets.points, facets.vertices, markers)

@@ -112,7 +112,7 @@ def _by_meshio(path: Path, dimension: int) -> MeshFile:
         remedy = "Install it: pip install 'rigidfluid[files]'."
         raise SceneError(FIELD, f"{path}, which meshio would read", "a file that can be read here", remedy) from None
     try:
-        with contextlib.redirect_stdout(io.StringIO()):
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the process on some files, and raises anything on others
         raise _unreadable(path, error) from error

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rigidfluid.core.scene.scene import PRINTABLE
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -48,6 +50,8 @@ def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> 
     for name in found:
         if name == "all" or not name:
             raise SceneError(AT, f"a surface named {name!r}", "a name other than 'all'", "Rename it.")
+        if not re.fullmatch(PRINTABLE, name):
+            raise SceneError(AT, f"a surface named {name!r}", "a name without control characters", "Rename it.")
     return found
 
 

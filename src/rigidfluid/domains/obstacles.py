@@ -11,7 +11,7 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.scene.scene import InitialAngle, InitialOrientation, Vector
+from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation, Vector
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.placing import check_orientation, initial_pose
 from rigidfluid.domains.placed import PlacedBody
@@ -27,7 +27,11 @@ class ObstacleTable(PartOptions):
 
     model_config = ConfigDict(extra="allow")
 
-    name: str = Field(default="", description="Name of its surface; `obstacle0`, `obstacle1`, … if not given")
+    name: str = Field(
+        default="",
+        pattern=PRINTABLE,
+        description="Name of its surface; `obstacle0`, `obstacle1`, … if not given",
+    )
     type: str = Field(description="Name of a body type")
     position: Vector = Field(description="Position of the centre of mass [length]")
     angle: InitialAngle = None
@@ -81,9 +85,10 @@ def refuse_overlap(obstacles: dict[str, PlacedBody], surfaces: dict[str, Surface
         names = [*obstacles, *surfaces]
         worst = int(np.argmin(contacts.gap))
         a, b = (int(numbers[worst]) for numbers in (contacts.body_a, contacts.body_b))
+        place, depth = poses[a].position[0].tolist(), abs(contacts.gap[worst])
         raise SceneError(
             f"{AT}.{a}.position",
-            f"{poses[a].position[0].tolist()}, where {names[a]!r} overlaps {names[b]!r} by {-contacts.gap[worst]:.6g}",
+            f"{place}, where {names[a]!r} overlaps {names[b]!r} by {depth:.6g}",
             "a place inside the domain and clear of all other surfaces",
             "Move it, or make it smaller.",
         )

@@ -33,16 +33,23 @@ def facing_the_fluid(facets: Facets, at: str) -> Facets:
     Raises
     ------
     SceneError
-        If a surface is open, branches, or has one side only, with the place.
+        If a surface is open, branches, or has one side only, or if the fluid is in several regions, with the place.
     """
     _refuse_open(facets, at)
     flip, surface = _turned_alike(facets, at)
     facets = _flipped(facets, flip)
+    around: list[FloatArray] = []
     for number in range(int(surface.max()) + 1):
         mine, others = surface == number, surface != number
         outwards = enclosed_volume(facets.points, facets.vertices[mine]) > 0.0
         within = _depth(facets, surface, facets.points[facets.vertices[mine][0, 0]], others)
         facets = _flipped(facets, mine & (outwards == (within % 2 == 0)))
+        if within % 2 == 0:
+            around.append(facets.points[facets.vertices[mine]].mean(axis=(0, 1)))
+    if len(around) > 1:
+        places = " and ".join(str(middle.round(12).tolist()) for middle in around[:2])
+        found = f"fluid in {len(around)} regions apart from each other, the first two about {places}"
+        raise SceneError(at, found, "one region, as pressures of two are not related", "Make a scene of each.")
     return facets
 
 

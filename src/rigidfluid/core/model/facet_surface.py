@@ -172,7 +172,10 @@ class FacetSurface(Surface):
         """Of the nearest point of one facet to each of ``points`` (N, d)."""
         foot = np.einsum("ni,nij->nj", weights, self._points[self._vertices[facet]])
         side = self._side(points, facet, bits)
-        in_fluid = side >= 0 if self._whole is None else (side >= 0) | (self._whole.signed_distance(points) > 0)
+        in_fluid = side >= 0
+        if self._whole is not None and not in_fluid.all():
+            behind = ~in_fluid  # only there may another piece be nearer
+            in_fluid[behind] = self._whole.signed_distance(points[behind]) > 0
         off = np.where(in_fluid[:, None], points - foot, foot - points)
         away = np.linalg.norm(off, axis=1)
         normal = self._faces.normals[facet, bits - 1]

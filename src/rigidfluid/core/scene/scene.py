@@ -14,6 +14,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from rigidfluid.errors import SceneError
 
+PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
+"""What names are: a control character would break the tables and plots that they stand in."""
+
 Positive = Annotated[float, Field(gt=0)]
 Vector = tuple[float, ...]
 # In 2D an angular velocity is one number, which stands for a vector of one component.
@@ -182,7 +185,7 @@ class BodyTable(_OpenTable):
 
     name: str = Field(
         default="",
-        pattern=r"^[^\x00-\x1f\x7f]*$",  # a control character would break the tables and plots that names stand in
+        pattern=PRINTABLE,
         description="Name in the results, without control characters; `body0`, `body1`, … if not given",
     )
     type: str = Field(description="Name of a body type")

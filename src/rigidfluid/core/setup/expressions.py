@@ -177,6 +177,8 @@ class _Reader:
         known = (*self.coordinates, "t", "pi")
         if name in known:
             return lambda names: names[name]
+        if name in _FUNCTIONS:
+            raise self._refusal(node, "a function without arguments", f"Write {name}(…).")
         remedy = suggestion(name, [*known, *_FUNCTIONS]) or f"The names here are {', '.join(known)}."
         raise self._refusal(node, "an unknown name", remedy)
 

@@ -108,16 +108,16 @@ def _check_overlap(scene: Scene, domain: Domain, contacts: Contacts) -> None:
     if len(contacts) == 0 or np.min(contacts.gap) > 0:
         return
     worst = int(np.argmin(contacts.gap))
-    a, b, gap = int(contacts.body_a[worst]), int(contacts.body_b[worst]), float(contacts.gap[worst])
+    a, b, depth = int(contacts.body_a[worst]), int(contacts.body_b[worst]), abs(float(contacts.gap[worst]))
     other = f"surface {_name(scene, domain, b)!r} of the domain"
     if b < len(scene.body):
         other = f"body {_name(scene, domain, b)!r}"
     whole = {table.name for table in scene.mechanism} & {scene.body[a].part_of}
     raise SceneError(
         f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
-        f"{list(scene.body[a].position)}, where body {_name(scene, domain, a)!r} overlaps {other} by {-gap:.6g}",
+        f"{list(scene.body[a].position)}, where body {_name(scene, domain, a)!r} overlaps {other} by {depth:.6g}",
         "a place inside the domain and clear of all other surfaces",
-        f"Move it by more than {-gap:.6g}, or make it smaller.",
+        f"Move it by more than {depth:.6g}, or make it smaller.",
     )
 
 

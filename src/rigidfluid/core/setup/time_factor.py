@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -108,9 +109,13 @@ def read_rows(file: str, at: str) -> Rows:
     """
     allowed, remedy = "a file of lines 'time, value'", "Correct it; start lines of words with #."
     try:
-        rows = np.loadtxt(file, delimiter=",", ndmin=2, encoding="utf-8-sig")
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "loadtxt: input contained no data")  # it is refused below
+            rows = np.loadtxt(file, delimiter=",", ndmin=2, encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         raise SceneError(at, f"{file!r}: {getattr(error, 'strerror', None) or error}", allowed, remedy) from None
+    if not rows.size:
+        raise SceneError(at, f"{file!r} without rows", allowed, remedy)
     if rows.shape[1] != 2 or not np.isfinite(rows).all():
         raise SceneError(at, f"{file!r} with {rows.shape[1]} columns, or infinite values", allowed, remedy)
     if len(rows) > MOST_ROWS:
