@@ -5,6 +5,7 @@ import tracemalloc
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
@@ -130,6 +131,14 @@ def test_resuming_another_scene_is_refused(scene, tmp_path):
     rigidfluid.run(scene, tmp_path)
     with pytest.raises(OutputError, match="body"):
         rigidfluid.run(falling_disk(**SHORT, body={"density": 2.0}), tmp_path, resume=True)
+
+
+def test_a_checkpoint_of_another_version_is_refused(scene, tmp_path):
+    rigidfluid.run(scene, tmp_path)
+    with h5py.File(tmp_path / "state.h5", "a") as file:
+        del file.attrs["format"]
+    with pytest.raises(OutputError, match=r"state.h5: found a checkpoint of format 1; allowed is format 2"):
+        rigidfluid.run(scene, tmp_path, resume=True)
 
 
 def test_a_finished_run_can_be_taken_further(scene, tmp_path):

@@ -27,8 +27,9 @@ class Face:
     def of(
         cls, condition: BoundaryCondition, facets: IntArray, nodes: IntArray, mesh: Mesh, numbering: Numbering
     ) -> Face:
-        """The face of these ``facets``; of one that is not flat they are turned so that their normals are known."""
-        if condition.normal is None:
+        """The face of these ``facets``; of one that is not flat they are turned so that their normals are known, which
+        nobody asks of a wall."""
+        if condition.normal is None and condition.type != "wall":
             facets = into_fluid(facets, mesh.cells, mesh.points)
         return cls(condition, facets, numbering.facet_nodes(facets), nodes)
 

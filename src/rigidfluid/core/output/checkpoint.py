@@ -22,6 +22,9 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
+FORMAT = 2
+"""Of what is in a checkpoint, the backend's memory included; files of others are refused."""
+
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
@@ -52,6 +55,7 @@ def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
+        file.attrs["format"] = FORMAT
         _store(file, checkpoint)
     _staged(path).write_bytes(image.getbuffer())
 
@@ -72,12 +76,19 @@ def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
         raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
     try:
         with h5py.File(path, "r") as file:
+            _refuse_other_formats(path, file)
             checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
     except (OSError, AttributeError, TypeError) as error:
         raise OutputError(
             str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
         ) from error
     return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def _refuse_other_formats(path: Path, file: h5py.File) -> None:
+    found = file.attrs.get("format", 1)
+    if found != FORMAT:
+        raise OutputError(str(path), f"a checkpoint of format {found}", f"format {FORMAT}", "Run without --resume.")
 
 
 def _staged(path: Path) -> Path:
