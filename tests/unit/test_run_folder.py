@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,9 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
+from rigidfluid.core.output.history import History
 from rigidfluid.core.output.run_folder import PICTURES
+from rigidfluid.core.run.run import run as simulate
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import OutputError
 from rigidfluid.reports import report
@@ -83,3 +86,10 @@ def test_a_folder_is_free_when_its_run_has_ended_or_failed(tmp_path: Path) -> No
     simulation.close()
     rigidfluid.run(SCENE, tmp_path)
     rigidfluid.run(SCENE, tmp_path)
+
+
+def test_a_run_whose_folder_vanishes_says_so_and_gives_no_results_that_are_not_summed_up(tmp_path: Path) -> None:
+    out, ends = tmp_path / "out", list[History]()
+    with pytest.raises(OutputError, match=r"out.*a folder that can be written to"):
+        simulate(SCENE, out, progress=lambda now: shutil.rmtree(out, ignore_errors=True), finished=ends.append)
+    assert not ends

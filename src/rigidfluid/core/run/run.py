@@ -75,7 +75,7 @@ def run(
             if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=_status(error))
-                told(simulation.history)
+                    told(simulation.history)
             raise
         simulation.finish(status="complete")
         told(simulation.history)
