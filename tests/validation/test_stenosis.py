@@ -11,7 +11,7 @@ LATE = ("mesh.size_body=2e-4", "time.step=8e-5", "time.end=0.002", "output.every
 INNER, OUTER = 0.00115, 0.001167
 
 
-@pytest.mark.parametrize("first", ["lower", "upper"])
+@pytest.mark.parametrize("first", ["lower", pytest.param("upper", marks=pytest.mark.validation)])
 def test_the_disk_farther_from_the_middle_goes_back_and_lets_the_other_pass(first):
     """Published is the order alone: Li et al., Phys. Rev. E 69 (2004) 031919."""
     second, up, down = ("upper", OUTER, INNER) if first == "lower" else ("lower", INNER, OUTER)
