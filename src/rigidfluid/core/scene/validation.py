@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -131,14 +131,23 @@ def _keys(model: type[BaseModel], complaint: ErrorDetails) -> Location:
     """Where it is in the scene; pydantic also names which of a key's types it has tried."""
     keys: list[int | str] = []
     table: type[BaseModel] | None = model
+    any_key = False
     *inner, last = complaint["loc"] or ("",)
     for part in (*inner, *([] if complaint["type"] == "extra_forbidden" else [last])):
-        if isinstance(part, int):
+        if isinstance(part, int) or any_key:
             keys.append(part)
+            any_key = False
         elif table is not None and part in table.model_fields:
             keys.append(part)
-            table = _table_in(table.model_fields[part].annotation)
+            annotation = table.model_fields[part].annotation
+            table, any_key = _table_in(annotation), _has_any_key(annotation)
     return (*keys, last) if complaint["type"] == "extra_forbidden" else tuple(keys)
+
+
+def _has_any_key(annotation: Any) -> bool:
+    """Whether a value may be a table whose keys are free."""
+    kinds = map(get_origin, (annotation, *get_args(annotation)))
+    return any(inspect.isclass(kind) and issubclass(kind, Mapping) for kind in kinds)
 
 
 def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
