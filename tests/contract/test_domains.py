@@ -68,39 +68,47 @@ class TestStenosis(DomainContract):
 class TestBentTubeFromStep(DomainContract):
     coarse = 0.07
 
-    @pytest.fixture
-    def domain(self, tmp_path):
-        return drawn(bent_tube(), tmp_path)
+    @pytest.fixture(scope="class")
+    @classmethod
+    def domain(cls, tmp_path_factory):
+        folder = tmp_path_factory.mktemp("domain")
+        return drawn(bent_tube(), folder)
 
 
 class TestPlateFromStep(DomainContract):
     coarse = 0.03
 
-    @pytest.fixture
-    def domain(self, tmp_path):
-        return drawn(plate(), tmp_path, 2)
+    @pytest.fixture(scope="class")
+    @classmethod
+    def domain(cls, tmp_path_factory):
+        folder = tmp_path_factory.mktemp("domain")
+        return drawn(plate(), folder, 2)
 
 
 class TestBentTubeFromMesh(DomainContract):
     coarse = 0.1
 
-    @pytest.fixture
-    def domain(self, tmp_path):
-        tube = drawn(bent_tube(), tmp_path)
+    @pytest.fixture(scope="class")
+    @classmethod
+    def domain(cls, tmp_path_factory):
+        folder = tmp_path_factory.mktemp("domain")
+        tube = drawn(bent_tube(), folder)
         mesh = generate_mesh([], nobody(3), tube, 1.0, 1.0, 0.3)
-        write_gmsh41(tmp_path / "tube.msh", mesh, tube.names)
-        return meshed(tmp_path / "tube.msh")
+        write_gmsh41(folder / "tube.msh", mesh, tube.names)
+        return meshed(folder / "tube.msh")
 
 
 class TestPlateFromMesh(DomainContract):
     coarse = 0.1
 
-    @pytest.fixture
-    def domain(self, tmp_path):
-        sheet = drawn(plate(), tmp_path, 2)
+    @pytest.fixture(scope="class")
+    @classmethod
+    def domain(cls, tmp_path_factory):
+        folder = tmp_path_factory.mktemp("domain")
+        sheet = drawn(plate(), folder, 2)
         mesh = generate_mesh([], nobody(2), sheet, 0.4, 0.4, 0.3)
-        write_by_meshio(tmp_path / "plate.med", mesh, sheet.names)
-        return meshed(tmp_path / "plate.med", 2)
+        write_by_meshio(folder / "plate.med", mesh, sheet.names)
+        return meshed(folder / "plate.med", 2)
 
 
 class TestDish(DomainContract):

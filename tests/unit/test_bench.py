@@ -26,6 +26,7 @@ def test_narrow_band_writes_a_row_for_each_band(tmp_path):
     assert all(row["band_elements"] == row["elements"] for row in full)
 
 
+@pytest.mark.validation
 def test_collisions_counts_the_contacts_of_the_paper(tmp_path):
     file = tmp_path / "rows.json"
     result = CliRunner().invoke(app, ["bench", "collisions", "--most-bodies", "25", "--json", str(file)])

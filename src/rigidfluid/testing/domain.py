@@ -20,6 +20,9 @@ _NUDGE = 1e-3
 """Over the size of the domain: of differences, and of a step from the boundary that is surely inside or outside."""
 
 
+_MADE: dict[tuple[type[Domain], int, str, float], tuple[Mesh, Mesh]] = {}
+
+
 class DomainContract:
     """Geometry of the surfaces, and that meshes made from the CAD shape, or the facets, are of the same domain.
 
@@ -42,8 +45,11 @@ class DomainContract:
 
     @pytest.fixture
     def meshes(self, domain: Domain) -> tuple[Mesh, Mesh]:
-        """A coarse one and a fine one."""
-        return _mesh(domain, self.coarse), _mesh(domain, 0.5 * self.coarse)
+        """A coarse one and a fine one, made once for all tests of a domain."""
+        key = type(domain), domain.dimension, domain.options.model_dump_json(), self.coarse
+        if key not in _MADE:
+            _MADE[key] = _mesh(domain, self.coarse), _mesh(domain, 0.5 * self.coarse)
+        return _MADE[key]
 
     def test_names_are_names(self, domain: Domain) -> None:
         """Each piece has one of its own, and none is `all`."""
