@@ -10,8 +10,17 @@ from fluid_contacts import created_and_lost
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 
+NAMES = {case.name for case in CASES}
+
+
+def is_long(case: Case) -> bool:
+    """Heavy, or a shorter step of a case that is also there with the longest, where most is lost."""
+    stem, _, step = case.name.rpartition(", Δt ")
+    return case.heavy or (step in ("1 ms", "2 ms") and f"{stem}, Δt 4 ms" in NAMES)
+
+
 LIGHT_AND_HEAVY = [
-    pytest.param(case, id=case.name, marks=[pytest.mark.validation] if case.heavy else []) for case in CASES
+    pytest.param(case, id=case.name, marks=[pytest.mark.validation] if is_long(case) else []) for case in CASES
 ]
 GAINED = "energy created"
 HOLDS, FAILS = (Finding(GAINED, "energy created at most 0.01", "0.02", passed) for passed in (True, False))
