@@ -9,6 +9,7 @@ import numpy as np
 from rigidfluid.core.model.facet_faces import faces_of, unit
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.ridges import Ridges, ridges_of
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 _FLAT = 1e-9
@@ -49,8 +50,8 @@ def _features(facets: Facets) -> Features:
     points, vertices = facets.points, facets.vertices
     dimension = points.shape[1]
     faces = faces_of(points, vertices)
-    ahead = np.concatenate([vertices[:, [i, (i + 1) % dimension]] for i in range(dimension)])
-    edges = np.unique(np.sort(ahead, axis=1), axis=0)
+    ridges = ridges_of(vertices)
+    edges = ridges.corners if dimension == 3 else np.unique(np.sort(vertices, axis=1), axis=0)
     normals = np.zeros_like(points)
     normals[vertices] = faces.normals[:, [0, 1, 3][:dimension]]
     both_ways = np.concatenate([edges, edges[:, ::-1]])
@@ -61,28 +62,23 @@ def _features(facets: Facets) -> Features:
     if dimension == 2:
         none = np.empty((0, 2))
         return Features(corners, normals[corners], none.astype(np.int64), none, none.reshape(0, 2, 2), edges)
-    mean, downhill = _sides(points, vertices, edges)
+    mean, downhill = _sides(points, vertices, ridges)
     sharp = np.flatnonzero(np.all(np.einsum("esk,ek->es", downhill, mean) < -_FLAT, axis=1))
     return Features(corners, normals[corners], edges[sharp], mean[sharp], downhill[sharp], edges)
 
 
-def _sides(points: FloatArray, vertices: IntArray, edges: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Mean unit normals (E, 3) of the facets at ``edges`` (E, 2), and unit directions (E, 2, 3) across the edge into
-    them, zero where an edge has one facet alone."""
-    ends = np.sort(np.concatenate([vertices[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
-    opposite = np.concatenate([vertices[:, (i + 2) % 3] for i in range(3)])
-    at = np.searchsorted(_keys(edges, len(points)), _keys(ends, len(points)))
-    mean = np.zeros((len(edges), 3))
+def _sides(points: FloatArray, vertices: IntArray, ridges: Ridges) -> tuple[FloatArray, FloatArray]:
+    """Mean unit normals (E, 3) of the facets at the ``ridges``, and unit directions (E, 2, 3) across each into them,
+    zero where it has one facet alone."""
+    at = ridges.number.T.ravel()
+    ends, opposite = ridges.corners[at], np.roll(vertices, -2, axis=1).T.ravel()
+    mean = np.zeros((len(ridges.corners), 3))
     np.add.at(mean, at, np.tile(unit(area_vectors(points, vertices)), (3, 1)))
     along = unit(points[ends[:, 1]] - points[ends[:, 0]])
     away = points[opposite] - points[ends[:, 0]]
     across = unit(away - np.sum(away * along, axis=1)[:, None] * along)
     order = np.argsort(at, kind="stable")
     second = np.append(False, at[order][1:] == at[order][:-1]).astype(np.int64)
-    downhill = np.zeros((len(edges), 2, 3))
+    downhill = np.zeros((len(mean), 2, 3))
     downhill[at[order], second] = across[order]
     return unit(mean), downhill
-
-
-def _keys(edges: IntArray, points: int) -> IntArray:
-    return np.asarray(edges[:, 0] * points + edges[:, 1])

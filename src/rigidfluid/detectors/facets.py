@@ -11,6 +11,7 @@ import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
@@ -78,7 +79,8 @@ class FacetDetector(Detector):
                 _refuse(self.name, f"the wall {wall.name!r}", "walls that are flat, round or of facets")
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
-        self._solids = [None if body.facets is None else _Solid(FacetSurface(body.facets)) for body in bodies]
+        solids = {shape_key(body): _Solid(FacetSurface(body.facets)) for body in bodies if body.facets is not None}
+        self._solids = [solids.get(shape_key(body)) for body in bodies]
         self._fixed = {wall.surface: _fixed(wall.shape) for wall in walls}
         smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
         self._smooth = np.array(smooth, dtype=np.int64)

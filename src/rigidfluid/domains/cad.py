@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.mesh.meshing import sides, surfaces_of
+from rigidfluid.core.mesh.meshing import netgen_mesh, sides, surfaces_of
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
@@ -21,13 +21,16 @@ from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.domains.planes import plane_around
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import MeshError, SceneError
 
 _FACETS = 30
 """Facets along the longest side of the domain, at least, by which faces are found."""
 
 _FACETS_PER_RADIUS = 8.0
 """And along a radius of curvature."""
+
+_GROWTH = 0.3
+"""Of facets away from where they are small."""
 
 _SAME = 1e-9
 """Areas and distances that differ by less, relatively, are equal."""
@@ -180,26 +183,18 @@ def _part(number: int, side: Any) -> Part:
 
 def _fine_facets(shape: Any, dimension: int) -> Facets:
     """Facets marked by the number of their face, from 0."""
-    from netgen import meshing, occ
-
     low, high = shape.bounding_box
     size = max(high.x - low.x, high.y - low.y, high.z - low.z)
     for number, side in enumerate(sides(shape, dimension)):
         side.name = str(number)
-    step = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
-    verbosity = meshing.SetMessageImportance(0)
     try:
-        parameters = meshing.MeshingParameters(
-            maxh=size / _FACETS, curvaturesafety=_FACETS_PER_RADIUS, perfstepsend=step, parallel_meshing=False
+        made = netgen_mesh(
+            shape, dimension, size / _FACETS, _GROWTH, surfaces_alone=True, per_radius=_FACETS_PER_RADIUS
         )
-        made = occ.OCCGeometry(shape, dim=dimension).GenerateMesh(parameters)
-    except (occ.OCCException, meshing.NgException, RuntimeError) as error:
-        found = f"a shape that Netgen cannot mesh ({str(error).strip()})"
-        raise SceneError(
-            "domain.file", found, "a closed shape without gaps", "Repair it where it was drawn."
-        ) from error
-    finally:
-        meshing.SetMessageImportance(verbosity)
+    except MeshError as error:
+        found = f"a shape that Netgen cannot mesh ({str(error.__cause__).strip()})"
+        remedy = "Repair it where it was drawn."
+        raise SceneError("domain.file", found, "a closed shape without gaps", remedy) from error
     mesh = surfaces_of(made, dimension)
     used, compact = np.unique(mesh.facets, return_inverse=True)
     return Facets(mesh.points[used], compact.reshape(mesh.facets.shape).astype(np.int64), mesh.markers)

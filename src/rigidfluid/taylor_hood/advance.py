@@ -55,10 +55,13 @@ def advance(
         "position_previous": fluid["position"],
     }
     at = matrix.node_points
-    d0, _, d2 = step.derivative
-    # Written so that it is zero to the last bit where nothing moves.
-    moved, moved_before = points - before, before - fluid["points_previous"]
-    mesh_velocity = discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
+
+    def mesh_velocity() -> FloatArray:
+        """Written so that it is zero to the last bit where nothing moves."""
+        d0, _, d2 = step.derivative
+        moved, moved_before = points - before, before - fluid["points_previous"]
+        return discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
+
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
@@ -26,21 +28,22 @@ def face_power(
     inert_density: float,
     node_points: FloatArray,
     velocity: FloatArray,
-    mesh_velocity: FloatArray,
+    mesh_velocity: Callable[[], FloatArray],
     pressure_load: FloatArray,
     reaction: FloatArray,
 ) -> float:
     """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
 
     The normal n points into the fluid: what flows in is (u - w)·n, with the ``mesh_velocity`` w (nodes, d) of a face
-    that moves. With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have
-    there.
+    that moves, which is asked for where there are such faces. With several processes the load and the ``reaction``
+    (nodes, d) at a node are the sums of what they have there.
     """
     held = surfaces.dirichlet_nodes
     power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))
     energy = 0.5 * inert_density * np.sum(velocity**2, axis=1)
-    for face in surfaces.faces:
-        if inert_density > 0.0 and face.condition.type in ("pressure", "velocity"):
-            inflow = face.inflow(node_points, velocity - mesh_velocity)
-            power += float(np.sum(energy[face.facet_nodes] * inflow))
+    passed = [face for face in surfaces.faces if face.condition.type in ("pressure", "velocity")]
+    if inert_density > 0.0 and passed:
+        relative = velocity - mesh_velocity()
+        for face in passed:
+            power += float(np.sum(energy[face.facet_nodes] * face.inflow(node_points, relative)))
     return float(surfaces.ranks.sum(power))

@@ -84,11 +84,11 @@ class Surfaces:
             for face in self.faces:
                 if face.condition.type == "velocity" and face.condition.value is not None:
                     velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
-        walls = [face for face in self.faces if face.condition.type == "wall"]
-        # where two meet, the one at rest holds the fluid
-        for face in sorted(walls, key=lambda wall: wall.condition.value is None):
-            value = face.condition.value
-            velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
+            walls = [face for face in self.faces if face.condition.type == "wall"]
+            # where two meet, the one at rest holds the fluid
+            for face in sorted(walls, key=lambda wall: wall.condition.value is None):
+                value = face.condition.value
+                velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(time, velocity, node_points)
         self.move_with_bodies(velocity, node_points, position, twist, controlled)

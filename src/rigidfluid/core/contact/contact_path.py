@@ -12,7 +12,7 @@ from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
-from rigidfluid.core.contact.substep import Plan, Reach, middle, plan, relative_motion, relative_velocity
+from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
@@ -28,7 +28,7 @@ from rigidfluid.core.mechanics.motions import (
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import CarriedState, FreeMotions, State

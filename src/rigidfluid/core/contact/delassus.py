@@ -7,6 +7,7 @@ from scipy import sparse
 
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import moment
+from rigidfluid.core.model.contacts import middle
 from rigidfluid.core.model.types import Contacts
 
 
@@ -36,7 +37,7 @@ def _gap_rates(contacts: Contacts, movement: BodyDynamics) -> sparse.csr_matrix:
     position = movement.pose.position
     count, dimension = position.shape
     width = dimension + movement.twist.angular_velocity.shape[1]
-    point = 0.5 * (contacts.point_a + contacts.point_b)
+    point = middle(contacts)
     rows, columns, opening = [], [], []
     for sign, body in ((1.0, contacts.body_a), (-1.0, contacts.body_b)):
         which = np.flatnonzero(body < count)

@@ -10,9 +10,10 @@ import numpy as np
 
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
-from rigidfluid.core.contact.substep import middle, relative_motion
+from rigidfluid.core.contact.substep import relative_motion
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
+from rigidfluid.core.model.contacts import middle
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Wrench
 from rigidfluid.core.model.wall import WallVelocities

@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.core.contact.stiffness import greatest_stiffness, on_the_way
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import cross
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
@@ -247,11 +247,6 @@ def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArra
     on_body = contacts.body_b < len(pose.position)
     velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
     return velocity
-
-
-def middle(contacts: Contacts) -> FloatArray:
-    """Half-way between the contact points, (m, d) [length]."""
-    return np.asarray(0.5 * (contacts.point_a + contacts.point_b))
 
 
 def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray) -> FloatArray:

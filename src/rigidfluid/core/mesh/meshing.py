@@ -149,16 +149,20 @@ def netgen_mesh(
     growth: float,
     finer: Sequence[tuple[FloatArray, float]] = (),
     surfaces_alone: bool = False,
+    per_radius: float | None = None,
 ) -> Any:
-    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone."""
+    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone; edges ``per_radius`` of curvature are Netgen's
+    own choice if not given."""
     from netgen import meshing, occ
 
     surfaces = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
-    until = {"perfstepsend": surfaces} if surfaces_alone else {}
+    rules: dict[str, Any] = {"perfstepsend": surfaces} if surfaces_alone else {}
+    if per_radius is not None:
+        rules["curvaturesafety"] = per_radius
     verbosity = meshing.SetMessageImportance(0)
     try:
         geometry = occ.OCCGeometry(shape, dim=dimension)
-        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **until)
+        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **rules)
         for point, length in finer:
             parameters.RestrictH(*in_space(point), h=float(length))
         return geometry.GenerateMesh(parameters)

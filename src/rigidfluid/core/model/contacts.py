@@ -1,4 +1,4 @@
-"""Rows of contacts: a choice of them, and several parts in one, sorted."""
+"""Rows of contacts: a choice of them, several parts in one, sorted, and their middles."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, Contacts, IntArray
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray
 
 
 def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
@@ -47,3 +47,8 @@ def in_order(parts: Sequence[Contacts]) -> Contacts:
     """
     merged = joined(parts)
     return select(merged, np.lexsort((merged.body_b, merged.body_a)))
+
+
+def middle(contacts: Contacts) -> FloatArray:
+    """Half-way between the contact points, (m, d) [length]."""
+    return np.asarray(0.5 * (contacts.point_a + contacts.point_b))

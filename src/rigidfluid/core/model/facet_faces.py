@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.model.facets import area_vectors
+from rigidfluid.core.model.ridges import ridges_of
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 _VERTICES = np.array([0, 1, 3])
-_EDGES = np.array([2, 4, 5])
-_EDGE_ENDS = np.array([[0, 1], [0, 2], [1, 2]])
-"""Bits (less one) of the corners of a facet's vertices and edges, and the ends of the edges."""
+_EDGES = np.array([2, 5, 4])
+"""Bits (less one) of the corners of a facet's vertices, and of its edges in the order of its ridges."""
 
 
 class Faces(NamedTuple):
@@ -37,10 +37,9 @@ def faces_of(points: FloatArray, vertices: IntArray) -> Faces:
     edges = 0
     if dimension == 3:
         weight[:, _VERTICES] = _angles(points[vertices])
-        ends = np.sort(vertices[:, _EDGE_ENDS], axis=2).reshape(-1, 2)
-        found, number = np.unique(ends, axis=0, return_inverse=True)
-        edges = len(found)
-        numbers[:, _EDGES] = len(points) + number.reshape(-1, 3)
+        ridges = ridges_of(vertices)
+        edges = len(ridges.corners)
+        numbers[:, _EDGES] = len(points) + ridges.number
     numbers[:, -1] = len(points) + edges + np.arange(count)
     total = np.zeros((len(points) + edges + count, dimension))
     np.add.at(total, numbers, weight[:, :, None] * unit(area_vectors(points, vertices))[:, None])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.mechanics.rigid import cross
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Motion
@@ -72,7 +72,7 @@ def _wall_forces(system: System, state: State) -> FloatArray:
     body = near.body_a
     pushed = system.law.force(near)
     if system.law.dissipative:
-        arm = 0.5 * (near.point_a + near.point_b) - state.pose.position[body]
+        arm = middle(near) - state.pose.position[body]
         velocity = state.twist.velocity[body] + cross(state.twist.angular_velocity[body], arm)
         pushed = pushed + system.law.damping(near, Motion(velocity, system.mass[body]))
     normal_force = np.sum(pushed * near.normal, axis=1)
