@@ -88,11 +88,10 @@ def main(context: typer.Context, version: Version = False) -> None:
     elif context.invoked_subcommand is None:
         _print(context.get_help())
     elif LAUNCH.size > 1 and context.invoked_subcommand != "run":
-        _complain(
-            f"Error: rigidfluid {context.invoked_subcommand}: found {LAUNCH.size} processes; allowed is one. "
+        raise _refusal(
+            f"rigidfluid {context.invoked_subcommand}: found {LAUNCH.size} processes; allowed is one. "
             "Start it without mpirun; only `rigidfluid run` can be shared."
         )
-        raise typer.Exit(BAD_INPUT)
 
 
 @app.command()
@@ -266,8 +265,7 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
     try:
         yield
     except RigidfluidError as error:
-        _complain(f"Error: {error}")
-        raise typer.Exit(BAD_INPUT) from None
+        raise _refusal(error) from None
     except KeyboardInterrupt:
         _complain(f"Interrupted. {on_interrupt}")
         LAUNCH.end()
@@ -543,6 +541,12 @@ def _figure(value: Any) -> str:
     if hasattr(value, "__iter__"):
         return f"({', '.join(map(_figure, value))})"
     return f"{value:.4g}"
+
+
+def _refusal(reason: object) -> typer.Exit:
+    _complain(f"Error: {reason}")
+    LAUNCH.meet()
+    return typer.Exit(BAD_INPUT)
 
 
 def _print(text: str, style: str = "") -> None:

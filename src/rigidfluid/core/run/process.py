@@ -8,6 +8,7 @@ import re
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ _VARIABLES = (
     ("PMI_RANK", "PMI_SIZE"),  # MPICH's and Intel's mpiexec (Hydra), and srun with PMI-2
     ("SLURM_PROCID", "SLURM_STEP_NUM_TASKS"),  # srun with PMIx; a batch script itself has no number of tasks of a step
 )
+
+_PATIENCE = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +47,20 @@ class Launch:
             except ImportError:
                 return  # then nobody waits
             MPI.COMM_WORLD.Abort(1)
+
+    def meet(self) -> None:
+        """Wait for all processes, a few seconds at most: the launcher ends them all when the first one fails.
+
+        The root may then not yet have said why.
+        """
+        if self.size > 1:
+            try:
+                from mpi4py import MPI
+            except ImportError:
+                return
+            met, until = MPI.COMM_WORLD.Ibarrier(), time.monotonic() + _PATIENCE
+            while not met.Test() and time.monotonic() < until:
+                time.sleep(0.01)
 
 
 @contextmanager
