@@ -9,6 +9,7 @@ from typing import Protocol
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall, WallVelocities
 from rigidfluid.core.model.window import Window
@@ -57,6 +58,7 @@ class System:
     ``controlled_pose(time)``.
     ``mechanisms``: which motions carry the bodies, None where each moves by itself; twists and poses that are given are
     then the motions'.
+    ``linkage``: joints, held directions and springs of the motions, None where there are none.
     ``window``: the part of the domain that is meshed, None where all is.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
     ``interactions``: the laws with the contacts that they act in; ``law``: all of them together, None where there are
@@ -94,6 +96,7 @@ class System:
     implicit: bool
     mechanisms: Mechanisms | None = None
     window: Window | None = None
+    linkage: Linkage | None = None
 
     @property
     def controlled_motions(self) -> BoolArray:

@@ -195,6 +195,22 @@ class Kinematics:
 
 
 @dataclass(frozen=True, slots=True)
+class Links:
+    """What holds N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ force acts on
+    them.
+
+    ``rows`` (c, N, d+k): C, zero for motions of given twist; ``rate`` (c,): at which a link is driven, less what given
+    motion has of it [length/time | rad/time]; ``compliance`` (c,): 1/c of a damper, 0 where a link is rigid
+    [length/(force·time) | rad/(force·length·time)]. The links' power on the motions is force · rate less
+    compliance · force².
+    """
+
+    rows: FloatArray
+    rate: FloatArray
+    compliance: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
@@ -242,6 +258,7 @@ class Step:
     What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
     convects; it is zero but for steps in which contacts turn bodies around.
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
+    ``links``: what else holds the motions at the new time; None where nothing does.
     """
 
     time: float
@@ -258,6 +275,7 @@ class Step:
     turning: FloatArray
     kinematics: Kinematics | None = None
     provisional: bool = False
+    links: Links | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,6 +299,7 @@ class Advance:
     ``hydrodynamic_wrench`` is the fluid's force and torque on each body alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
+    ``link_force`` (c,): of the step's links; None without any [force | force·length].
     """
 
     fluid: FluidState
@@ -290,6 +309,7 @@ class Advance:
     dissipation: float
     dissipation_midway: float
     boundary_power: float
+    link_force: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)

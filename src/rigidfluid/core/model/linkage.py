@@ -1,0 +1,75 @@
+"""What joins motions to each other and to the ground: joints, held directions, springs and dampers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Wrench
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """Two bodies that are joined at a point: a ``rod`` leaves no relative motion, a ``hinge`` a rotation.
+
+    ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
+    [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
+    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness`` times
+    (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate [force·length·time/rad]; or
+    it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
+    """
+
+    name: str
+    type: Literal["rod", "hinge"]
+    first: int
+    second: int | None
+    at: FloatArray
+    axis: FloatArray | None = None
+    stiffness: float = 0.0
+    rest_angle: float = 0.0
+    damping: float = 0.0
+    drive: Callable[[float], tuple[float, float]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GroundLink:
+    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero; on
+    the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of space.
+
+    Rotations in 3D are those about the axes: their displacement is the rotation vector.
+    """
+
+    name: str
+    body: int
+    held: BoolArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+
+class Linkage(Protocol):
+    """The joints of a system on its N motions.
+
+    ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
+    or to the ground alone, its own number. ``linked`` (N,): which motions have links at all. ``frequency``: of the
+    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time].
+    """
+
+    clusters: IntArray
+    linked: BoolArray
+    frequency: float
+
+    def links(self, motions: Pose, time: float) -> Links:
+        """C, rates and compliances, where the ``motions`` are there."""
+
+    def closed(self, motions: Pose, time: float) -> Pose:
+        """The nearest poses at which the joints fit exactly, each motion moved the less the more mass it has."""
+
+    def misfit(self, motions: Pose, time: float) -> FloatArray:
+        """By how much rigid links do not fit, a row for each [length | rad]."""
+
+    def spring_wrench(self, motions: Pose, time: float) -> Wrench:
+        """Of springs on the motions, N rows."""
+
+    def spring_energy(self, motions: Pose, time: float) -> float:
+        """Stored in springs [energy]."""
