@@ -36,7 +36,7 @@ class Joint:
 class GroundLink:
     """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
 
-    On the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of space.
+    On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
     Rotations in 3D are those about the axes: their displacement is the rotation vector.
     """
 
