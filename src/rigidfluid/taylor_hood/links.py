@@ -15,7 +15,7 @@ _ANSWER_TOLERANCE = 1e-6
 """Of the answers: so much of what is missing is left after each round."""
 
 _FIT = 1e-9
-"""Of the velocities in a link, what they may miss."""
+"""Of the velocities, what they may miss in links: by the power that would mend them, which all units share."""
 
 _MOST_ROUNDS = 4
 _TOO_WRONG = 1e-4
@@ -59,9 +59,9 @@ def solve_linked(
     answers = discretisation.twists_by(system.matrix, np.moveaxis(rows, 0, -1), _ANSWER_TOLERANCE)
     compliance = np.tensordot(rows, answers, axes=2) + np.diag(links.compliance)
     missing = _missing(links, solution, force)
-    scale = np.tensordot(np.abs(rows), np.abs(solution.twist), axes=2) + np.abs(links.rate)
+    scale = _power(compliance, missing) + _power_of_motions(system, solution)
     for _ in range(_MOST_ROUNDS):
-        if np.all(np.abs(missing) <= max(_FIT, tolerance) * scale):
+        if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
             break
         force = force + np.linalg.solve(compliance, missing)
         body_load = system.body_load + np.tensordot(force, rows, axes=1)
@@ -69,11 +69,11 @@ def solve_linked(
         linked = replace(system, body_load=body_load, velocity=velocity, pressure=pressure, twist=twist, again=True)
         solution = discretisation.solve(linked, tolerance)
         missing = _missing(links, solution, force)
-    if np.any(np.abs(missing) > _TOO_WRONG * scale):
+    if _power(compliance, missing) > _TOO_WRONG**2 * scale:
         raise StepRejected(
             "joints",
             f"velocities that miss by {np.abs(missing).max():.3g}",
-            f"at most {_TOO_WRONG:g} of them",
+            f"at most {_TOO_WRONG:g} of what joints change",
             "Shorten time.step, or lower fluid.tolerance.",
         )
     return solution, force
@@ -81,3 +81,16 @@ def solve_linked(
 
 def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
     return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
+
+
+def _power(compliance: FloatArray, missing: FloatArray) -> float:
+    """Of the forces that would mend it [energy/time]."""
+    return float(missing @ np.linalg.solve(compliance, missing))
+
+
+def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
+    """Of inertia and load [energy/time]."""
+    free = ~system.matrix.controlled
+    twist, load = solution.twist[free], system.body_load[free]
+    inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))
+    return inertia + float(np.sum(np.abs(load * twist)))
