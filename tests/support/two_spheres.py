@@ -1,7 +1,7 @@
 """Exact rotation in Stokes flow of two equal spheres on a rigid rod that the fluid does not feel.
 
-The director p of the pair turns as ṗ = W·p + r (E·p - (p·E·p) p), W and E the spin and strain of the undisturbed flow: the
-pair has the symmetries of a body of revolution, and r alone is its own (Bretherton, J. Fluid Mech. 14 (1962) 284,
+The director p of the pair turns as ṗ = W·p + r (E·p - (p·E·p) p), W and E the spin and strain of the undisturbed flow:
+the pair has the symmetries of a body of revolution, and r alone is its own (Bretherton, J. Fluid Mech. 14 (1962) 284,
 doi:10.1017/S002211206200124X). Where the flow is u = γ y along x, the angle φ of p from the x-axis turns at
 
     dφ/dt = -γ (A sin²φ + B cos²φ),   A = (1 + r)/2,   B = (1 - r)/2,
@@ -13,8 +13,8 @@ fluid's disturbance is Lamb's solution outside each sphere (Kim & Karrila, Micro
 
     u = Σₙ ∇×(r χₙ) + ∇Φₙ - (n-2)/(2n(2n-1)) r² ∇pₙ + (n+1)/(n(2n-1)) r pₙ,   viscosity 1,
 
-pₙ and Φₙ multiples of r^(-n-1) Pₙ¹(cos θ) cos φ, χₙ of the same with sin φ; the force on a sphere is -4π ∇(r³ p₁) and the
-torque -8π ∇(r³ χ₁). All coefficients and r follow by least squares on one sphere; the other has the same, mirrored.
+pₙ and Φₙ multiples of r^(-n-1) Pₙ¹(cos θ) cos φ, χₙ of the same with sin φ; the force on a sphere is -4π ∇(r³ p₁) and
+the torque -8π ∇(r³ χ₁). All coefficients and r follow by least squares on one sphere; the other has the same, mirrored.
 """
 
 from __future__ import annotations
