@@ -10,11 +10,11 @@ import numpy as np
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
+from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
-from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
@@ -78,6 +78,8 @@ def build_system(scene: Scene) -> System:
     linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried)
     if linkage is not None:
         started = linkage.fitting(start, started, 0.0)
+    if carried is not None:
+        carried.twist = started
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = _together(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
@@ -138,7 +140,7 @@ def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
     )
 
 
-def _together(carried: CarriedBodies | None, linkage: Linkage | None, rows: FloatArray) -> FloatArray:
+def _together(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
     """For each body the sum of ``rows`` (n, …) over all that a motion or joints let move with it: at most that is what
     it meets something with."""
     if carried is None and linkage is None:

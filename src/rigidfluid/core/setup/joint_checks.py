@@ -62,13 +62,10 @@ def _check_free(body: BodyTable, dimension: int, at: str) -> None:
         raise SceneError(f"{at}.free", f"{given}, which holds nothing", "some of them", "Leave `free` out.")
     if not given:
         raise SceneError(f"{at}.free", "none", "one direction or more", "Set `fixed = true` in its place.")
-    moves = dict(zip(names, (*(body.velocity or ()), *(body.angular_velocity or ())), strict=False))
-    if body.velocity is None:
-        moves = dict(zip(names[dimension:], body.angular_velocity or (), strict=False))
-    for name, speed in moves.items():
-        if name not in given and speed != 0.0:
-            key = "velocity" if name in names[:dimension] else "angular_velocity"
-            raise SceneError(f"{at}.{key}", f"{speed:g} along {name!r}, which is held", "0 there", "Set it to 0.")
+    for key, part in (("velocity", names[:dimension]), ("angular_velocity", names[dimension:])):
+        for held, speed in zip(part, getattr(body, key) or (), strict=False):
+            if held not in body.free and speed != 0.0:
+                raise SceneError(f"{at}.{key}", f"{speed:g} along {held!r}, which is held", "0 there", "Set it to 0.")
 
 
 def _check_spring(body: BodyTable, dimension: int, at: str) -> None:

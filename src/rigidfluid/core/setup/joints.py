@@ -9,13 +9,13 @@ import numpy as np
 
 from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions
 from rigidfluid.core.setup.strokes import build_stroke, with_rows
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.mechanics.strokes import Stroke
-    from rigidfluid.core.model.linkage import Linkage
     from rigidfluid.core.model.system import Mechanisms
     from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose
     from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
@@ -32,7 +32,7 @@ def build_linkage(
     controlled: BoolArray,
     controlled_twist: Callable[[float], FloatArray],
     mechanisms: Mechanisms | None,
-) -> Linkage | None:
+) -> JointLinkage | None:
     """What links the motions of a scene, None where nothing does.
 
     Parameters
@@ -52,7 +52,7 @@ def build_linkage(
 
     Returns
     -------
-    Linkage or None
+    JointLinkage or None
         As they are at the start.
 
     Raises
@@ -92,14 +92,14 @@ def _is_held(body: BodyTable) -> bool:
 
 
 def _ground_link(body: BodyTable, number: int, dimension: int) -> GroundLink:
-    spring = body.spring
+    spring = body.spring or SpringTable()
     return GroundLink(
         name=body.name,
         body=number,
         held=held_directions(body, dimension),
-        stiffness=_along(dimension, spring and spring.stiffness, spring and spring.angular_stiffness),
-        damping=_along(dimension, spring and spring.damping, spring and spring.angular_damping),
-        rest=None if spring is None or spring.rest is None else np.array(spring.rest),
+        stiffness=_along(dimension, spring.stiffness, spring.angular_stiffness),
+        damping=_along(dimension, spring.damping, spring.angular_damping),
+        rest=None if spring.rest is None else np.array(spring.rest),
     )
 
 
@@ -134,7 +134,7 @@ def _followed(stroke: Stroke) -> Callable[[float], tuple[float, float]]:
     return lambda time: (stroke.value(time), stroke.rate(time))
 
 
-def _check_step(scene: Scene, linkage: Linkage) -> None:
+def _check_step(scene: Scene, linkage: JointLinkage) -> None:
     turn = linkage.frequency * scene.time.step
     if turn > LONGEST_TURN:
         found = f"{scene.time.step:g}, in which the stiffest spring turns by {turn:.3g} rad"
