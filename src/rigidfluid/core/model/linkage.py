@@ -15,9 +15,9 @@ class Joint:
 
     ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
-    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness`` times
-    (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate [force·length·time/rad]; or
-    it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
+    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness``
+    times (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate
+    [force·length·time/rad]; or it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
     """
 
     name: str
@@ -34,8 +34,9 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class GroundLink:
-    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero; on
-    the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of space.
+    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero;
+    on the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of
+    space.
 
     Rotations in 3D are those about the axes: their displacement is the rotation vector.
     """
@@ -52,12 +53,14 @@ class Linkage(Protocol):
 
     ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
     or to the ground alone, its own number. ``linked`` (N,): which motions have links at all. ``frequency``: of the
-    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time].
+    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time]. ``driven``: whether
+    anything moves as it is told, so that rates and the power of springs may not be zero.
     """
 
     clusters: IntArray
     linked: BoolArray
     frequency: float
+    driven: bool
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""
@@ -68,8 +71,14 @@ class Linkage(Protocol):
     def misfit(self, motions: Pose, time: float) -> FloatArray:
         """By how much rigid links do not fit, a row for each [length | rad]."""
 
+    def tolerance(self, motions: Pose) -> FloatArray:
+        """Misfits that are rounding there, a row for each [length | rad]."""
+
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Of springs on the motions, N rows."""
 
     def spring_energy(self, motions: Pose, time: float) -> float:
         """Stored in springs [energy]."""
+
+    def spring_power(self, motions: Pose, time: float) -> float:
+        """Of what moves bodies as they are told, against springs [energy/time]."""
