@@ -17,7 +17,8 @@ class Joint:
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
     from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
     (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
-    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free.
+    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free. ``next_corner(time)``: when the rate
+    jumps after that, infinite if never; None where there are no such times.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Joint:
     rest_angle: float = 0.0
     damping: float = 0.0
     drive: Callable[[float], tuple[float, float]] | None = None
+    next_corner: Callable[[float], float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,9 @@ class Linkage(Protocol):
     linked: BoolArray
     frequency: float
     driven: bool
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""

@@ -164,8 +164,10 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger
-    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=system.controlled_twist(time))
-    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before).control))
+    motions, held = state.free_pose, system.controlled_twist(time)
+    links = None if step.links is None or system.linkage is None else system.linkage.links(motions, time)
+    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
+    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
