@@ -195,9 +195,10 @@ def _advance_coupled(
     system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
 ) -> BodyStep:
     motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
-    movement: BodyDynamics = motions
+    linked: MotionDynamics = motions if system.linkage is None else JointedDynamics(motions, system.linkage, start)
+    movement: BodyDynamics = linked
     if system.mechanisms is not None:
-        movement = ComponentDynamics(motions, system.mechanisms, start)
+        movement = ComponentDynamics(linked, system.mechanisms, start)
     if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
         motions.vary_load(size)
     if system.implicit:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 from scipy import sparse
@@ -92,6 +93,7 @@ class JointLinkage:
         self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
         lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
         self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
+        self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
         self.linked, self.clusters = self._linked(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
@@ -101,6 +103,10 @@ class JointLinkage:
         refuse_void(self._constraints, self._carrier, self._controlled)
         refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
         self.frequency = self._greatest_frequency(start)
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
+        return min((corner(time) for corner in self._corners), default=inf)
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""
