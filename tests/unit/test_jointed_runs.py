@@ -72,25 +72,21 @@ def test_a_double_pendulum_keeps_its_energy_to_second_order():
 
 
 def test_the_period_of_a_physical_pendulum():
-    """2π √(I/(m g l)) for small angles; 400 steps are a quarter of it."""
-    given = bar(2.0, 1.4, angle=0.5 * np.pi, name="it")
-    it = Simulation(linked_scene([given], [hinge("it", at=[2.0, 2.0])], gravity=[1e-3, -0.999999], end=4.0, step=1e-2))
-    mass, inertia, lever = it.system.mass[0], it.system.inertia[0, 0, 0], 0.6
+    """2π √(I/(m g l)) for small angles: gravity pulls aside by .005, so that it swings to .01 in half of it."""
+    mass, inertia, lever = 0.0125 * np.pi, 0.0125 * np.pi * (0.25**2 + 0.05**2) / 4.0, 0.6
     period = 2.0 * np.pi * np.sqrt((inertia + mass * lever**2) / (mass * lever))
-    size = period / 800.0
-    it = Simulation(
-        linked_scene([given], [hinge("it", at=[2.0, 2.0])], gravity=[5e-3, -1.0], end=size * 450, step=size)
-    )
-    it.go()
-    times, angle = it.history.bodies["t"], it.history.bodies["angle"] - 0.5 * np.pi
-    turn = int(np.argmax(angle))
-    bottom = np.polyfit(times[turn - 20 : turn + 21], angle[turn - 20 : turn + 21], 2)
-    assert angle.max() == pytest.approx(0.01, rel=1e-3)
-    assert -bottom[1] / (2.0 * bottom[0]) == pytest.approx(0.5 * period, rel=1e-5)
+    size, given = period / 800.0, bar(2.0, 1.4, angle=0.5 * np.pi, name="it")
+    gravity = [np.sin(5e-3), -np.cos(5e-3)]
+    it = run(linked_scene([given], [hinge("it", at=[2.0, 2.0])], gravity=gravity, end=450.0 * size, step=size))
+    times, angle = it.history.bodies["time"], it.history.bodies["angle"] - 0.5 * np.pi
+    near_turn = slice(380, 421)
+    bend, slope, _ = np.polyfit(times[near_turn] / period - 0.5, angle[near_turn], 2)
+    assert angle.max() == pytest.approx(0.01, rel=1e-4)
+    assert 0.5 * slope / bend == pytest.approx(0.0, abs=0.5e-5)
 
 
 def test_a_ball_on_a_rail_falls_freely():
-    it = run(linked_scene([body(2.0, 3.0, free=["y"], velocity=[1.0, 0.0], angular_velocity=3.0)], gravity=[5.0, -2.0]))
+    it = run(linked_scene([body(2.0, 3.0, free=["y"])], gravity=[5.0, -2.0]))
     ball = it.bodies["body0"]
     np.testing.assert_allclose(ball.position, [2.0, 3.0 - 1.0], atol=1e-12)
     np.testing.assert_allclose(ball.velocity, [0.0, -2.0], atol=1e-12)
@@ -114,7 +110,7 @@ def test_springs_that_are_fast_are_cut_into_parts():
     spring = {"stiffness": [0.0, 400.0 * np.pi]}
     it = run(linked_scene([body(2.0, 3.0, free=["y"], spring=spring, velocity=[0.0, 1.0])], end=0.02, step=2e-3))
     assert it.system.linkage.frequency == pytest.approx(200.0)
-    assert it.bodies["body0"].velocity[1] == pytest.approx(np.cos(4.0), abs=5e-3)
+    assert it.bodies["body0"].velocity[1] == pytest.approx(np.cos(4.0), abs=8e-3)
 
 
 @pytest.mark.parametrize("damping", [0.1, 2.0, 1e6])
@@ -153,14 +149,14 @@ def test_a_body_of_given_motion_works_on_what_is_hinged_to_it():
     assert all(finer < 0.3 * coarser for coarser, finer in pairwise(errors))
 
 
-@pytest.mark.parametrize(("stepping", "error"), [("substeps", 2e-3), ("implicit", 2e-3)])
+@pytest.mark.parametrize(("stepping", "error"), [("substeps", 5e-4), ("implicit", 1e-3)])
 @DIMENSIONS
 def test_a_hinged_pair_that_hits_a_wall_keeps_its_energy(stepping, error, dimension):
     rest, speed = [2.0] * (dimension - 2), [0.5, -2.0, 0.0][:dimension]
     bars = [bar(1.5, 0.3, *rest, name="a", velocity=speed), bar(2.1, 0.35, *rest, name="b", velocity=speed)]
     contact = {"law": "normal", "range": 0.02, "epsilon": 1e-6, "stepping": stepping}
     given = hinge("a", "b", at=[1.8, 0.3, *rest], **({"axis": [0.0, 0.0, 1.0]} if dimension == 3 else {}))
-    it = Simulation(linked_scene(bars, [given], contact=contact, end=0.3, step=2e-3))
+    it = Simulation(linked_scene(bars, [given], contact=contact, end=0.16, step=2e-3))
     pushed = []
     it.observe(lambda now: pushed.append(np.abs(now.bodies["a"].contact_force).max() > 0.0))
     it.go()
