@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,9 +15,9 @@ class Joint:
 
     ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
-    from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
-    (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
-    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free.
+    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness``
+    times (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate
+    [force·length·time/rad]; or it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
     """
 
     name: str
@@ -34,11 +34,12 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class GroundLink:
-    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
+    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero;
+    on the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of
+    space.
 
-    On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
-    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): where the
-    springs do not pull, None where that is at the start [length].
+    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): the position at
+    which springs do not pull, that at the start if None [length].
     """
 
     name: str
@@ -47,6 +48,20 @@ class GroundLink:
     stiffness: FloatArray
     damping: FloatArray
     rest: FloatArray | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkReading:
+    """One joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge its ``angle``
+    [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body, about the point
+    of the joint [force | force·length]."""
+
+    name: str
+    gap: float
+    angle: float
+    rate: float
+    force: FloatArray
+    torque: FloatArray
 
 
 class Linkage(Protocol):
@@ -83,3 +98,7 @@ class Linkage(Protocol):
 
     def spring_power(self, motions: Pose, time: float) -> float:
         """Of what moves bodies as they are told, against springs [energy/time]."""
+
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""
