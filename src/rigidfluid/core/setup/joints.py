@@ -126,6 +126,7 @@ def _joint(scene: Scene, table: JointTable, at: str, pose: Pose) -> Joint:
         rest_angle=table.rest_angle or 0.0,
         damping=table.damping or 0.0,
         drive=None if stroke is None else _followed(stroke),
+        next_corner=None if stroke is None else stroke.next_corner,
     )
 
 
