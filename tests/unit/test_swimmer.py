@@ -1,5 +1,6 @@
 """The three-sphere swimmer in Stokes flow, in the closed channel of its reference."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ def advances(cycles, *overrides):
     for cycle in range(cycles):
         it.go(4.0 * (cycle + 1))
         places.append(float(it.bodies["swimmer"].position[0]))
-    return [end - start for start, end in zip(places, places[1:], strict=False)], it
+    return [end - start for start, end in pairwise(places)], it
 
 
 @pytest.fixture(scope="module")
