@@ -15,7 +15,7 @@ _ANSWER_TOLERANCE = 1e-6
 """Of the answers: so much of what is missing is left after each round."""
 
 _FIT = 1e-9
-"""Of the velocities in a link, what they may miss."""
+"""Of the velocities, what they may miss in links: by the power that would mend them, which all units share."""
 
 _MOST_ROUNDS = 4
 _TOO_WRONG = 1e-4
@@ -52,32 +52,52 @@ def solve_linked(
     StepRejected
         If the links do not hold.
     """
-    solution = discretisation.solve(system, tolerance)
     if links is None:
-        return solution, None
-    rows, force = links.rows, np.zeros(len(links.rate))
-    answers = discretisation.twists_by(system.matrix, np.moveaxis(rows, 0, -1), _ANSWER_TOLERANCE)
-    compliance = np.tensordot(rows, answers, axes=2) + np.diag(links.compliance)
+        return discretisation.solve(system, tolerance), None
+    answers = discretisation.twists_by(system.matrix, np.moveaxis(links.rows, 0, -1), _ANSWER_TOLERANCE)
+    compliance: FloatArray = np.tensordot(links.rows, answers, axes=2) + np.diag(links.compliance)
+    force = _solved(compliance, links.rate)  # what a drive needs from rest, when there is no other load
+    solution = discretisation.solve(_pulled(system, links, force), tolerance)
     missing = _missing(links, solution, force)
-    scale = np.tensordot(np.abs(rows), np.abs(solution.twist), axes=2) + np.abs(links.rate)
+    scale = sum(_power(compliance, each) for each in (links.rate, missing)) + _power_of_motions(system, solution)
     for _ in range(_MOST_ROUNDS):
-        if np.all(np.abs(missing) <= max(_FIT, tolerance) * scale):
+        if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
             break
-        force = force + np.linalg.solve(compliance, missing)
-        body_load = system.body_load + np.tensordot(force, rows, axes=1)
+        force = force + _solved(compliance, missing)
         velocity, pressure, twist = solution.velocity, solution.pressure, solution.twist
-        linked = replace(system, body_load=body_load, velocity=velocity, pressure=pressure, twist=twist, again=True)
-        solution = discretisation.solve(linked, tolerance)
+        nearer = replace(system, velocity=velocity, pressure=pressure, twist=twist, again=True)
+        solution = discretisation.solve(_pulled(nearer, links, force), tolerance)
         missing = _missing(links, solution, force)
-    if np.any(np.abs(missing) > _TOO_WRONG * scale):
+    if _power(compliance, missing) > _TOO_WRONG**2 * scale:
         raise StepRejected(
             "joints",
             f"velocities that miss by {np.abs(missing).max():.3g}",
-            f"at most {_TOO_WRONG:g} of them",
+            f"at most {_TOO_WRONG:g} of what joints change",
             "Shorten time.step, or lower fluid.tolerance.",
         )
     return solution, force
 
 
+def _pulled(system: CoupledSystem, links: Links, force: FloatArray) -> CoupledSystem:
+    return replace(system, body_load=system.body_load + np.tensordot(force, links.rows, axes=1))
+
+
 def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
     return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
+
+
+def _solved(compliance: FloatArray, velocity: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.solve(compliance, velocity), dtype=np.float64)
+
+
+def _power(compliance: FloatArray, missing: FloatArray) -> float:
+    """Of the forces that would mend it [energy/time]."""
+    return float(missing @ _solved(compliance, missing))
+
+
+def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
+    """Of inertia and load [energy/time]."""
+    free = ~system.matrix.controlled
+    twist, load = solution.twist[free], system.body_load[free]
+    inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))
+    return inertia + float(np.sum(np.abs(load * twist)))
