@@ -12,10 +12,11 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_o
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
+from rigidfluid.core.mechanics.motions import kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import flat, power, together, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.model.energy import Power, Work
+from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import FreeMotions, LinkLoad, Past, State
 from rigidfluid.core.model.system import System
@@ -83,7 +84,7 @@ def attempt(
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         contact_wrench=_mean(path.impulse, size),
-        ledger=state.ledger.after(
+        ledger=_ledger_at_start(system, state, advance, step, time - size).after(
             size,
             _power(system, advance, step),
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
@@ -154,6 +155,16 @@ def _power(system: System, advance: Advance, step: Step) -> Power:
         control += float(advance.link_force @ step.links.rate)
         damping = float(step.links.compliance @ advance.link_force**2)
     return Power(advance.boundary_power, control, advance.dissipation, advance.dissipation_midway, damping)
+
+
+def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
+    """After a corner of a stroke by the forces of this step, which change velocities at once: half of their impulse
+    acts on the rates before the corner, and half on those after it."""
+    ledger = state.ledger
+    if state.tick == 0 or state.past is not None or ledger.power is None:
+        return ledger
+    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=system.controlled_twist(time))
+    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before).control))
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
