@@ -61,7 +61,7 @@ class FlappingPlate(Mechanism):
 
     name: ClassVar[str] = "flapping_plate"
     Options: ClassVar[type[PartOptions]] = FlappingPlateOptions
-    driven: ClassVar[bool] = True
+    driven = True
     options: FlappingPlateOptions
 
     @property

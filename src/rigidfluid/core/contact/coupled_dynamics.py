@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import block_diagonal
+from rigidfluid.core.mechanics.dynamics import LinkWork, block_diagonal
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.reduced_model import Coupling
@@ -33,6 +33,7 @@ class CoupledDynamics:
 
     free: FreeMotions | None = None
     kinematics: Kinematics | None = None
+    link_work: LinkWork | None = None
 
     def __init__(
         self,
@@ -108,6 +109,16 @@ class CoupledDynamics:
         force = load + model.modes.T @ flat(wrench).flat[model.velocities]
         decay = model.decay * time
         self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force
+        velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
+        self._velocity = velocity
+
+    def push(self, impulse: FloatArray) -> None:
+        """Change the velocities as impulses (n, d+k) at once do, by the masses alone."""
+        d, model = self.pose.position.shape[1], self._model
+        velocity = self._velocity.copy()
+        velocity[:, :d] += np.einsum("nij,nj->ni", self._own[0], impulse[:, :d])
+        velocity[:, d:] += np.einsum("nij,nj->ni", self._own[1], impulse[:, d:])
+        self._modal = self._modal + model.modes.T @ impulse.flat[model.velocities]
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
 

@@ -87,7 +87,8 @@ def ground_springs(link: GroundLink, pose: Pose) -> list[Spring]:
     stiffness = np.where(link.held, 0.0, link.stiffness)
     if not stiffness.any():
         return []
-    return [GroundSpring(link.body, stiffness, pose.position[link.body], pose.orientation[link.body])]
+    rest = pose.position[link.body] if link.rest is None else link.rest
+    return [GroundSpring(link.body, stiffness, rest, pose.orientation[link.body])]
 
 
 def _joint_markers(joint: Joint, pose: Pose) -> MarkerPair:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 from scipy import sparse
@@ -89,6 +90,7 @@ class JointLinkage:
         self._springs += [one for link in ground for one in ground_springs(link, pose)]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
         self._are_lengths = np.concatenate([np.zeros(0, bool), *(_are_lengths(one, pose) for one in self._constraints)])
+        self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
         self.linked, self.clusters = self._linked(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
@@ -99,6 +101,10 @@ class JointLinkage:
         refuse_void(self._constraints, self._carrier, self._controlled)
         refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
         self.frequency = self._greatest_frequency(start)
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
+        return min((corner(time) for corner in self._corners), default=inf)
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""

@@ -15,9 +15,10 @@ class Joint:
 
     ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
-    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness``
-    times (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate
-    [force·length·time/rad]; or it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
+    from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
+    (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
+    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free. ``next_corner(time)``: when the rate
+    jumps after that, infinite if never; None where there are no such times.
     """
 
     name: str
@@ -30,15 +31,16 @@ class Joint:
     rest_angle: float = 0.0
     damping: float = 0.0
     drive: Callable[[float], tuple[float, float]] | None = None
+    next_corner: Callable[[float], float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class GroundLink:
-    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero;
-    on the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of
-    space.
+    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
 
-    Rotations in 3D are those about the axes: their displacement is the rotation vector.
+    On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
+    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): where the
+    springs do not pull, None where that is at the start [length].
     """
 
     name: str
@@ -46,6 +48,7 @@ class GroundLink:
     held: BoolArray
     stiffness: FloatArray
     damping: FloatArray
+    rest: FloatArray | None = None
 
 
 class Linkage(Protocol):
@@ -61,6 +64,9 @@ class Linkage(Protocol):
     linked: BoolArray
     frequency: float
     driven: bool
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""

@@ -33,9 +33,11 @@ def begun_anew(system: System, clock: Clock, state: State) -> State:
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:
     """The first tick after this at which there is a corner; infinite without any."""
-    if system.mechanisms is None:
-        return math.inf
-    corner = system.mechanisms.next_corner(clock.time(tick))
+    corner = _next_corner(system, clock.time(tick))
     while math.isfinite(corner) and clock.tick_from(corner) <= tick:
-        corner = system.mechanisms.next_corner(corner)
+        corner = _next_corner(system, corner)
     return clock.tick_from(corner) if math.isfinite(corner) else math.inf
+
+
+def _next_corner(system: System, time: float) -> float:
+    return min((part.next_corner(time) for part in (system.mechanisms, system.linkage) if part), default=math.inf)

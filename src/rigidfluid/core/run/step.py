@@ -86,7 +86,7 @@ def attempt(
         contact_wrench=_mean(path.impulse, size),
         ledger=_ledger_at_start(system, state, advance, step, time - size).after(
             size,
-            _power(system, advance, step),
+            _power(system, advance, step, path.free_pose),
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
             stored_energy(system, contacts, path.free_pose, time),
@@ -147,12 +147,13 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(energy))
 
 
-def _power(system: System, advance: Advance, step: Step) -> Power:
+def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:
     """What enters by the boundary, what drives bodies and joints in the fluid, what fluid and dampers dissipate."""
     given, where = given_twist(step)
     control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
     if step.links is not None and advance.link_force is not None:
         control += float(advance.link_force @ step.links.rate)
+        control += 0.0 if system.linkage is None else system.linkage.spring_power(motions, step.time)
         damping = float(step.links.compliance @ advance.link_force**2)
     return Power(advance.boundary_power, control, advance.dissipation, advance.dissipation_midway, damping)
 
@@ -163,8 +164,10 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger
-    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=system.controlled_twist(time))
-    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before).control))
+    motions, held = state.free_pose, system.controlled_twist(time)
+    links = None if step.links is None or system.linkage is None else system.linkage.links(motions, time)
+    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
+    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
