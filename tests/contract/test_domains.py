@@ -11,9 +11,9 @@ from wedge import wedge
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.domain import Piece
 from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.channel import Channel, ChannelOptions
-from rigidfluid.domains.obstacles import ObstacleTable
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.testing import DomainContract
 
@@ -38,7 +38,7 @@ TURNED = {
 def channel(*obstacles):
     d = len(obstacles[0]["position"])
     corners = {"lower": (-1.0, 0.5, 2.0)[:d], "upper": (1.0 if d == 2 else 0.2, 1.5, 3.0)[:d]}
-    return Channel(ChannelOptions(**corners, obstacle=tuple(ObstacleTable(**one) for one in obstacles)), d)
+    return Channel(ChannelOptions(**corners, obstacle=tuple(NestedBodyTable(**one) for one in obstacles)), d)
 
 
 class TestChannel(DomainContract):

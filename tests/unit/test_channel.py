@@ -20,11 +20,11 @@ from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.channel import Channel, ChannelOptions
-from rigidfluid.domains.obstacles import ObstacleTable
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.errors import RigidfluidError
@@ -102,7 +102,7 @@ def test_a_polygon_is_an_obstacle_with_sharp_corners() -> None:
 
 def test_a_polyhedron_is_an_obstacle(tmp_path: Path) -> None:
     write_stl(tmp_path / "cube.stl", CUBE, facing_the_fluid(Facets(CUBE, TRIANGLES, TRIANGLES[:, 0]), "x").vertices)
-    tables = (ObstacleTable(type="stl", file=str(tmp_path / "cube.stl"), scale=0.5, position=(1.0, 1.0, 1.0)),)
+    tables = (NestedBodyTable(type="stl", file=str(tmp_path / "cube.stl"), scale=0.5, position=(1.0, 1.0, 1.0)),)
     domain = Channel(ChannelOptions(lower=(0.0, 0.0, 0.0), upper=(2.0, 2.0, 2.0), obstacle=tables), 3)
     assert domain.volume == pytest.approx(8.0 - 0.125, rel=1e-12)
     mesh = generate_mesh([], nobody(3), domain, 0.5, 0.5, 0.3)

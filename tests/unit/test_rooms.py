@@ -28,8 +28,10 @@ PARTS = {
     "detectors": "core.contact marching",
     "forces": "core.contact",
     "domains": "core.mesh core.scene core.setup registry",
+    "mechanisms": "core.scene core.setup registry",
 }
-"""What built-in parts import besides the model and mechanics; obstacles of domains are tables in a scene."""
+"""What built-in parts import besides the model and mechanics; obstacles of domains and components of mechanisms are
+tables in a scene."""
 
 
 def imports(path: Path) -> Iterator[str]:

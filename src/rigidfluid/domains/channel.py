@@ -10,8 +10,9 @@ from pydantic import Field
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.domains.obstacles import AT, ObstacleTable, placed_obstacles, refuse_overlap
+from rigidfluid.domains.obstacles import AT, placed_obstacles, refuse_overlap
 from rigidfluid.errors import SceneError
 
 
@@ -23,7 +24,7 @@ class ChannelOptions(BoxOptions):
     ``front`` along z.
     """
 
-    obstacle: tuple[ObstacleTable, ...] = Field(
+    obstacle: tuple[NestedBodyTable, ...] = Field(
         default=(), description="`name`, `type`, `position`, `angle` or `orientation`, and the keys of the type"
     )
 

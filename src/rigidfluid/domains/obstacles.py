@@ -5,45 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from pydantic import ConfigDict, Field
 
-from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation, Vector
-from rigidfluid.core.scene.validation import read_table, unknown_key
-from rigidfluid.core.setup.placing import check_orientation, initial_pose
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name
+from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.domains.placed import PlacedBody
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import BODY, DETECTOR, Registry
+from rigidfluid.registry import DETECTOR, Registry
 
 AT = "domain.obstacle"
 """Where obstacles stand in a scene."""
 
 
-class ObstacleTable(PartOptions):
-    """A body that stays where it is; beside these keys it has those of its type."""
-
-    model_config = ConfigDict(extra="allow")
-
-    name: str = Field(
-        default="",
-        pattern=PRINTABLE,
-        description="Name of its surface; `obstacle0`, `obstacle1`, … if not given",
-    )
-    type: str = Field(description="Name of a body type")
-    position: Vector = Field(description="Position of the centre of mass [length]")
-    angle: InitialAngle = None
-    orientation: InitialOrientation = None
-
-
-def placed_obstacles(tables: Sequence[ObstacleTable], dimension: int) -> dict[str, PlacedBody]:
+def placed_obstacles(tables: Sequence[NestedBodyTable], dimension: int) -> dict[str, PlacedBody]:
     """The obstacles by their names.
 
     Parameters
     ----------
-    tables : sequence of ObstacleTable
+    tables : sequence of NestedBodyTable
         As they stand in the scene.
     dimension : int
         2 or 3.
@@ -60,14 +41,10 @@ def placed_obstacles(tables: Sequence[ObstacleTable], dimension: int) -> dict[st
     PluginError
         If there is no such body type.
     """
-    found: dict[str, PlacedBody] = {}
-    for number, table in enumerate(tables):
-        name = table.name or f"obstacle{number}"
-        if name in found:
-            remedy = "Rename one of them."
-            raise SceneError(f"{AT}.{number}.name", f"{name!r} for the second time", "a name of its own", remedy)
-        found[name] = _placed(table, f"{AT}.{number}", dimension)
-    return found
+    return {
+        name: PlacedBody(build_shape(table, f"{AT}.{number}", dimension), initial_pose([table], dimension))
+        for number, (name, table) in enumerate(by_name(tables, AT).items())
+    }
 
 
 def refuse_overlap(obstacles: dict[str, PlacedBody], surfaces: dict[str, Surface]) -> None:
@@ -92,23 +69,3 @@ def refuse_overlap(obstacles: dict[str, PlacedBody], surfaces: dict[str, Surface
             "a place inside the domain and clear of all other surfaces",
             "Move it, or make it smaller.",
         )
-
-
-def _placed(table: ObstacleTable, at: str, dimension: int) -> PlacedBody:
-    if len(table.position) != dimension:
-        found, remedy = (
-            f"{list(table.position)}, {len(table.position)} of them",
-            f"The scene has {dimension} dimensions.",
-        )
-        raise SceneError(f"{at}.position", found, f"{dimension} numbers", remedy)
-    check_orientation(table, dimension, at)
-    part, options = Registry.load().get(BODY, table.type, f"{at}.type"), dict(table.model_extra or {})
-    for key in options:
-        if key not in part.Options.model_fields:
-            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
-    try:
-        shape = part(read_table(part.Options, options, at), dimension)
-    except SceneError as error:  # a body does not know its place in the scene
-        subject = error.subject if error.subject.startswith(at) else f"{at}.{error.subject.removeprefix('body.')}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
-    return PlacedBody(shape, initial_pose([table], dimension))

@@ -13,6 +13,7 @@ from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, S
 from rigidfluid.taylor_hood.boundary import face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
+from rigidfluid.taylor_hood.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
 """Of the velocity by which what convects follows the bodies."""
@@ -39,7 +40,8 @@ def advance(
         guess = motion_twist(step.kinematics, attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
-    solution, d = discretisation.solve(system, tolerance), problem.dimension
+    solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
+    d = problem.dimension
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
     velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
@@ -73,6 +75,7 @@ def advance(
         boundary_power=face_power(
             surfaces, problem.inert_density, at, velocity, mesh_velocity, on_faces, solution.reaction
         ),
+        link_force=link_force,
     )
 
 

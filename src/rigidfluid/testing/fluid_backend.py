@@ -8,6 +8,7 @@ from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
 from rigidfluid.testing.fluid.initial import InitialFlowContract
+from rigidfluid.testing.fluid.linked import LinkedContract
 from rigidfluid.testing.fluid.memory import MemoryContract
 from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
@@ -23,6 +24,7 @@ class FluidBackendContract(
     CurvedContract,
     CylinderContract,
     InitialFlowContract,
+    LinkedContract,
     ObliqueContract,
     PeriodicContract,
     ResponsesContract,

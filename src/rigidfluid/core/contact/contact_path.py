@@ -31,7 +31,7 @@ from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.state import CarriedState, FreeMotions, State
+from rigidfluid.core.model.state import CarriedState, FreeMotions, LinkLoad, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -65,7 +65,8 @@ class BodyStep(CarriedState):
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
     them, ``friction`` that the fluid's own solutions do not see, and ``actuator_work`` against them by what drives
     bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None
-    without contacts. ``free``: what carries the bodies, None where each moves by itself.
+    without contacts. ``free``: what carries the bodies, None where each moves by itself. ``link``: what joints did;
+    None without any, and in a fluid, which says so itself.
     """
 
     pose: Pose
@@ -77,6 +78,7 @@ class BodyStep(CarriedState):
     friction: float = 0.0
     coupling: Coupling | None = None
     free: FreeMotions | None = None
+    link: LinkLoad | None = None
 
     @property
     def free_impulse(self) -> Wrench:

@@ -83,6 +83,8 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodySte
     before = flat(state.free_contact) * (state.past_step or 0.0)
     impulses = _of(model, step.impulse), _of(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
+    if candidate.link is not None:
+        load = load - _of(model, candidate.link.wrench)
     missed = _of(model, flat(path.free_twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
@@ -136,7 +138,10 @@ def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> 
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:
-    """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone."""
+    """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone.
+
+    What joints hold is always among them, as their forces are found from the answers of all.
+    """
     count, d, carrier = len(system.bodies), system.dimension, carriers(system)
     width = d + (1 if d == 2 else 3)
     touching = np.zeros(len(system.controlled_motions), dtype=bool)
@@ -145,6 +150,8 @@ def _velocities(system: System, near: Contacts) -> IntArray:
     moves = np.repeat((touching & ~system.controlled_motions)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
         moves[round_motions(system), d:] = False
+    if system.linkage is not None:
+        moves[system.linkage.linked & ~system.controlled_motions] = True
     return np.flatnonzero(moves)
 
 
@@ -165,7 +172,8 @@ def _expected_load(system: System, state: State, model: ReducedModel) -> FloatAr
     if state.past is None:
         return _of(model, flat(weights(system, kinematics_now(system, state))))
     change = _of(model, flat(state.free_twist) - flat(state.past.twist))
-    impulse = _of(model, flat(state.free_contact)) * state.past.step
+    pushed = flat(state.free_contact) + (0.0 if state.link is None else state.link.wrench)
+    impulse = _of(model, pushed) * state.past.step
     return expected_load(model, change, impulse, state.past.step)
 
 

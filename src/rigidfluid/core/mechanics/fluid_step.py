@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.motions import weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
-from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.mechanics.wrenches import flat, together, wrench_of
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import Mechanisms, System
 from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step, Twist, Wrench
@@ -38,6 +38,7 @@ def step_to(
         load_scale=_load_scale(system, impulse, derivative),
         turning=np.zeros_like(load),
         kinematics=kinematics,
+        links=None if system.linkage is None or not system.backend.needs_mesh else system.linkage.links(pose, time),
     )
 
 
@@ -64,18 +65,27 @@ def _newton_euler(
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
-    pushed = mean_push(impulse, state.free_contact, state.past_step, derivative)
+    pushed = mean_push(impulse, _latest_push(system, state), state.past_step, derivative)
+    if system.linkage is not None and system.backend.needs_mesh:
+        pushed = together(pushed, system.linkage.spring_wrench(pose, time))
     mechanisms = system.mechanisms
     if mechanisms is None:
         wrench = Wrench(pushed.force + system.weight, pushed.torque)
         return newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     weight = weights(system, kinematics)
-    wrench = Wrench(pushed.force + weight.force, pushed.torque + weight.torque)
+    wrench = together(pushed, weight)
     inertia = mechanisms.inertia(time)
     mass_matrix, load = newton_euler(mechanisms.mass, inertia, pose, poses, twists, derivative, wrench)
     if mechanisms.driven:
         load[:, system.dimension :] -= _relative_momentum_rate(mechanisms, inertia, time, pose, past, derivative)
     return mass_matrix, load
+
+
+def _latest_push(system: System, state: State) -> Wrench:
+    """What pushed the motions in the latest step: contacts, and without a fluid joints, which go the same way."""
+    if state.link is None or system.backend.needs_mesh:
+        return state.free_contact
+    return together(state.free_contact, wrench_of(state.link.wrench, system.dimension))
 
 
 def _relative_momentum_rate(

@@ -56,6 +56,16 @@ def flat(record: Wrench | Twist) -> FloatArray:
     return np.concatenate(pair, axis=1)
 
 
+def wrench_of(rows: FloatArray, dimension: int) -> Wrench:
+    """Force and torque of rows (n, d+k)."""
+    return Wrench(rows[:, :dimension], rows[:, dimension:])
+
+
+def together(one: Wrench, other: Wrench) -> Wrench:
+    """Their sum."""
+    return Wrench(one.force + other.force, one.torque + other.torque)
+
+
 def power(wrench: Wrench, twist: Twist) -> FloatArray:
     """F·U + T·ω of each body, (n,) [energy/time]."""
     return np.asarray(

@@ -7,13 +7,15 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True, slots=True)
 class Power:
-    """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, and of
-    viscous dissipation, also ``dissipation_midway`` through the step that led there."""
+    """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
+    viscous dissipation, also ``dissipation_midway`` through the step that led there, and of what the dampers of joints
+    take."""
 
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
     dissipation_midway: float = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,8 @@ class Work:
 class Ledger:
     """Sums since the start [energy], and what is stored now.
 
-    Stored: ``kinetic`` (fluid and bodies), ``contact``. In: ``gravity``, ``boundary``, ``control``. Out:
-    ``dissipation``, ``contact_loss`` (by dampers of contacts), ``transfer_loss`` (by re-meshing).
+    Stored: ``kinetic`` (fluid and bodies), ``contact`` (and springs). In: ``gravity``, ``boundary``, ``control``. Out:
+    ``dissipation``, ``contact_loss`` (by dampers of contacts and joints), ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
     step explains so much at most, since the fluid's own solutions see some of it.
     ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
@@ -80,6 +82,7 @@ class Ledger:
             mean: float = 0.5 * (getattr(before, name) + getattr(power, name))
             return float(getattr(self, name)) + step * mean
 
+        damped = 0.5 * step * (before.damping + power.damping)
         dissipated = (before.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
         return replace(
             self,
@@ -89,7 +92,7 @@ class Ledger:
             boundary=total("boundary"),
             control=total("control") + work.control,
             dissipation=self.dissipation + step * dissipated,
-            contact_loss=self.contact_loss + work.contact_loss,
+            contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
             power=power,
         )

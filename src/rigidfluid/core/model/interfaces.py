@@ -142,7 +142,7 @@ class Mechanism(SpatialPart):
         2 or 3.
     """
 
-    driven: ClassVar[bool] = False
+    driven: bool = False
     """Whether the placement changes with time; else it is asked for once."""
 
     @property
@@ -159,6 +159,18 @@ class Mechanism(SpatialPart):
         """How the placement changes, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
         m, k = len(self.components), 1 if self.dimension == 2 else 3
         return Twist(np.zeros((m, self.dimension)), np.zeros((m, k)))
+
+    @property
+    def period(self) -> float | None:
+        """Time after which the placement repeats itself; None where it does not [time]."""
+        return None
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate jumps; infinite where it does not [time].
+
+        A step ends there, and the next begins anew; the rate at a corner is that before it, at time 0 that after it.
+        """
+        return math.inf
 
 
 class Detector(Part):

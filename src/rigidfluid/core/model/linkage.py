@@ -15,9 +15,9 @@ class Joint:
 
     ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
-    from the second, zero at the start, counter-clockwise [rad]. Its spring's torque on the first is -``stiffness`` times
-    (angle - ``rest_angle``) [force·length/rad], its damper's -``damping`` times the rate [force·length·time/rad]; or
-    it is driven: ``drive(time)`` is angle and rate, None where the hinge is free.
+    from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
+    (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
+    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free.
     """
 
     name: str
@@ -34,9 +34,9 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class GroundLink:
-    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero; on
-    the others act springs -``stiffness`` · displacement and dampers -``damping`` · velocity, along the axes of space.
+    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
 
+    On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
     Rotations in 3D are those about the axes: their displacement is the rotation vector.
     """
 

@@ -42,6 +42,15 @@ class FreeMotions:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkLoad:
+    """What joints and springs did to the motions in the latest step: the ``force`` (c,) of each link, and the
+    ``wrench`` (N, d+k) of all of them and of springs; at its end in a fluid, in the mean without one."""
+
+    force: FloatArray
+    wrench: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class ErrorEstimate:
     """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
     infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
@@ -105,7 +114,7 @@ class State(CarriedState):
     impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that this mesh
     could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
     ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
-    the first step, and without a tolerance.
+    the first step, and without a tolerance. ``link``: of joints; None before the first step, and without any.
     """
 
     tick: int
@@ -127,6 +136,7 @@ class State(CarriedState):
     remesh_failed: FailedRemesh | None = None
     free: FreeMotions | None = None
     estimate: ErrorEstimate | None = None
+    link: LinkLoad | None = None
 
     @property
     def free_contact(self) -> Wrench:

@@ -9,7 +9,7 @@ from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.step import bodies_energy, contact_energy
+from rigidfluid.core.run.step import bodies_energy, stored_energy
 
 START_LEVEL = 6
 """In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
@@ -22,7 +22,8 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
     kinetic += bodies_energy(system, system.pose, system.twist)
-    stored = contact_energy(system, contacts)
+    motions = system.pose if system.mechanisms is None else system.mechanisms.pose
+    stored = stored_energy(system, contacts, motions, 0.0)
     return State(
         tick=0,
         count=0,

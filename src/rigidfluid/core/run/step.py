@@ -13,11 +13,11 @@ from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
 from rigidfluid.core.mechanics.rigid import kinetic_energy
-from rigidfluid.core.mechanics.wrenches import power
+from rigidfluid.core.mechanics.wrenches import flat, power, together, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
-from rigidfluid.core.model.state import FreeMotions, Past, State
+from rigidfluid.core.model.state import FreeMotions, LinkLoad, Past, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Advance, Contacts, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
@@ -60,13 +60,14 @@ def attempt(
         nearest = int(np.argmin(gaps))
         refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.raise_on_all():
-        step = step_to(system, state, time, size, path.free_pose, path.free_impulse, mesh)
+        step = step_to(system, state, time, size, path.free_pose, _pushed(path, size), mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
             step = replace(step, turning=turning(system, state, path, step), provisional=provisional)
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
     twist = component_twist(step.kinematics, advance.twist)
+    link = _link_load(system, path, step, advance)
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
@@ -87,13 +88,30 @@ def attempt(
             _power(system, advance, step),
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
-            contact_energy(system, contacts),
+            stored_energy(system, contacts, path.free_pose, time),
         ),
         impact=state.impact,
         remesh_failed=state.remesh_failed,
         free=_free_motions(path, step, advance, size),
+        link=link,
     )
     return candidate, step
+
+
+def _pushed(path: BodyStep, size: float) -> Wrench:
+    """The impulse of contacts, and without a fluid of joints, on the motions."""
+    if path.link is None:
+        return path.free_impulse
+    return together(path.free_impulse, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
+
+
+def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad | None:
+    """In a fluid the joints' forces follow from its solution, else from the path."""
+    if system.linkage is None or step.links is None or advance.link_force is None:
+        return path.link
+    wrench = np.tensordot(advance.link_force, step.links.rows, axes=1)
+    springs = flat(system.linkage.spring_wrench(path.free_pose, step.time))
+    return LinkLoad(advance.link_force, wrench + springs)
 
 
 def _free_motions(path: BodyStep, step: Step, advance: Advance, size: float) -> FreeMotions | None:
@@ -113,6 +131,12 @@ def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
     return kinetic_energy(system.mass * free, system.inertia * free[:, None, None], pose, twist)
 
 
+def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float) -> float:
+    """In contacts and springs [energy]."""
+    in_springs = 0.0 if system.linkage is None else system.linkage.spring_energy(motions, time)
+    return in_springs + contact_energy(system, contacts)
+
+
 def contact_energy(system: System, contacts: Contacts) -> float:
     """Stored in the contacts [energy]."""
     if system.law is None or len(contacts) == 0:
@@ -123,10 +147,13 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 
 
 def _power(system: System, advance: Advance, step: Step) -> Power:
-    """What enters by the boundary, what drives bodies through the fluid or relatively, what the fluid dissipates."""
+    """What enters by the boundary, what drives bodies and joints in the fluid, what fluid and dampers dissipate."""
     given, where = given_twist(step)
-    driven = power(advance.hydrodynamic_wrench, given)[where]
-    return Power(advance.boundary_power, -float(driven.sum()), advance.dissipation, advance.dissipation_midway)
+    control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
+    if step.links is not None and advance.link_force is not None:
+        control += float(advance.link_force @ step.links.rate)
+        damping = float(step.links.compliance @ advance.link_force**2)
+    return Power(advance.boundary_power, control, advance.dissipation, advance.dissipation_midway, damping)
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:

@@ -153,12 +153,15 @@ class Stepper:
         return self._as_given(path, state, level)
 
     def _as_given(self, path: BodyStep, state: State, level: int) -> BodyStep:
-        """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies."""
+        """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies; and
+        with joints that fit."""
         end = self._end(state, level)
         given, is_given = self.system.controlled_pose(end), self.system.controlled_motions[:, None]
         position = np.where(is_given, given.position, path.free_pose.position)
         orientation = np.where(is_given, given.orientation, path.free_pose.orientation)
         motions = Pose(position, orientation)
+        if self.system.linkage is not None:
+            motions = self.system.linkage.closed(motions, end)
         if path.free is None or self.system.mechanisms is None:
             return replace(path, pose=motions)
         bodies = self.system.mechanisms.poses(motions, end)

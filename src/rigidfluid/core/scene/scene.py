@@ -120,6 +120,25 @@ class TimeFileTable(_Table):
     file: str = Field(description="Lines of `time, value`; lines that start with # are skipped")
 
 
+class StrokeTable(_Table):
+    """A length or an angle as a function of time: either `piecewise` or `smooth` gives its rows [time, value]."""
+
+    piecewise: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
+        default=None,
+        description="Rows [time, value] from time 0 on, linear between them; or a table with a `file` of such rows",
+    )
+    smooth: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
+        default=None,
+        description="The same, joined by a monotone cubic: its rate is continuous, and zero where the value turns back",
+    )
+    period: Positive | None = Field(
+        default=None,
+        description="Time after which it repeats; the value rests after the last row; time of the last row if not "
+        "given [time]",
+    )
+    repeat: bool = Field(default=True, description="Whether it repeats; else the last value is held")
+
+
 class BoundaryTable(_Table):
     """What holds on the domain's surfaces; a later entry overrides an earlier one, unnamed surfaces are walls.
 

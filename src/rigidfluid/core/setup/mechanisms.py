@@ -64,10 +64,11 @@ def _built(scene: Scene, registry: Registry, number: int) -> Mechanism:
     options = read_table(part.Options, table.options, at)
     try:
         mechanism = part(options, scene.dimension)
-        _refuse_components(mechanism, at)
-    except SceneError as error:
+        mechanism.components  # noqa: B018  it may be there that it refuses its options
+    except (SceneError, PluginError) as error:  # a mechanism does not know its number
         subject = f"{at}.{error.subject.partition('.')[2]}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+        raise type(error)(subject, error.found, error.allowed, error.remedy) from None
+    _refuse_components(mechanism, at)
     _refuse_placement(mechanism, at)
     return mechanism
 

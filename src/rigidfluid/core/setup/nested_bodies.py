@@ -1,0 +1,104 @@
+"""Bodies in tables of other parts: obstacles of a domain, components of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+from pydantic import ConfigDict, Field
+
+from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation, Vector
+from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.setup.placing import check_orientation
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import BODY, Registry
+
+
+class NestedBodyTable(PartOptions):
+    """A shape in its place; beside these keys it has those of its type."""
+
+    model_config = ConfigDict(extra="allow")
+
+    name: str = Field(default="", pattern=PRINTABLE, description="Name; numbered from 0 if not given")
+    type: str = Field(description="Name of a body type")
+    position: Vector = Field(description="Position of the centre of mass [length]")
+    angle: InitialAngle = None
+    orientation: InitialOrientation = None
+
+
+T = TypeVar("T", bound=NestedBodyTable)
+
+
+def by_name(tables: Sequence[T], at: str) -> Mapping[str, T]:
+    """The tables by their names, in order.
+
+    Parameters
+    ----------
+    tables : sequence of NestedBodyTable
+        As they stand in the scene.
+    at : str
+        Where that is; its last word, with a number, names those without a name.
+
+    Returns
+    -------
+    mapping of str to NestedBodyTable
+        By name.
+
+    Raises
+    ------
+    SceneError
+        If a name comes twice.
+    """
+    found: dict[str, T] = {}
+    for number, table in enumerate(tables):
+        name = table.name or f"{at.rpartition('.')[2]}{number}"
+        if name in found:
+            remedy = "Rename one of them."
+            raise SceneError(f"{at}.{number}.name", f"{name!r} for the second time", "a name of its own", remedy)
+        found[name] = table
+    return found
+
+
+def build_shape(table: NestedBodyTable, at: str, dimension: int) -> Body:
+    """The shape that a table describes.
+
+    Parameters
+    ----------
+    table : NestedBodyTable
+        Its type and the keys of that.
+    at : str
+        Where it is in the scene, for messages.
+    dimension : int
+        2 or 3.
+
+    Returns
+    -------
+    Body
+        In its own frame.
+
+    Raises
+    ------
+    SceneError
+        If a key is unknown, a vector has a wrong length, or the shape cannot be.
+    PluginError
+        If there is no such body type.
+    """
+    check_length(table.position, f"{at}.position", dimension)
+    check_orientation(table, dimension, at)
+    part, options = Registry.load().get(BODY, table.type, f"{at}.type"), dict(table.model_extra or {})
+    for key in options:
+        if key not in part.Options.model_fields:
+            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
+    try:
+        return part(read_table(part.Options, options, at), dimension)
+    except SceneError as error:  # a body does not know its place in the scene
+        subject = error.subject if error.subject.startswith(at) else f"{at}.{error.subject.removeprefix('body.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+
+
+def check_length(vector: Sequence[float], at: str, dimension: int) -> None:
+    """Raise SceneError for a ``vector`` that has not as many numbers as there are dimensions."""
+    if len(vector) != dimension:
+        found = f"{list(vector)}, {len(vector)} of them"
+        raise SceneError(at, found, f"{dimension} numbers", f"The scene has {dimension} dimensions.")

@@ -1,0 +1,68 @@
+"""A scene's tables of strokes become functions of time."""
+
+from __future__ import annotations
+
+from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.scene.scene import StrokeTable, TimeFileTable
+from rigidfluid.core.setup.time_factor import Rows, check_rows, read_rows
+from rigidfluid.errors import SceneError
+
+_ROUNDING = 1e-9
+
+
+def build_stroke(table: StrokeTable, at: str) -> Stroke:
+    """The function of time that a table describes.
+
+    Parameters
+    ----------
+    table : StrokeTable
+        Its rows, or a file of them.
+    at : str
+        Where it is in the scene, for messages.
+
+    Returns
+    -------
+    Stroke
+        Repeated unless the table says no.
+
+    Raises
+    ------
+    SceneError
+        If there are no rows or they do not rise in time from 0, or a period is too short or ends with a jump.
+    """
+    key = _key(table, at)
+    given = getattr(table, key)
+    rows: Rows = read_rows(given.file, f"{at}.{key}.file") if isinstance(given, TimeFileTable) else given
+    if len(rows) < 2:
+        raise SceneError(f"{at}.{key}", f"{len(rows)} rows", "two rows or more", "Add rows of [time, value].")
+    check_rows(rows, 0.0, f"{at}.{key}")
+    return Stroke(rows, key == "smooth", _period(table, rows, f"{at}.{key}", at))
+
+
+def _key(table: StrokeTable, at: str) -> str:
+    given = [key for key in ("piecewise", "smooth") if getattr(table, key) is not None]
+    if len(given) != 1:
+        found = "both piecewise and smooth" if given else "neither piecewise nor smooth"
+        raise SceneError(at, found, "one of them", "Give its rows in one of them: [[time, value], …].")
+    return given[0]
+
+
+def _period(table: StrokeTable, rows: Rows, place: str, at: str) -> float | None:
+    (start, first), (end, last) = rows[0], rows[-1]
+    if start != 0.0:
+        raise SceneError(f"{place}.0", f"time {start:g}", "time 0", "Begin with a row at time 0.")
+    if not table.repeat:
+        if table.period is not None:
+            raise SceneError(f"{at}.period", table.period, "none with repeat = false", "Leave out one of them.")
+        return None
+    period = end if table.period is None else table.period
+    if period < end:
+        raise SceneError(f"{at}.period", period, f"at least {end:g}, the time of the last row", "Lengthen it.")
+    if abs(last - first) > _ROUNDING * max(abs(value) for _, value in rows):
+        raise SceneError(
+            f"{place}.{len(rows) - 1}",
+            f"value {last:g} at the period's end, a jump back to {first:g}",
+            f"{first:g}, the first row's value",
+            "End where it begins, or say `repeat = false`.",
+        )
+    return period

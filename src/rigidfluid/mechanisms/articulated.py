@@ -1,0 +1,138 @@
+"""Bodies of any shape that move relatively to each other as strokes say, or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from rigidfluid.core.model.interfaces import Component, PartOptions
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import Positive, StrokeTable, Vector
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name, check_length
+from rigidfluid.core.setup.placing import initial_pose
+from rigidfluid.core.setup.strokes import build_stroke
+from rigidfluid.errors import SceneError
+from rigidfluid.mechanisms.strokes import (
+    Displacement,
+    MovingComponents,
+    Rotation,
+    StrokedMechanism,
+    Translation,
+)
+from rigidfluid.registry import suggestion
+
+_AT = "mechanism"
+
+
+class ComponentTable(NestedBodyTable):
+    """A rigid body of a mechanism, in the mechanism's frame where all strokes are at value zero."""
+
+    density: Positive = Field(description="Density [mass/length^d]")
+
+
+class RelativeStrokeTable(StrokeTable):
+    """Moves some components in the frame of their mechanism, by a length or an angle over time."""
+
+    moves: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="Names of the components that it moves")
+    along: Vector | None = Field(
+        default=None, description="Direction of a translation, of any length; values are lengths"
+    )
+    about: Vector | None = Field(default=None, description="Point that the components turn about [length]")
+    axis: Vector | None = Field(
+        default=None, description="Axis that they turn about, in 3D; values are angles in radians"
+    )
+
+
+class ArticulatedOptions(PartOptions):
+    """Keys of a ``[[mechanism]]`` table with type ``articulated``: its components, and the strokes that move them; it
+    is rigid without strokes."""
+
+    component: tuple[ComponentTable, ...] = Field(description="`name`, and what a body has")
+    stroke: tuple[RelativeStrokeTable, ...] = Field(
+        default=(), description="A later one is carried along by earlier ones that move the same components"
+    )
+
+
+class Articulated(StrokedMechanism):
+    """Components that a scene lists, and strokes that translate or rotate some of them.
+
+    Parameters
+    ----------
+    options : ArticulatedOptions
+        Components and strokes.
+    dimension : int
+        2 or 3.
+
+    Raises
+    ------
+    SceneError
+        If there are no components, two have one name, or a shape or a stroke cannot be.
+    """
+
+    name: ClassVar[str] = "articulated"
+    Options: ClassVar[type[PartOptions]] = ArticulatedOptions
+    options: ArticulatedOptions
+
+    def __init__(self, options: ArticulatedOptions, dimension: int) -> None:
+        super().__init__(options, dimension)
+        if not options.component:
+            remedy = "Add tables [[mechanism.component]]."
+            raise SceneError(f"{_AT}.component", "none", "one component or more", remedy)
+        tables = by_name(options.component, f"{_AT}.component")
+        self.parts = _components(tables, dimension)
+        self.rest = initial_pose(options.component, dimension)
+        self.strokes = [
+            _moving(table, f"{_AT}.stroke.{number}", list(tables), dimension)
+            for number, table in enumerate(options.stroke)
+        ]
+        self.driven = bool(self.strokes)
+
+
+def _components(tables: Mapping[str, ComponentTable], dimension: int) -> list[Component]:
+    return [
+        Component(name, build_shape(table, f"{_AT}.component.{number}", dimension), table.density)
+        for number, (name, table) in enumerate(tables.items())
+    ]
+
+
+def _moving(table: RelativeStrokeTable, at: str, names: Sequence[str], dimension: int) -> MovingComponents:
+    for name in table.moves:
+        if name not in names:
+            remedy = suggestion(name, names) or "Correct it."
+            raise SceneError(f"{at}.moves", repr(name), f"components: {', '.join(names)}", remedy)
+    moves = np.array([name in table.moves for name in names])
+    return MovingComponents(moves, _displacement(table, at, dimension), build_stroke(table, at))
+
+
+def _displacement(table: RelativeStrokeTable, at: str, dimension: int) -> Displacement:
+    if (table.along is None) == (table.about is None):
+        found = "neither along nor about" if table.along is None else "both along and about"
+        raise SceneError(at, found, "one of them", "Give a direction to go along, or a point to turn about.")
+    if table.about is None and table.axis is not None:
+        raise SceneError(f"{at}.axis", list(table.axis), "no axis of a translation", "Leave it out.")
+    if table.along is not None:
+        return Translation(_unit(table.along, f"{at}.along", dimension))
+    return Rotation(np.array(table.about), _axis(table, at, dimension))
+
+
+def _axis(table: RelativeStrokeTable, at: str, dimension: int) -> FloatArray:
+    assert table.about is not None
+    check_length(table.about, f"{at}.about", dimension)
+    if dimension == 2 and table.axis is not None:
+        raise SceneError(f"{at}.axis", list(table.axis), "no axis in 2D", "Leave it out; angles are counter-clockwise.")
+    if dimension == 2:
+        return np.ones(1)
+    if table.axis is None:
+        raise SceneError(f"{at}.axis", "none", "three numbers", "Give the axis through the point.")
+    return _unit(table.axis, f"{at}.axis", 3)
+
+
+def _unit(vector: Sequence[float], at: str, dimension: int) -> FloatArray:
+    check_length(vector, at, dimension)
+    length = float(np.linalg.norm(vector))
+    if length == 0.0:
+        raise SceneError(at, list(vector), "a vector of length above 0", "Give a direction.")
+    return np.array(vector) / length

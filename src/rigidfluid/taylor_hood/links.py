@@ -1,0 +1,96 @@
+"""Joints of bodies in the linear system of a step: their forces follow from the answers of its own matrix."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, Links
+from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
+from rigidfluid.taylor_hood.discretisation import Discretisation
+
+_ANSWER_TOLERANCE = 1e-6
+"""Of the answers: so much of what is missing is left after each round."""
+
+_FIT = 1e-9
+"""Of the velocities, what they may miss in links: by the power that would mend them, which all units share."""
+
+_MOST_ROUNDS = 4
+_TOO_WRONG = 1e-4
+
+
+def solve_linked(
+    discretisation: Discretisation, system: CoupledSystem, links: Links | None, tolerance: float
+) -> tuple[Solution, FloatArray | None]:
+    """Solve for forces λ with C u + κ λ = r: (C S⁻¹Cᵀ + κ) λ = r - C u₀, u₀ the twists without them.
+
+    S⁻¹ are the twists that wrenches give by the step's matrix. They are known to some digits, and so this is done again
+    for what is still missing.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+        Solves without links.
+    system : CoupledSystem
+        Of the step.
+    links : Links or None
+        C, r and κ.
+    tolerance : float
+        Relative residual of each solution [1].
+
+    Returns
+    -------
+    Solution
+        With the forces in it.
+    (c,) array or None
+        λ; None without links [force | force·length].
+
+    Raises
+    ------
+    StepRejected
+        If the links do not hold.
+    """
+    solution = discretisation.solve(system, tolerance)
+    if links is None:
+        return solution, None
+    rows, force = links.rows, np.zeros(len(links.rate))
+    answers = discretisation.twists_by(system.matrix, np.moveaxis(rows, 0, -1), _ANSWER_TOLERANCE)
+    compliance = np.tensordot(rows, answers, axes=2) + np.diag(links.compliance)
+    missing = _missing(links, solution, force)
+    scale = _power(compliance, missing) + _power_of_motions(system, solution)
+    for _ in range(_MOST_ROUNDS):
+        if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
+            break
+        force = force + np.linalg.solve(compliance, missing)
+        body_load = system.body_load + np.tensordot(force, rows, axes=1)
+        velocity, pressure, twist = solution.velocity, solution.pressure, solution.twist
+        linked = replace(system, body_load=body_load, velocity=velocity, pressure=pressure, twist=twist, again=True)
+        solution = discretisation.solve(linked, tolerance)
+        missing = _missing(links, solution, force)
+    if _power(compliance, missing) > _TOO_WRONG**2 * scale:
+        raise StepRejected(
+            "joints",
+            f"velocities that miss by {np.abs(missing).max():.3g}",
+            f"at most {_TOO_WRONG:g} of what joints change",
+            "Shorten time.step, or lower fluid.tolerance.",
+        )
+    return solution, force
+
+
+def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
+    return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
+
+
+def _power(compliance: FloatArray, missing: FloatArray) -> float:
+    """Of the forces that would mend it [energy/time]."""
+    return float(missing @ np.linalg.solve(compliance, missing))
+
+
+def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
+    """Of inertia and load [energy/time]."""
+    free = ~system.matrix.controlled
+    twist, load = solution.twist[free], system.body_load[free]
+    inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))
+    return inertia + float(np.sum(np.abs(load * twist)))
