@@ -85,6 +85,10 @@ class CarriedBodies:
         own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
         return self._sum(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
 
+    def next_corner(self, time: float) -> float:
+        """Of all mechanisms the first."""
+        return min(mechanism.next_corner(time) for mechanism in self._mechanisms)
+
     def _sum(self, rows: FloatArray) -> FloatArray:
         return carried_sum(self.carrier, rows, len(self.mass))
 

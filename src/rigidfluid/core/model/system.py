@@ -44,6 +44,9 @@ class Mechanisms(Protocol):
     def spin(self, time: float) -> FloatArray:
         """Angular momentum of the relative motion, in the motions' frames, (N, k) [mass·length²/time]."""
 
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a relative motion jumps; infinite without one [time]."""
+
 
 @dataclass(frozen=True)
 class System:

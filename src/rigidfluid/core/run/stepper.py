@@ -16,6 +16,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.corners import begun_anew, level_to_corner
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
@@ -79,6 +80,7 @@ class Stepper:
 
     def after(self, state: State) -> State:
         """The next accepted state; raises StepError where even the shortest step is rejected."""
+        state = begun_anew(self.system, self._clock, state)
         level, path = self._first_level(state)
         while True:
             try:
@@ -174,7 +176,8 @@ class Stepper:
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
         """The longest step, of those proposed and shorter ones, that changes no gap too fast and resolves its impacts,
         and the way it takes."""
-        level = level_after_impact(state, self._clock, self.propose(state))
+        level = level_to_corner(self.system, self._clock, state.tick, self.propose(state))
+        level = level_after_impact(state, self._clock, level)
         while level < self._clock.levels:
             try:
                 path = self._path(state, level)

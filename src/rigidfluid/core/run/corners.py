@@ -1,0 +1,41 @@
+"""Times at which what is given of a relative motion changes its rate at once: a step ends there, and the next is as a
+first one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.initial_state import start_level
+
+
+def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
+    """The first level, from ``level`` on, of a step from a ``tick`` that passes no corner."""
+    corner = _corner_after(system, clock, tick)
+    while level < clock.levels and tick + clock.ticks(level) > corner:
+        level += 1
+    return level
+
+
+def begun_anew(system: System, clock: Clock, state: State) -> State:
+    """At a corner the state without its past, from which nothing after it can be extrapolated; else the same.
+
+    The fluid, if there is one, then is in motion with bodies that change theirs at once, as at a start.
+    """
+    if state.past is None or _corner_after(system, clock, state.tick - 1) != state.tick:
+        return state
+    level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
+    return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+
+
+def _corner_after(system: System, clock: Clock, tick: int) -> float:
+    """The first tick after this at which there is a corner; infinite without any."""
+    if system.mechanisms is None:
+        return math.inf
+    corner = system.mechanisms.next_corner(clock.time(tick))
+    while math.isfinite(corner) and clock.tick_from(corner) <= tick:
+        corner = system.mechanisms.next_corner(corner)
+    return clock.tick_from(corner) if math.isfinite(corner) else math.inf
