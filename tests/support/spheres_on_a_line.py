@@ -1,6 +1,6 @@
 """Exact Stokes flow of unit spheres that move along the line of their centres in an unbounded fluid.
 
-Each sphere's share of the flow is the series of Stokes' stream function in its own spherical coordinates (r, ζ = cos θ),
+Each sphere's share of the flow is the series of Stokes' stream function in its own coordinates r and ζ = cos θ,
 
     ψ = Σₙ (Bₙ r^(1-n) + Dₙ r^(3-n)) Iₙ(ζ),   Iₙ = (Pₙ₋₂ - Pₙ)/(2n - 1),   n = 2, 3, …
 
