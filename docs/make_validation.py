@@ -1235,19 +1235,19 @@ def swimmer_3d() -> None:
 
 SWIMMER_3D = """
 Three spheres of radius 1 in a row, whose arms of 10 shorten and lengthen by 4 in turn (`scenes/swimmer_3d.toml`):
-Stokes flow, and spheres too light to have inertia. Exact are series of Stokes' stream function about each sphere,
-in a fluid without walls (`tests/support/spheres_on_a_line.py`, doi:10.1017/S0022112071002854). Displacements are those of
-the middle sphere, in radii.
+Stokes flow, and spheres too light to have inertia. Exact are series of Stokes' stream function about each sphere, in
+a fluid without walls (`tests/support/spheres_on_a_line.py`, doi:10.1017/S0022112071002854). Displacements are those
+of the middle sphere, in radii.
 
 ## How far walls matter
 
-The swimmer is in the middle of a cube. All faces are walls; or no fluid moves along them, and the traction across them
-is zero (`pressure`).
+The swimmer is in the middle of a cube. All faces are walls; or no fluid moves along them, and the traction across
+them is zero (`pressure`).
 
-What a box reflects to the swimmer is smooth there: a constant in proportion to 1/half-width, nothing of first order in
-place over half-width, since the middle of a cube is a centre of symmetry, and then the second order. The constant moves
-all spheres alike, in proportion to the total force, which is zero. So what is left of the box is 1/half-width³, for both
-kinds of faces. Other powers show how little hangs on it.
+What a box reflects to the swimmer is smooth there: a constant in proportion to 1/half-width, nothing of first order
+in place over half-width, since the middle of a cube is a centre of symmetry, and then the second order. The constant
+moves all spheres alike, in proportion to the total force, which is zero. So what is left of the box is 1/half-width³,
+for both kinds of faces. Other powers show how little hangs on it.
 
 """
 EACH_STROKE = """
@@ -1259,13 +1259,13 @@ In the largest closed cube:
 """
 LAW_OF_STROKES = """
 
-A cycle is what is left of strokes that are nine times as long: an error of .3 % in the two that go forth alone would be
-one of 5 % in the cycle.
+A cycle is what is left of strokes that are nine times as long: an error of .3 % in the two that go forth alone would
+be one of 5 % in the cycle.
 
 ## Displacement and stroke
 
-In the smallest closed cube. The displacement is proportional to the square of the stroke where that is short; arms with
-long strokes are shorter on average.
+In the smallest closed cube. The displacement is proportional to the square of the stroke where that is short; arms
+with long strokes are shorter on average.
 
 """
 OTHERS = """
