@@ -24,8 +24,8 @@ out, right out."""
 
 
 def velocities(centres: FloatArray, given: FloatArray) -> FloatArray:
-    """Velocity (m,) of spheres at ``centres`` (m,) whose velocities are ``given`` (m,) and a common one, without a
-    total force."""
+    """Velocities (m,) of spheres at ``centres`` (m,): those ``given`` (m,) and a common one, with which the forces on
+    all of them add up to zero."""
     rows, along, first = _collocation(centres)
     system = np.block([[rows, -along[:, None]], [first, np.zeros((1, 1))]])
     load = np.append(along * np.repeat(given, len(along) // len(given)), 0.0)
