@@ -12,13 +12,14 @@ from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.mechanics.constraints import Constraint
 from rigidfluid.core.mechanics.joint_forces import joint_forces
-from rigidfluid.core.mechanics.joint_parts import ground_constraints, ground_springs, joint_constraints, joint_springs
+from rigidfluid.core.mechanics.joint_parts import ground_parts, joint_parts
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
+from rigidfluid.core.mechanics.link_parts import LinkParts
 from rigidfluid.core.mechanics.markers import Markers, PlacedPair
 from rigidfluid.core.mechanics.redundancy import motion_of, refuse_redundant, refuse_void
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing
-from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.model.linkage import GroundLink, Joint, LinkReading
 from rigidfluid.core.model.system import Mechanisms
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -82,13 +83,11 @@ class JointLinkage:
         self._own_inertia = inertia
         self._controlled = controlled if mechanisms is None else mechanisms.controlled
         self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
-        by_joint = [joint_constraints(joint, pose) for joint in joints]
-        by_ground = [ground_constraints(link, pose) for link in ground]
-        slices = _slices([*by_joint, *by_ground])
-        self.joint_rows, self.ground_rows = slices[: len(joints)], slices[len(joints) :]
-        self._constraints = [one for part in (*by_joint, *by_ground) for one in part]
-        self._springs = [one for joint in joints for one in joint_springs(joint, pose)]
-        self._springs += [one for link in ground for one in ground_springs(link, pose)]
+        self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
+        self._slices = _slices(self._parts)
+        self.joint_rows, self.ground_rows = self._slices[: len(joints)], self._slices[len(joints) :]
+        self._constraints = [one for part in self._parts for one in part.constraints]
+        self._springs = [one for part in self._parts for one in part.springs]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
         self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
         lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
@@ -182,6 +181,16 @@ class JointLinkage:
     def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
         return zip(self._constraints, self._markers.placed(bodies), strict=True)
 
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""
+        known = np.zeros(len(self._compliance)) if force is None else force
+        placed, readings = iter(self._markers.placed(bodies)), []
+        for part, rows in zip(self._parts, self._slices, strict=True):
+            own = [next(placed) for _ in part.constraints]
+            readings.append(part.reading(own, bodies, twist, time, known[rows]))
+        return readings
+
     def _pull(self, bodies: Pose) -> Wrench:
         wrench = nothing(bodies)
         for spring in self._springs:
@@ -255,6 +264,6 @@ class JointLinkage:
         return linked, np.unique(parts, return_index=True)[1][parts]
 
 
-def _slices(parts: Sequence[Sequence[Constraint]]) -> tuple[slice, ...]:
-    ends = np.cumsum([0, *(sum(len(one.compliance) for one in part) for part in parts)]).tolist()
+def _slices(parts: Sequence[LinkParts]) -> tuple[slice, ...]:
+    ends = np.cumsum([0, *(part.rows for part in parts)]).tolist()
     return tuple(slice(start, end) for start, end in pairwise(ends))
