@@ -1,7 +1,9 @@
 """Linked bodies without a fluid: momentum, energy, work of drives and dampers, contacts, and runs that are resumed."""
 
 from itertools import pairwise
+from pathlib import Path
 
+import mechanism_parts
 import numpy as np
 import pytest
 from linked_runs import bar, body, hinge, linked_scene, misfit, momenta
@@ -51,6 +53,18 @@ def test_a_drive_works_as_the_ledger_says_to_second_order():
     assert abs(ledgers[0].control) > 1e3 * errors[2]
     assert errors[1] < 0.3 * errors[0]
     assert errors[2] < 0.3 * errors[1]
+
+
+def test_the_ledger_has_the_work_of_a_drive_whose_rate_jumps():
+    jumps = {"piecewise": [[0.0, 0.0], [0.1, 0.3], [0.4, -0.3], [0.5, 0.0]]}
+    bars = [bar(1.5, 2.0, name="a"), bar(2.1, 2.0, name="b", angular_velocity=1.0)]
+    it = Simulation(linked_scene(bars, [hinge("a", "b", at=[1.8, 2.0], drive=jumps)], end=0.5, step=0.02))
+    it.go(0.1)
+    thrown = it.state.ledger.control
+    it.go(0.3)
+    assert abs(it.state.ledger.control - thrown) > 0.05 * it.state.ledger.initial
+    it.go()
+    assert abs(it.state.ledger.residual) < 1e-10 * it.state.ledger.initial
 
 
 def pendulum(**keys):
@@ -147,6 +161,22 @@ def test_a_body_of_given_motion_works_on_what_is_hinged_to_it():
         errors.append(abs(it.state.ledger.residual))
     assert abs(it.state.ledger.control) > 100.0 * errors[-1]
     assert all(finer < 0.3 * coarser for coarser, finer in pairwise(errors))
+
+
+def test_a_bar_hinged_to_a_mechanism_that_changes_its_shape(install):
+    """The work of the stroke against hinge, springs and gravity is in the ledger, to second order."""
+    install(Path(mechanism_parts.__file__).read_text(encoding="utf-8"), name="strokes", module="installed_strokes")
+    errors = []
+    for step in (0.02, 0.01):
+        stroke = {"name": "it", "type": "stroke", "radius": 0.05, "length": 0.3, "stroke": 0.1, "ratio": 3.0}
+        stroke |= {"density": 1.0, "position": [1.5, 1.5], "angular_velocity": 1.0}
+        held = bar(2.3, 1.5, name="bar", spring={"stiffness": [0.1, 0.1]})
+        given = hinge("it.left", "bar", at=[2.05, 1.5], stiffness=1e-3)
+        it = run(linked_scene([held], [given], mechanism=[stroke], gravity=[0.0, -3.0], end=0.5, step=step))
+        assert misfit(it) < 1e-12
+        errors.append(abs(it.state.ledger.residual))
+    assert abs(it.state.ledger.control) > 100.0 * errors[1]
+    assert errors[1] < 0.3 * errors[0]
 
 
 @pytest.mark.parametrize(("stepping", "error"), [("substeps", 5e-4), ("implicit", 1e-3)])
