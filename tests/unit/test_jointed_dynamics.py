@@ -1,5 +1,7 @@
 """Linked motions between contacts: RATTLE, dampers, and what contacts are told of their masses."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from linked_bodies import ground_link, joint, linkage, masses, placed, split
@@ -68,6 +70,21 @@ def test_energy_is_kept_to_second_order_and_joints_fit(dimension):
         assert np.abs(motion._linkage.misfit(motion.pose, 0.0)).max() < 1e-12
         assert np.abs(motion._missing()).max() < 1e-12
     assert errors[1] < 0.3 * errors[0] < 0.01
+
+
+def test_a_double_pendulum_keeps_its_energy_to_second_order():
+    """Two bars of length 1 that fall from lying, for 1."""
+    pose = Pose(np.array([[0.5, 0.0], [1.5, 0.0]]), np.zeros((2, 1)))
+    links = linkage(pose, [joint("hinge", 0, None, [0.0, 0.0]), joint("hinge", 0, 1, [1.0, 0.0])])
+    errors = []
+    for count in (50, 100, 200, 400, 800):
+        motion, worst = jointed(pose, Twist(np.zeros((2, 2)), np.zeros((2, 1))), links, np.array([0.0, -10.0])), 0.0
+        for _ in range(count):
+            steps(motion, 1, 1.0 / count)
+            worst = max(worst, abs(energy(motion) + 10.0 * float(np.sum(motion.pose.position[:, 1]))))
+        errors.append(worst)
+    assert energy(motion) > 5.0
+    assert all(0.24 < finer / coarser < 0.26 for coarser, finer in pairwise(errors))
 
 
 @DIMENSIONS

@@ -76,7 +76,7 @@ def pendulum(**keys):
 
 def test_a_double_pendulum_keeps_its_energy_to_second_order():
     errors = []
-    for step in (0.02, 0.01, 0.005, 0.0025):
+    for step in (0.02, 0.01, 0.005):
         it, residuals = Simulation(pendulum(end=0.8, step=step)), []
         it.observe(lambda now, seen=residuals: seen.append(now.state.ledger.residual))
         it.go()
