@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from itertools import pairwise
 from math import inf
 
@@ -182,6 +183,12 @@ class JointLinkage:
         known = np.zeros(len(self._compliance)) if force is None else force
         pairs = zip(self._parts, self._slices, strict=True)
         return [part.reading(bodies, twist, time, known[rows]) for part, rows in pairs]
+
+    def following(self, controlled_twist: Callable[[float], FloatArray]) -> JointLinkage:
+        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""
+        other = copy(self)
+        other._controlled_twist = controlled_twist
+        return other
 
     def _pull(self, bodies: Pose) -> Wrench:
         wrench = nothing(bodies)
