@@ -12,6 +12,7 @@ import rigidfluid
 COARSE = ["mesh.size_body=0.1", "mesh.growth=0.2", "mesh.refine.0.size=0.4", "time.step=0.1", "time.end=80.0"]
 
 
+@pytest.mark.validation
 def test_amplitude_and_frequency_in_lock_in():
     softer = [*COARSE, "body.0.spring.stiffness=[0.0,2.37]"]
     history = rigidfluid.run(rigidfluid.load_scene(SCENES / "vortex_induced.toml", softer))
