@@ -27,13 +27,14 @@ _ROUNDING = 1e-9
 
 def joint_parts(joint: Joint, pose: Pose) -> LinkParts:
     """Of a joint between bodies that are at ``pose`` at the start; raises SceneError as its parts do."""
-    hinge = _joint_markers(joint, pose) if joint.type == "hinge" else None
-    return LinkParts(joint.name, joint.first, joint_constraints(joint, pose), joint_springs(joint, pose), hinge)
+    rows, springs = joint_constraints(joint, pose), joint_springs(joint, pose)
+    return LinkParts(joint.name, joint.first, joint.second, rows, springs, joint.type == "hinge")
 
 
 def ground_parts(link: GroundLink, pose: Pose) -> LinkParts:
     """Of a body that is at ``pose`` at the start; raises SceneError as its parts do."""
-    return LinkParts(link.name, link.body, ground_constraints(link, pose), ground_springs(link, pose), None)
+    rows, springs = ground_constraints(link, pose), ground_springs(link, pose)
+    return LinkParts(link.name, link.body, None, rows, springs, has_angle=False)
 
 
 def joint_constraints(joint: Joint, pose: Pose) -> list[Constraint]:
