@@ -1252,7 +1252,10 @@ reaches 20 D to the inlet and to either side (blockage 2.5 %) and 30 D to the ou
 Published: D. Shiels, A. Leonard, A. Roshko, J. Fluids Struct. 15 (2001) 3, doi:10.1006/jfls.2000.0330, table 2, by a
 vortex method in an unbounded fluid; the figures are taken from works that quote them. At k* = 9.88 and 4.74 the
 vortices follow the cylinder, which swings at the frequency of its spring with the fluid that it carries. At k* = 19.8
-the spring is stiffer than the vortices ask for, and nothing published was at hand to compare with."""
+the spring is stiffer than the vortices ask for, and nothing published was at hand to compare with.
+
+Energy is created in coarse cells far downstream, from when vortices come there, and not by the spring: it is no less
+where the cylinder is fixed."""
 
 
 def vortex_rows(name: str, reduced: str, published: vortices.Swing | None, history: History) -> Iterable[tuple]:
