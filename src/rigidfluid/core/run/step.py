@@ -174,4 +174,4 @@ def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> 
     """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     free = float(fallen[~system.controlled].sum())
-    return Work(free, path.actuator_work + by_actuators, path.dissipated, path.friction)
+    return Work(free, path.actuator_work + by_actuators, path.dissipated, path.friction, path.drag_loss)
