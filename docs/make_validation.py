@@ -1429,8 +1429,8 @@ def swimmer() -> None:
 
 
 SWIMMER_2D = """`scenes/swimmer.toml`: three disks of radius r = 1 on arms of length 10, which shorten by 4 at speed 4
-and lengthen again, one after the other: left in, right in, left out, right out. A cycle takes 4. The channel is closed and
-100 long, 40 wide; Stokes flow, viscosity 1, density of the bodies 0.1. `advance` is the displacement along the
+and lengthen again, one after the other: left in, right in, left out, right out. A cycle takes 4. The channel is closed
+and 100 long, 40 wide; Stokes flow, viscosity 1, density of the bodies 0.1. `advance` is the displacement along the
 swimmer's axis, `across` that across it, both of the centre of mass, `turned` the rotation, all of the second cycle; the
 first one begins at rest. `off` is over 0.2910 r, what a quasi-static computation gives for this channel (resistances of
 the three disks, Taylor–Hood elements, facets .15: .29104). Feel++ publishes .29 for it.
