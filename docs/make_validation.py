@@ -61,6 +61,8 @@ from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_S
 from spheres_in_box import BACK, Swim, drag, swim, without_box  # noqa: E402
 from spheres_on_a_line import cycle as exact_cycle  # noqa: E402
 from spheres_on_a_line import drag as exact_drag  # noqa: E402
+from swimmer_2d import SWIMS as SWIMS_2D  # noqa: E402
+from swimmer_2d import swim_figures, two_cycles  # noqa: E402
 from wall_drift import wall_drift  # noqa: E402
 
 Row = tuple[str, str, str, str]
@@ -1410,6 +1412,47 @@ def signed_off(value: float, exact: float) -> str:
     return f"{value:.5f} ({value / exact - 1.0:+.2%})"
 
 
+def swimmer() -> None:
+    """The three-sphere swimmer in 2D: steps, meshes, boxes, angles, orders of strokes and the fluid's inertia."""
+    runs = {label: two_cycles(overrides) for label, overrides in SWIMS_2D.items()}
+    figure = Figure(figsize=(8.0, 4.2), layout="constrained")
+    axes = figure.add_subplot(xlabel="time", ylabel="way along x [r]")
+    bodies = runs["as shipped"].bodies
+    for name, style in (("left", "C0"), ("middle", "C1"), ("right", "C2")):
+        mine = bodies["body"] == f"swimmer.{name}"
+        axes.plot(bodies["time"][mine], bodies["x"][mine] - bodies["x"][mine][0], style, linewidth=1.0, label=name)
+    mine = bodies["body"] == "swimmer"
+    axes.plot(bodies["time"][mine], bodies["x"][mine], "k", label="whole")
+    axes.legend()
+    figure.savefig(OUT / "swimmer.png", dpi=120)
+    head = ("case", *swim_figures(runs["as shipped"]))
+    rows = [(label, *swim_figures(history).values()) for label, history in runs.items()]
+    text = SWIMMER_2D.format(figures=table(head, rows))
+    write_page("swimmer", "A three-sphere swimmer", "python docs/make_validation.py swimmer", text)
+
+
+SWIMMER_2D = """`scenes/swimmer.toml`: three disks of radius r = 1 on arms of length 10, which shorten by 4 at speed 4
+and lengthen again, one after the other: left in, right in, left out, right out. A cycle takes 4. The channel is closed
+and 100 long, 40 wide; Stokes flow, viscosity 1, density of the bodies 0.1. `advance` is the displacement along the
+swimmer's axis, `across` that across it, both of the centre of mass, `turned` the rotation, all of the second cycle; the
+first one begins at rest. `off` is over 0.2910 r, what a quasi-static computation gives for this channel (resistances of
+the three disks, Taylor–Hood elements, facets .15: .29104). Feel++ publishes .29 for it.
+
+{figures}
+
+The displacement is that of the reference, whatever the step. What the first cycle has more is no error of the steps:
+the bodies' inertia, small as it is, holds the swimmer back for a moment at the start; with a hundredth of their density
+it is gone. At each corner of a stroke the velocities change at once, and there the run begins anew with short steps. In
+Stokes flow that costs 6 short steps a corner. Without it the second cycle would be off by as little (.29058), but the
+balance of energy by 2.8 % instead of 0.07 %, as a whole step would be booked at the rate of the stroke before.
+
+Turned by 90° in a square box the swimmer advances as far. Turned by 30° it feels that the box is square.
+
+With the fluid's inertia a corner sets the fluid in motion at once, in a layer that is thinner than any cell at first:
+displacement and balance of energy converge with the first order of the step. Feel++ has a figure with inertia, .26, but
+in other units and for another fluid, so it is no reference here."""
+
+
 CASES = {
     "insertion": insertion,
     "adaptive_step": adaptive_step,
@@ -1420,6 +1463,7 @@ CASES = {
     "settling_cylinder": settling_cylinder,
     "stenosis": stenosis,
     "window": window,
+    "swimmer": swimmer,
     "vortex_induced": vortex_induced,
     "distance_field": partial(kernel_study, "distance_field", "Distance field of a circle"),
     "detectors": partial(kernel_study, "detectors", "Gaps of detectors among ellipses"),
