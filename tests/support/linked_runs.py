@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.model.linkage import GroundLink, Joint
@@ -22,8 +23,12 @@ def linked_run(scene: Scene, joints: Sequence[Joint] = (), ground: Sequence[Grou
     system = it.system
     given = system.mass, system.inertia, system.controlled, system.controlled_twist, system.mechanisms
     linkage = JointLinkage(system.pose, joints, ground, *given)
-    if system.mechanisms is None:
+    carried = system.mechanisms
+    if carried is None:
         system = replace(system, twist=linkage.fitting(system.pose, system.twist, 0.0))
+    else:
+        carried.twist = linkage.fitting(carried.pose, carried.twist, 0.0)
+        system = replace(system, twist=component_twist(carried.at(carried.pose, 0.0), carried.twist))
     it.stepper.system = replace(system, linkage=linkage)
     it.state = initial_state(it.system, it.mesh_updater, it.clock)
     it.history.cut(dict.fromkeys(it.history.lengths, 0))

@@ -29,7 +29,7 @@ from rigidfluid.core.mechanics.motions import (
     weights,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
@@ -71,7 +71,8 @@ class BodyStep(CarriedState):
     them, ``friction`` that the fluid's own solutions do not see, and ``actuator_work`` against them by what drives
     bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None
     without contacts. ``free``: what carries the bodies, None where each moves by itself. ``link``: what joints did;
-    None without any, and in a fluid, which says so itself.
+    None without any, and in a fluid, which says so itself. ``drag_loss``: in a fluid without inertia ``friction`` is
+    known for certain, and is told here instead.
     """
 
     pose: Pose
@@ -84,6 +85,7 @@ class BodyStep(CarriedState):
     coupling: Coupling | None = None
     free: FreeMotions | None = None
     link: LinkLoad | None = None
+    drag_loss: float = 0.0
 
     @property
     def free_impulse(self) -> Wrench:
@@ -199,7 +201,7 @@ def _advance_coupled(
     movement: BodyDynamics = linked
     if system.mechanisms is not None:
         movement = ComponentDynamics(linked, system.mechanisms, start)
-    if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
+    if system.quasi_steady or size <= RESOLVED * _planned(system, law, near, movement, size, size).substep:
         motions.vary_load(size)
     if system.implicit:
         path = _implicit_coupled(system, law, movement, near, size)
@@ -212,6 +214,8 @@ def _advance_coupled(
             contacts_at = _detected(system, reach)
         path = _resolve(system, law, movement, contacts_at, size, span)
         path = replace(path, friction=movement.friction_loss)
+    if system.quasi_steady:
+        path = replace(path, friction=0.0, drag_loss=path.friction)
     return replace(path, coupling=coupling)
 
 
@@ -313,7 +317,9 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
     linear, angular = mobility(system, state)
     rate = accelerations(system, state)
-    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling)
+    weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
+    resisted = weight if system.quasi_steady else None
+    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, resisted)
 
 
 def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodyStep:
@@ -381,10 +387,16 @@ def _resolve(
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
-    planned = plan(law, contacts, movement, _surfaces(system), size, span)
+    planned = _planned(system, law, contacts, movement, size, span)
     if contacts.gap.min(initial=np.inf) <= law.range and span - planned.free_flight > HOPELESS * planned.substep:
         raise _too_stiff(system, contacts, planned.substep)
     return planned
+
+
+def _planned(
+    system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float
+) -> Plan:
+    return plan(law, contacts, movement, _surfaces(system), size, span, system.quasi_steady)
 
 
 def _surfaces(system: System) -> Reach:

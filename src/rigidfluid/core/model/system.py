@@ -110,6 +110,12 @@ class System:
         """Which of the motions are given (N,)."""
         return self.controlled if self.mechanisms is None else self.mechanisms.controlled
 
+    @property
+    def quasi_steady(self) -> bool:
+        """Whether there is a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
+        problem = self.backend.problem
+        return problem is not None and not problem.inertia
+
     def meshed(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""
         return self.domain if self.window is None else self.window.at(pose)
