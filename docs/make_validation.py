@@ -1294,6 +1294,7 @@ OTHER_SWIMS = {
     "strokes reversed": [BACK],
     "size_body 0.5": ["mesh.size_body=0.5"],
     "growth 0.4": ["mesh.growth=0.4"],
+    "size_body 0.5, growth 0.4": ["mesh.size_body=0.5", "mesh.growth=0.4"],
 }
 
 
