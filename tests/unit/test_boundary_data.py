@@ -364,6 +364,22 @@ def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> No
         flow.after(0.3)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_shear_flows_in_and_out_through_the_same_faces(dimension: int) -> None:
+    """Nothing flows through a face in sum, but for rounding, and half of each face is an inlet."""
+    shear = VectorExpression.of(["y - 0.5", *[0.0] * (dimension - 1)], "u")
+    values = dict.fromkeys([f"{axis}{side}" for axis in "xyz"[:dimension] for side in "01"], shear)
+    posed = replace(problem(dimension, dict.fromkeys(values, "velocity"), values), inertia=False)
+    mesh = box(dimension, 5)
+    x, y = mesh.points[:, 0], mesh.points[:, 1]
+    mesh.points[:, 1] += 0.3 * y * (1.0 - y) * (1.0 - x)
+    flow = Flow.start(ScikitFem(ScikitFem.Options(tolerance=1e-12), posed), mesh, nobody(dimension)).after(0.1)
+    points = np.random.default_rng(0).uniform(0.1, 0.9, (20, dimension))
+    velocity, _ = flow.probe(points)
+    np.testing.assert_allclose(velocity[:, 0], points[:, 1] - 0.5, atol=1e-10)
+    np.testing.assert_allclose(velocity[:, 1:], 0.0, atol=1e-10)
+
+
 def developed(dimension: int, divisions: int, inlet: Any, kind: str) -> Flow:
     """The steady flow through a unit box from its face at x = 0, where something is given, to that at x = 1."""
     values = {"x0": inlet, "x1": BoundaryPressure(Expression(0.0, "p", dimension))}

@@ -14,6 +14,7 @@ from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.impact import on_impact
+from rigidfluid.checks.joints import of_joints
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
@@ -107,6 +108,7 @@ def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]
     """The answers to all questions, in the order in which they are asked."""
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
     yield from chain(to_a_tolerance(scene.time), of_facets(system))
+    yield from of_joints(scene, system)
     mesh = scene.mesh if system.backend.needs_mesh else None
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

@@ -60,3 +60,13 @@ class Face:
         ``node_points``, ``velocity`` (nodes, d) [length, length/time].
         """
         return np.asarray(np.einsum("fid,fid->fi", self.area_vectors(node_points), velocity[self.facet_nodes]))
+
+    def in_and_out(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
+        """What flows in, and what flows out (negative), (2,) [length^d/time]; the sum of both, and 0, if it is curved.
+
+        ``node_points``, ``velocity`` (nodes, d) [length, length/time].
+        """
+        inflow = self.inflow(node_points, velocity)
+        if self.condition.normal is None:
+            return np.array([inflow.sum(), 0.0])
+        return np.array([np.maximum(inflow, 0.0).sum(), np.minimum(inflow, 0.0).sum()])

@@ -52,22 +52,21 @@ def solve_linked(
     StepRejected
         If the links do not hold.
     """
-    solution = discretisation.solve(system, tolerance)
     if links is None:
-        return solution, None
-    rows, force = links.rows, np.zeros(len(links.rate))
-    answers = discretisation.twists_by(system.matrix, np.moveaxis(rows, 0, -1), _ANSWER_TOLERANCE)
-    compliance = np.tensordot(rows, answers, axes=2) + np.diag(links.compliance)
+        return discretisation.solve(system, tolerance), None
+    answers = discretisation.twists_by(system.matrix, np.moveaxis(links.rows, 0, -1), _ANSWER_TOLERANCE)
+    compliance: FloatArray = np.tensordot(links.rows, answers, axes=2) + np.diag(links.compliance)
+    force = _solved(compliance, links.rate)  # what a drive needs from rest, when there is no other load
+    solution = discretisation.solve(_pulled(system, links, force), tolerance)
     missing = _missing(links, solution, force)
-    scale = _power(compliance, missing) + _power_of_motions(system, solution)
+    scale = sum(_power(compliance, each) for each in (links.rate, missing)) + _power_of_motions(system, solution)
     for _ in range(_MOST_ROUNDS):
         if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
             break
-        force = force + np.linalg.solve(compliance, missing)
-        body_load = system.body_load + np.tensordot(force, rows, axes=1)
+        force = force + _solved(compliance, missing)
         velocity, pressure, twist = solution.velocity, solution.pressure, solution.twist
-        linked = replace(system, body_load=body_load, velocity=velocity, pressure=pressure, twist=twist, again=True)
-        solution = discretisation.solve(linked, tolerance)
+        nearer = replace(system, velocity=velocity, pressure=pressure, twist=twist, again=True)
+        solution = discretisation.solve(_pulled(nearer, links, force), tolerance)
         missing = _missing(links, solution, force)
     if _power(compliance, missing) > _TOO_WRONG**2 * scale:
         raise StepRejected(
@@ -79,13 +78,21 @@ def solve_linked(
     return solution, force
 
 
+def _pulled(system: CoupledSystem, links: Links, force: FloatArray) -> CoupledSystem:
+    return replace(system, body_load=system.body_load + np.tensordot(force, links.rows, axes=1))
+
+
 def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
     return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
 
 
+def _solved(compliance: FloatArray, velocity: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.solve(compliance, velocity), dtype=np.float64)
+
+
 def _power(compliance: FloatArray, missing: FloatArray) -> float:
     """Of the forces that would mend it [energy/time]."""
-    return float(missing @ np.linalg.solve(compliance, missing))
+    return float(missing @ _solved(compliance, missing))
 
 
 def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:

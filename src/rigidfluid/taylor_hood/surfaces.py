@@ -153,18 +153,21 @@ class Surfaces:
         held = [face for face in self.faces if face.condition.type == "velocity"]
         if not held:
             return
-        flow = self.ranks.sum(np.array([np.sum(face.inflow(node_points, velocity)) for face in held]))
-        passed = np.abs(flow).sum()
-        if abs(flow.sum()) > MOST_SCALED * passed:
+        each = self.ranks.sum(np.array([face.in_and_out(node_points, velocity) for face in held]))
+        flow, passed = each.sum(axis=1).sum(), np.abs(each).sum()
+        if abs(flow) > MOST_SCALED * passed:
             raise SceneError(
                 "boundary",
-                f"a net inflow of {flow.sum():.6g} at time {time:g}, and {passed:.6g} in and out, without an outlet",
+                f"a net inflow of {flow:.6g} at time {time:g}, and {passed:.6g} in and out, without an outlet",
                 f"as much outflow as inflow, but for {MOST_SCALED:g} of both by the mesh's error",
                 "Balance the velocities, or give one surface type = 'pressure'.",
             )
-        for face, part in zip(held, flow, strict=True):
-            if part != 0.0:
-                velocity[face.nodes] *= 1.0 - np.sign(part) * flow.sum() / passed
+        for face, parts in zip(held, each, strict=True):
+            if parts.any():
+                normal = face.condition.normal
+                # through a flat face the fluid may go both ways, as it does in shear
+                way = parts.sum() if normal is None else velocity[face.nodes] @ normal[:, None]
+                velocity[face.nodes] *= 1.0 - np.sign(way) * flow / passed
 
     def resultants(self, node_force: FloatArray, node_points: FloatArray, position: FloatArray) -> FloatArray:
         """Force and torque (n, d+k) of ``node_force`` (nodes, d) over each body's nodes.

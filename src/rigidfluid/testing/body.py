@@ -168,13 +168,17 @@ def _probes(body: Body) -> FloatArray:
 
 
 def _grid(body: Body) -> tuple[FloatArray, float]:
-    """Midpoints of the cells of a box about the body, and the volume of one cell."""
+    """A point in each cell of a box about the body, and the volume of one cell.
+
+    Anywhere in the cell: midpoints would all be on one side of a flat face along an axis.
+    """
     samples = body.sample_surface(2000)
     lower, upper = 1.01 * samples.min(axis=0), 1.01 * samples.max(axis=0)
     count = 400 if body.dimension == 2 else 60
-    axes = [low + (np.arange(count) + 0.5) * (high - low) / count for low, high in zip(lower, upper, strict=True)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, body.dimension)
-    return points, float(np.prod((upper - lower) / count))
+    corners = np.stack(np.meshgrid(*[np.arange(count)] * body.dimension, indexing="ij"), axis=-1)
+    corners = corners.reshape(-1, body.dimension)
+    cell = (upper - lower) / count
+    return lower + (corners + np.random.default_rng(2).uniform(size=corners.shape)) * cell, float(np.prod(cell))
 
 
 def _inside(body: Body) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -28,7 +29,10 @@ class MechanismContract:
     """
 
     times: ClassVar[tuple[float, ...]] = (0.0, 0.13, 0.5, 1.7)
-    """When a mechanism that is driven is looked at [time]."""
+    """When a mechanism that is driven is looked at closely [time]; jumps and overlaps are sought from the first to the
+    last of them."""
+    looks: ClassVar[int] = 200
+    """How often in all that time."""
     tolerance: ClassVar[float] = 1e-10
     """Of what is exact, relatively."""
     slope_tolerance: ClassVar[float] = 1e-6
@@ -83,15 +87,43 @@ class MechanismContract:
             found, expected = mechanism.rate(time), _difference(mechanism.placement, time)
             self._same_slopes(flat(found), expected, self._length(mechanism))
 
-    def test_components_do_not_overlap(self, mechanism: Mechanism) -> None:
-        """No point of a component's surface is inside another component."""
-        shapes = [component.shape for component in mechanism.components]
+    def test_a_period_repeats_the_placement(self, mechanism: Mechanism) -> None:
+        """After a period it is where it was."""
         for time in self.times:
+            now, later = mechanism.placement(time), mechanism.placement(time + (mechanism.period or 0.0))
+            scale = self.tolerance * self._length(mechanism)
+            np.testing.assert_allclose(later.position, now.position, rtol=0, atol=scale)
+            np.testing.assert_allclose(later.orientation, now.orientation, rtol=0, atol=self.tolerance)
+
+    def test_corners_come_later_and_have_the_rate_before_them(self, mechanism: Mechanism) -> None:
+        """The next corner is after the time asked about, and the rate there is the derivative from before it."""
+        for time in self.times:
+            corner = mechanism.next_corner(time)
+            assert corner > time
+            if np.isfinite(corner):
+                before = _difference(mechanism.placement, corner - _NUDGE)
+                self._same_slopes(flat(mechanism.rate(corner)), before, self._length(mechanism))
+
+    def test_placements_do_not_jump(self, mechanism: Mechanism) -> None:
+        """From one look to the next they change as the rates before, between and after say."""
+        looks = self._looks(mechanism)
+        length = self._length(mechanism)
+        for start, end in itertools.pairwise(looks):
+            rates = np.array([flat(mechanism.rate(time)) for time in (start, 0.5 * (start + end), end)])
+            way, about = _change(mechanism.placement(start), mechanism.placement(end)), (end - start) * rates[1]
+            spread = (end - start) * np.ptp(rates, axis=0)
+            beyond = np.abs(way - about) - spread - self.slope_tolerance * length
+            assert np.all(beyond <= 0.0), f"a jump between times {start:g} and {end:g}: {way} where rates say {about}"
+
+    def test_components_do_not_overlap(self, mechanism: Mechanism) -> None:
+        """No point of a component's surface is inside another component, at any time."""
+        shapes = [component.shape for component in mechanism.components]
+        samples = [shape.sample_surface(500) for shape in shapes]
+        for time in (*self.times, *self._looks(mechanism)):
             pose = mechanism.placement(time)
-            for one, shape in enumerate(shapes):
-                points = to_world(pose, one, shape.sample_surface(500))
-                for other, beside in enumerate(shapes):
-                    assert one == other or np.all(distance_to_body(pose, other, beside, points) > 0)
+            for one, other in itertools.permutations(range(len(shapes)), 2):
+                gap = distance_to_body(pose, other, shapes[other], to_world(pose, one, samples[one])).min()
+                assert gap > 0, f"components {one} and {other} overlap by {-gap:g} at time {time:g}"
 
     def test_its_kinematics_are_derivatives_of_the_poses(self, mechanism: Mechanism) -> None:
         """Poses of the components change by G u with the motion's pose, and by g with time."""
@@ -145,6 +177,11 @@ class MechanismContract:
         enough = self.slope_tolerance * (scale + float(np.abs(found).max()))
         np.testing.assert_allclose(found, expected, rtol=0, atol=enough)
 
+    def _looks(self, mechanism: Mechanism) -> FloatArray:
+        """From the first time to the last; one of what is not driven."""
+        first, last = min(self.times), max(self.times)
+        return np.linspace(first, last, self.looks) if mechanism.driven else np.array([first])
+
     def _length(self, mechanism: Mechanism) -> float:
         """How large it is."""
         reach = [component.shape.bounding_radius for component in mechanism.components]
@@ -170,6 +207,10 @@ def _masses(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
 
 def _difference(poses: Callable[[float], Pose], at: float) -> FloatArray:
     """Central difference of poses, (m, d+k)."""
-    before, after = poses(at - _NUDGE), poses(at + _NUDGE)
+    return _change(poses(at - _NUDGE), poses(at + _NUDGE)) / (2.0 * _NUDGE)
+
+
+def _change(before: Pose, after: Pose) -> FloatArray:
+    """Translations and turns from one to the other, (m, d+k)."""
     straight, turning = after.position - before.position, rotation_between(before.orientation, after.orientation)
-    return np.concatenate([straight, turning], axis=1) / (2.0 * _NUDGE)
+    return np.concatenate([straight, turning], axis=1)

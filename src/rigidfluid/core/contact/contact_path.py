@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import ceil
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -14,9 +15,10 @@ from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
-from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
+from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics, MotionDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
+from rigidfluid.core.mechanics.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
@@ -27,7 +29,7 @@ from rigidfluid.core.mechanics.motions import (
     weights,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
@@ -51,6 +53,9 @@ RESOLVED = 8.0
 MOST_ALIKE = 1_000
 """After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
 
+SPRING_RESOLUTION = 0.2
+"""A substep times the highest frequency of springs in joints: some thirty substeps in a period."""
+
 ROUNDING = 1e-9
 """What is left of a step below this part of it is the rounding of sums."""
 
@@ -66,7 +71,8 @@ class BodyStep(CarriedState):
     them, ``friction`` that the fluid's own solutions do not see, and ``actuator_work`` against them by what drives
     bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None
     without contacts. ``free``: what carries the bodies, None where each moves by itself. ``link``: what joints did;
-    None without any, and in a fluid, which says so itself.
+    None without any, and in a fluid, which says so itself. ``drag_loss``: in a fluid without inertia ``friction`` is
+    known for certain, and is told here instead.
     """
 
     pose: Pose
@@ -79,6 +85,7 @@ class BodyStep(CarriedState):
     coupling: Coupling | None = None
     free: FreeMotions | None = None
     link: LinkLoad | None = None
+    drag_loss: float = 0.0
 
     @property
     def free_impulse(self) -> Wrench:
@@ -152,36 +159,49 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
 def _advance_free(system: System, state: State, start: float, size: float) -> BodyStep:
     movement = _dry(system, state, start)
     if system.law is None:
-        return _free_flight(movement, size)
-    if system.implicit:
-        return _implicit_free(system, system.law, movement, size)
-    reach, span = _horizon(system, movement, size)
-    return _resolve(system, system.law, movement, _detected(system, reach), size, span)
+        path = _free_flight(system, movement, size)
+    elif system.implicit:
+        path, movement = _implicit_free(system, system.law, movement, size)
+    else:
+        reach, span = _horizon(system, movement, size)
+        path = _resolve(system, system.law, movement, _detected(system, reach), size, span)
+    done = movement.link_work
+    if done is None:
+        return path
+    dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
+    return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))
 
 
 def _dry(system: System, state: State, start: float) -> BodyDynamics:
-    now, mechanisms, weight = (state.free_pose, state.free_twist), system.mechanisms, system.weight
+    """The bodies, on motions that joints may link."""
+    free, mechanisms = _dry_motions(system, state, start), system.mechanisms
+    motions: MotionDynamics = free if system.linkage is None else JointedDynamics(free, system.linkage, start)
+    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, system.weight)
+
+
+def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
+    now, mechanisms = (state.free_pose, state.free_twist), system.mechanisms
 
     def given(elapsed: float) -> FloatArray:
         return system.controlled_twist(start + elapsed)
 
     if mechanisms is None:
-        return DryDynamics(*now, system.mass, system.inertia, weight, system.controlled, given)
+        return DryDynamics(*now, system.mass, system.inertia, system.weight, system.controlled, given)
     carried, controlled = weights(system, kinematics_now(system, state)).force, mechanisms.controlled
     if mechanisms.driven:
-        return ComponentDynamics(DrivenDynamics(*now, mechanisms, carried, start, given), mechanisms, start, weight)
-    rigid = DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
-    return ComponentDynamics(rigid, mechanisms, start, weight)
+        return DrivenDynamics(*now, mechanisms, carried, start, given)
+    return DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
 
 
 def _advance_coupled(
     system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
 ) -> BodyStep:
     motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
-    movement: BodyDynamics = motions
+    linked: MotionDynamics = motions if system.linkage is None else JointedDynamics(motions, system.linkage, start)
+    movement: BodyDynamics = linked
     if system.mechanisms is not None:
-        movement = ComponentDynamics(motions, system.mechanisms, start)
-    if size <= RESOLVED * plan(law, near, movement, _surfaces(system), size, size).substep:
+        movement = ComponentDynamics(linked, system.mechanisms, start)
+    if system.quasi_steady or size <= RESOLVED * _planned(system, law, near, movement, size, size).substep:
         motions.vary_load(size)
     if system.implicit:
         path = _implicit_coupled(system, law, movement, near, size)
@@ -194,16 +214,37 @@ def _advance_coupled(
             contacts_at = _detected(system, reach)
         path = _resolve(system, law, movement, contacts_at, size, span)
         path = replace(path, friction=movement.friction_loss)
+    if system.quasi_steady:
+        path = replace(path, friction=0.0, drag_loss=path.friction)
     return replace(path, coupling=coupling)
 
 
-def _implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> BodyStep:
-    """One implicit step; contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
+def _implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
+    """One implicit step, or as many as springs need, and the movement at the end."""
+    parts = _parts(system, size)
+    path, movement = _implicit_or_free(system, law, movement, size / parts)
+    for _ in range(1, parts):
+        before = path
+        path, movement = _implicit_or_free(system, law, movement, size / parts)
+        path = replace(
+            path,
+            impulse=_added(path.impulse, before.impulse, 1.0),
+            dissipated=path.dissipated + before.dissipated,
+            actuator_work=path.actuator_work + before.actuator_work,
+            substeps=path.substeps + before.substeps,
+        )
+    return path, movement
+
+
+def _implicit_or_free(
+    system: System, law: ForceLaw, movement: BodyDynamics, size: float
+) -> tuple[BodyStep, BodyDynamics]:
+    """Contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
     reach = law.range + 4.0 * _fastest(system, movement, size) * size
     contacts = TrackedPairs(system, movement.pose, reach)
     if len(contacts.start) == 0:
-        return _free_flight(movement, size)
-    return _implicit_step(system, law, movement, contacts.start, contacts.at, size)[0]
+        return _free_flight(system, movement, size), movement
+    return _implicit_step(system, law, movement, contacts.start, contacts.at, size)
 
 
 def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
@@ -222,7 +263,7 @@ def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, nea
             contacts = TrackedPairs(system, movement.pose, reach)
             start, contacts_at = contacts.start, contacts.at
         if len(start) == 0:
-            _free_flight(movement, part)
+            _free_flight(system, movement, part)
             continue
         path, movement = _implicit_step(system, law, movement, start, contacts_at, part)
         impulse = _added(impulse, path.impulse, 1.0)
@@ -276,15 +317,23 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
     linear, angular = mobility(system, state)
     rate = accelerations(system, state)
-    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling)
+    weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
+    resisted = weight if system.quasi_steady else None
+    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, resisted)
 
 
-def _free_flight(movement: BodyDynamics, size: float) -> BodyStep:
-    none = nothing(movement.pose)
-    movement.kick(none, 0.5 * size)
-    movement.drift(size)
-    movement.kick(none, 0.5 * size)
-    return _arrived(movement, none, 0.0, 0.0, 1)
+def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodyStep:
+    none, parts = nothing(movement.pose), _parts(system, size)
+    for _ in range(parts):
+        movement.kick(none, 0.5 * size / parts)
+        movement.drift(size / parts)
+        movement.kick(none, 0.5 * size / parts)
+    return _arrived(movement, none, 0.0, 0.0, parts)
+
+
+def _parts(system: System, size: float) -> int:
+    """In how many parts springs of joints are resolved."""
+    return 1 if system.linkage is None else max(1, ceil(size * system.linkage.frequency / SPRING_RESOLUTION))
 
 
 def _arrived(
@@ -311,13 +360,13 @@ def _resolve(
     contacts = contacts_at(movement.pose)
     impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
     push = _contact_load(system, law, contacts, movement)
-    planned, free_flight, substep = 0.0, 0.0, 0.0
+    planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / _parts(system, size)
     while left > 0.0:
         if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
             planned = min(left, span)
             free_flight, substep = _plan(system, law, contacts, movement, size, planned)
             planned = min(planned, free_flight + MOST_ALIKE * substep)
-        part = min(free_flight or substep, left)
+        part = min(free_flight or substep, left, longest)
         movement.kick(push.wrench, 0.5 * part)
         movement.drift(part)
         contacts = contacts_at(movement.pose)
@@ -327,7 +376,8 @@ def _resolve(
         impulse = _added(_added(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
         dissipated += 0.5 * part * (before.loss + push.loss)
         actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
-        count, free_flight, planned = count + 1, 0.0, planned - part
+        count, planned = count + 1, planned - part
+        free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
         left = left - part if left - part > ROUNDING * size else 0.0
         if count == MOST_SUBSTEPS and left > 0.0:
             raise _too_stiff(system, contacts, part)
@@ -337,10 +387,16 @@ def _resolve(
 def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
     if system.substeps:
         return Plan(0.0, size / system.substeps)
-    planned = plan(law, contacts, movement, _surfaces(system), size, span)
+    planned = _planned(system, law, contacts, movement, size, span)
     if contacts.gap.min(initial=np.inf) <= law.range and span - planned.free_flight > HOPELESS * planned.substep:
         raise _too_stiff(system, contacts, planned.substep)
     return planned
+
+
+def _planned(
+    system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float
+) -> Plan:
+    return plan(law, contacts, movement, _surfaces(system), size, span, system.quasi_steady)
 
 
 def _surfaces(system: System) -> Reach:

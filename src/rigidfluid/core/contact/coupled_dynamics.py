@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import block_diagonal
+from rigidfluid.core.mechanics.dynamics import LinkWork, block_diagonal
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.reduced_model import Coupling
@@ -29,10 +29,14 @@ class CoupledDynamics:
         M⁻¹ of bodies outside the model in the lab frame, zero for driven ones [1/mass | 1/(mass·length²)].
     coupling : Coupling
         The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
+    weight : (c,) array, optional
+        What the model's velocities weigh, where the fluid has no inertia [force | force·length]. Then all else of
+        Φ - R (U - Uⁿ) is its friction, known at all times.
     """
 
     free: FreeMotions | None = None
     kinematics: Kinematics | None = None
+    link_work: LinkWork | None = None
 
     def __init__(
         self,
@@ -42,6 +46,7 @@ class CoupledDynamics:
         linear: FloatArray,
         angular: FloatArray,
         coupling: Coupling,
+        weight: FloatArray | None = None,
     ) -> None:
         model, load = coupling.model, coupling.load
         self.pose = pose
@@ -54,6 +59,7 @@ class CoupledDynamics:
         self._load, self._growth, self._time = model.modes.T @ load, np.zeros(len(load)), 0.0
         self._lacking = np.where(np.isnan(coupling.load_before), 0.0, load - coupling.load_before)
         self._modal = np.zeros(len(load))
+        self._weight = None if weight is None else model.modes.T @ weight
         self.mobility, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
 
@@ -91,12 +97,21 @@ class CoupledDynamics:
         return sparse.csr_matrix(own + inside)
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """|A|, or |M⁻¹Φ|, whatever the time."""
-        return np.asarray(np.linalg.norm(self._rate[:, : self.pose.position.shape[1]], axis=1))
+        """|A|, or |M⁻¹Φ|; without inertia of the fluid the mean over the time, as friction ends it soon."""
+        return np.asarray(np.linalg.norm(self._pulled(time)[:, : self.pose.position.shape[1]], axis=1))
 
     def angular_pull(self, time: float) -> FloatArray:
-        """As `pull`, of the rotation."""
-        return np.asarray(np.linalg.norm(self._rate[:, self.pose.position.shape[1] :], axis=1))
+        """As `max_acceleration`, of the rotation."""
+        return np.asarray(np.linalg.norm(self._pulled(time)[:, self.pose.position.shape[1] :], axis=1))
+
+    def _pulled(self, time: float) -> FloatArray:
+        if self._weight is None:
+            return self._rate
+        rate, modes = self._rate.copy(), np.abs(self._model.modes)
+        now = self._load + self._time * self._growth - self._model.decay * self._modal
+        greatest = np.maximum(np.abs(now), np.abs(now + time * self._growth))
+        rate.flat[self._model.velocities] = modes @ (_phi(self._model.decay * time) * greatest)
+        return rate
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the velocities by all that acts for so long."""
@@ -111,6 +126,16 @@ class CoupledDynamics:
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
 
+    def push(self, impulse: FloatArray) -> None:
+        """Change the velocities as impulses (n, d+k) at once do, by the masses alone."""
+        d, model = self.pose.position.shape[1], self._model
+        velocity = self._velocity.copy()
+        velocity[:, :d] += np.einsum("nij,nj->ni", self._own[0], impulse[:, :d])
+        velocity[:, d:] += np.einsum("nij,nj->ni", self._own[1], impulse[:, d:])
+        self._modal = self._modal + model.modes.T @ impulse.flat[model.velocities]
+        velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
+        self._velocity = velocity
+
     def drift(self, time: float) -> None:
         """Move and turn with the present twist."""
         d = self.pose.position.shape[1]
@@ -120,8 +145,16 @@ class CoupledDynamics:
 
     @property
     def friction_loss(self) -> float:
-        """∫ (U - U_lin)ᵀ R (U - U_lin) dt with U_lin linear from start to end [energy]."""
-        return self._friction.beyond_linear(self._modal, self._model.decay)
+        """∫ (U - U_lin)ᵀ R (U - U_lin) dt with U_lin linear from start to end [energy].
+
+        Without inertia of the fluid all that the path's friction takes, less what Simpson's rule sees of it in the
+        solutions: at both ends, and in the middle on the mesh at the end.
+        """
+        if self._weight is None:
+            return self._friction.beyond_linear(self._modal, self._model.decay)
+        start = self._model.modes.T @ self._model.mass_times(self._start.flat[self._model.velocities])
+        resisting = self._weight - self._load, -self._growth
+        return self._friction.beyond_simpson(self._modal, self._model.decay, start, resisting)
 
     def _blocks(self) -> tuple[FloatArray, FloatArray]:
         """M⁻¹ of each body by itself, (n, d, d) and (n, k, k)."""
@@ -140,15 +173,17 @@ class CoupledDynamics:
 
 
 class _Friction:
-    """Integrals over time t of modes y that start at zero: ∫ dt, ∫ t y dt and ∫ y² dt."""
+    """Integrals over time t of modes y that start at zero: ∫ dt, ∫ y dt, ∫ t y dt and ∫ y² dt."""
 
     def __init__(self, count: int) -> None:
         self._time = 0.0
+        self._way = np.zeros(count)
         self._moment = np.zeros(count)
         self._square = np.zeros(count)
 
     def add(self, modal: FloatArray, time: float) -> None:
         """A drift with velocities ``modal`` (c,) for so long."""
+        self._way = self._way + time * modal
         self._moment = self._moment + (self._time + 0.5 * time) * time * modal
         self._square = self._square + time * modal**2
         self._time += time
@@ -159,6 +194,18 @@ class _Friction:
             return 0.0
         each = self._square - 2.0 * end * self._moment / self._time + end**2 * self._time / 3.0
         return float(decay @ np.maximum(each, 0.0))
+
+    def beyond_simpson(
+        self, end: FloatArray, decay: FloatArray, start: FloatArray, resisting: tuple[FloatArray, FloatArray]
+    ) -> float:
+        """∫ (f₀ + t f₁ + λ y)·(u + y) dt, u (c,) at the ``start``, less its Simpson's rule for y = y_end t/T with f at
+        the end."""
+        (first, growth), time = resisting, self._time
+        last, middle, final = first + time * growth, start + 0.5 * end, start + end
+        path = first @ (time * start + self._way) + growth @ (0.5 * time**2 * start + self._moment)
+        path += decay @ (start * self._way + self._square)
+        seen = first @ start + 4.0 * (last + 0.5 * decay * end) @ middle + (last + decay * end) @ final
+        return float(path - time * seen / 6.0)
 
 
 def _phi(decay: FloatArray) -> FloatArray:

@@ -51,8 +51,10 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     step = step_to(system, state, time + size, size, state.free_pose, nothing(state.free_pose), None)
     known = None if state.coupling is None else state.coupling.model
     model = updated_model(system, state, step, state.contacts, flat(state.free_twist), velocities, known)
-    before = _load_before(state, model)
-    return Coupling(model, _expected_load(system, state, model), before, np.zeros(len(velocities)))
+    before, expected = _load_before(state, model), _expected_load(system, state, model)
+    if system.quasi_steady:  # the fluid remembers nothing: Φ is what bodies and contacts leave of the forces there are
+        before = expected = np.where(np.isnan(before), expected + _slowing(state, model), before)
+    return Coupling(model, expected, before, np.zeros(len(velocities)))
 
 
 def shown_coupling(system: System, state: State, candidate: State, path: BodyStep, step: Step) -> Coupling:
@@ -105,8 +107,7 @@ def unforeseen(system: System, state: State, candidate: State) -> bool:
 
 def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
     """(d₀M + R) times the velocities that the solution ``missed`` (c,), where the fluid has no inertia."""
-    problem = system.backend.problem
-    if problem is None or problem.inertia:
+    if not system.quasi_steady:
         return np.zeros_like(missed)
     return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
@@ -120,17 +121,25 @@ def unsteady(state: State, path: BodyStep, size: float) -> bool:
     return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
 
 
-def settled(found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
-    """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else."""
+def settled(system: System, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
+    """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else.
+
+    Changes are those of velocities. Without inertia of the fluid they are what the step gives: friction has long
+    forgotten what the bodies' mass alone would do with an impulse.
+    """
     assert path.coupling is not None
     used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
     if len(model.velocities) == 0:
         return True
-    impulse = _of(model, flat(path.free_impulse))
-    gained, d0 = model.mobility @ impulse, derivative_weights(size, state.past_step)[0]
+    impulse, d0 = _of(model, flat(path.free_impulse)), float(derivative_weights(size, state.past_step)[0])
+
+    def given(answering: ReducedModel, force: FloatArray) -> FloatArray:
+        return answering.answer(d0, force) if system.quasi_steady else answering.mobility @ force
+
+    gained = given(model, impulse)
     before, after = (_of(model, flat(twist)) for twist in (state.free_twist, candidate.free_twist))
-    by_load = size * (model.mobility @ found.load - used.model.mobility @ used.load)
-    by_answer = gained - used.model.mobility @ impulse
+    by_load = size * (given(model, found.load) - given(used.model, used.load))
+    by_answer = gained - given(used.model, impulse)
     missed = model.answer(d0, found.correction - used.correction) / d0
     scale = max(map(np.linalg.norm, (before, after, gained)))
     enough = SETTLED_SHARED if model.shared else SETTLED
@@ -166,6 +175,13 @@ def _load_before(state: State, model: ReducedModel) -> FloatArray:
     slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
     before[here] = (state.coupling.load - slowed)[there]
     return before
+
+
+def _slowing(state: State, model: ReducedModel) -> FloatArray:
+    """R (Uⁿ - Uⁿ⁻¹)/2, what `expected_load` takes off for the friction that comes up in a step."""
+    if state.past is None:
+        return np.zeros(len(model.velocities))
+    return 0.5 * model.friction_times(_of(model, flat(state.free_twist) - flat(state.past.twist)))
 
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:

@@ -32,7 +32,8 @@ def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Conta
 def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
     """The contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
 
-    Parts of one articulated body do not touch each other, yet the gap between them counts, for the fluid there.
+    Parts of one articulated body, and bodies that a joint joins, do not touch each other, yet the gap between them
+    counts, for the fluid there.
     """
     count = len(system.bodies)
     near = detect(system, pose, mesh, system.reach)
@@ -44,16 +45,22 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
 
 
 def interacting(system: System, contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) are not between parts of one articulated body, and are some law's, where there is any."""
-    apart = of_different_bodies(system, contacts)
+    """Which contacts (m,) are not between parts of one articulated body or joined bodies, and are some law's, where
+    there is any."""
+    apart = of_separate_bodies(system, contacts)
     return apart & acted_in(system.interactions, contacts) if system.interactions else apart
 
 
-def of_different_bodies(system: System, contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) are not between parts of one articulated body."""
+def of_separate_bodies(system: System, contacts: Contacts) -> BoolArray:
+    """Which contacts (m,) are neither between parts of one articulated body nor between bodies that a joint joins."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
-    return np.asarray((contacts.body_b >= count) | (system.assembly[contacts.body_a] != other))
+    apart = (contacts.body_b >= count) | (system.assembly[contacts.body_a] != other)
+    if len(system.joined):
+        met = np.sort(np.column_stack([contacts.body_a, contacts.body_b]), axis=1)
+        surfaces = len(system.surfaces)
+        apart &= ~np.isin(met @ [surfaces, 1], system.joined @ [surfaces, 1])
+    return np.asarray(apart)
 
 
 def refuse_overlap(surface: str, gap: float) -> None:

@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.contact.proximity import of_different_bodies
+from rigidfluid.core.contact.proximity import of_separate_bodies
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.surface import Surface
@@ -81,7 +81,7 @@ def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     radius, at_wall = np.array([radius_of(system.bodies[b]) for b in second]), np.zeros(len(pairs), dtype=bool)
     met = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
-    return select(met, of_different_bodies(system, met))
+    return select(met, of_separate_bodies(system, met))
 
 
 def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:

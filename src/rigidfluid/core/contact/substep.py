@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.stiffness import greatest_stiffness, on_the_way
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import cross
@@ -41,7 +42,15 @@ class Plan(NamedTuple):
     substep: float
 
 
-def plan(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach, size: float, span: float) -> Plan:
+def plan(
+    law: ForceLaw,
+    contacts: Contacts,
+    movement: BodyDynamics,
+    reach: Reach,
+    size: float,
+    span: float,
+    quasi_steady: bool = False,
+) -> Plan:
     """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
 
     Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
@@ -61,6 +70,9 @@ def plan(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach
         Of the bodies' surfaces.
     size, span : float
         Of the whole step, and how far contacts are foreseen [time].
+    quasi_steady : bool
+        In a fluid without inertia: its friction may leave contacts no time to swing, and h is then a tenth of the time
+        in which they give way.
 
     Returns
     -------
@@ -73,7 +85,8 @@ def plan(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach
     approach = _approach(law, contacts, movement, reach)
     speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
-    halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled), 1.0))
+    creep = _creep(contacts, movement, reach, size) if quasi_steady else None
+    halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled, creep), 1.0))
     substep = size / 2.0 ** ceil(halvings)
     free_flight = min(float(first.min()), span)
     return Plan(free_flight if free_flight > substep else 0.0, substep)
@@ -140,21 +153,50 @@ def _tumbling_energy(contacts: Contacts, movement: BodyDynamics, velocity: Float
     return np.asarray((1.0 + _of_both(reach.leverage, contacts).max(axis=1)) * kinetic)
 
 
+class _Creep(NamedTuple):
+    """Contacts in a fluid without inertia: ``force`` (m,), what all but contacts amounts to in each [force];
+    ``answer`` (m, m), absolute, the speeds at which gaps open by forces that last for a step [speed/force]."""
+
+    force: FloatArray
+    answer: FloatArray
+
+
+def _creep(contacts: Contacts, movement: BodyDynamics, reach: Reach, size: float) -> _Creep:
+    answer = np.abs(size * delassus(contacts, movement, size).toarray())
+    gained = size * _of_both(movement.max_acceleration(size), contacts).sum(axis=1)
+    wandering = 1.0 + _of_both(reach.leverage, contacts).max(axis=1)
+    return _Creep(gained * _reciprocal(answer.diagonal()), answer * wandering)
+
+
 def _resolved(
-    law: ForceLaw, contacts: Contacts, movement: BodyDynamics, approach: _Approach, pull: FloatArray
+    law: ForceLaw,
+    contacts: Contacts,
+    movement: BodyDynamics,
+    approach: _Approach,
+    pull: FloatArray,
+    creep: _Creep | None,
 ) -> float:
-    """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time]."""
-    stiffness, damping = _reached(law, contacts, relative_motion(contacts, movement), approach, pull)
+    """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
+
+    With ``creep`` a tenth of the time in which contacts give way, if that is longer: h k φ₁(λh) h/m ≤ 0.1 then, with
+    decay rates λ, and Verlet's method with exact decay is stable up to 2.
+    """
+    motion = relative_motion(contacts, movement)
+    force = motion.mass * pull if creep is None else creep.force
+    stiffness, damping = _reached(law, contacts, motion, approach, force)
     inverse = approach.inverse
-    rate = max(np.sqrt(_highest_sum(stiffness, contacts, inverse)), _highest_sum(damping, contacts, inverse))
+    swing = np.sqrt(_highest_sum(stiffness, contacts, inverse))
+    if creep is not None:
+        swing = min(swing, float((creep.answer @ stiffness).max()))
+    rate = max(swing, _highest_sum(damping, contacts, inverse))
     refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
 
 
 def _reached(
-    law: ForceLaw, contacts: Contacts, motion: Motion, approach: _Approach, pull: FloatArray
+    law: ForceLaw, contacts: Contacts, motion: Motion, approach: _Approach, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The greatest stiffness and damping coefficient (m,) that count.
+    """The greatest stiffness and damping coefficient (m,) that count, where a ``force`` (m,) presses besides.
 
     A law may be far stiffer where bodies start than on their way apart. Their substeps grow there, but only where the
     contact is so soft that the change costs next to no energy.
@@ -166,7 +208,7 @@ def _reached(
     stored = law.energy(contacts)
     energy = np.concatenate([approach.energy + stored, stored[parting]])
     both, alike = select(contacts, rows), Motion(motion.velocity[rows], motion.mass[rows])
-    stiffness, damping = _greatest(law, both, alike, _deepest(law, both, energy, (motion.mass * pull)[rows]))
+    stiffness, damping = _greatest(law, both, alike, _deepest(law, both, energy, force[rows]))
     (stiffness, faded), (damping, faded_damping) = (
         np.split(column, [len(contacts)]) for column in (stiffness, damping)
     )

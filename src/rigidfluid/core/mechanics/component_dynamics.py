@@ -8,7 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import BodyDynamics
+from rigidfluid.core.mechanics.dynamics import BodyDynamics, LinkWork
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, jacobian, levers
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -64,6 +64,11 @@ class ComponentDynamics:
     def friction_loss(self) -> float:
         """Of the motions [energy]."""
         return self._motions.friction_loss
+
+    @property
+    def link_work(self) -> LinkWork | None:
+        """Of the motions."""
+        return self._motions.link_work
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """e·(G M⁻¹ Gᵀ)e: of the motion as its body feels it."""

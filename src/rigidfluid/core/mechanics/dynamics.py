@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
@@ -12,16 +13,34 @@ from scipy import sparse
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
-from rigidfluid.core.model.state import FreeMotions
+from rigidfluid.core.model.state import FreeMotions, LinkLoad
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 
 
+@dataclass(frozen=True, slots=True)
+class LinkWork:
+    """Sums over what joints did: the ``impulse`` (c,) of each link [force·time | force·length·time], the ``pushed``
+    (N, d+k) of all of them and of springs, what they ``driven`` into the motions by all that moves as it is told, and
+    ``damped`` away [energy]."""
+
+    impulse: FloatArray
+    pushed: FloatArray
+    driven: float
+    damped: float
+
+    def load(self, time: float) -> LinkLoad:
+        """The mean over so long."""
+        return LinkLoad(self.impulse / time, self.pushed / time)
+
+
 class BodyDynamics(Protocol):
     """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
 
-    pose: Pose
+    @property
+    def pose(self) -> Pose:
+        """Where they are now."""
 
     @property
     def free(self) -> FreeMotions | None:
@@ -53,6 +72,10 @@ class BodyDynamics(Protocol):
     @property
     def friction_loss(self) -> float:
         """What a fluid's friction took that its own solutions do not see [energy]."""
+
+    @property
+    def link_work(self) -> LinkWork | None:
+        """What joints did to them so far, None without any."""
 
     def copied(self) -> Self:
         """The same motion, to be tried out."""
@@ -92,6 +115,7 @@ class DryDynamics:
     free: FreeMotions | None = None
     kinematics: Kinematics | None = None
     friction_loss: float = 0.0
+    link_work: LinkWork | None = None
 
     def __init__(
         self,
@@ -158,6 +182,12 @@ class DryDynamics:
         """Change momenta by F + W and T for so long."""
         state = self._velocity, self._momentum
         _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)
+
+    def push(self, impulse: FloatArray) -> None:
+        """Change momenta by impulses (n, d+k) at once."""
+        d = self._velocity.shape[1]
+        self._velocity = self._velocity + self._free * impulse[:, :d] / self._mass[:, None]
+        self._momentum = self._momentum + self._free * impulse[:, d:]
 
     def drift(self, time: float) -> None:
         """Move straight on and turn freely; driven bodies with their twist in mid-time."""

@@ -21,12 +21,14 @@ class Power:
 @dataclass(frozen=True, slots=True)
 class Work:
     """Done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
-    contacts took, and what friction took between the fluid's solutions."""
+    contacts took, and what friction took between the fluid's solutions, ``drag_loss`` where the fluid has no inertia
+    and that is known for certain."""
 
     gravity: float = 0.0
     control: float = 0.0
     contact_loss: float = 0.0
     path_friction: float = 0.0
+    drag_loss: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +93,7 @@ class Ledger:
             gravity=self.gravity + work.gravity,
             boundary=total("boundary"),
             control=total("control") + work.control,
-            dissipation=self.dissipation + step * dissipated,
+            dissipation=self.dissipation + step * dissipated + work.drag_loss,
             contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
             power=power,

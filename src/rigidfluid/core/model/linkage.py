@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,8 @@ class Joint:
     [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
     from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
     (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
-    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free.
+    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free. ``next_corner(time)``: when the rate
+    jumps after that, infinite if never; None where there are no such times.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Joint:
     rest_angle: float = 0.0
     damping: float = 0.0
     drive: Callable[[float], tuple[float, float]] | None = None
+    next_corner: Callable[[float], float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +39,8 @@ class GroundLink:
     """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
 
     On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
-    Rotations in 3D are those about the axes: their displacement is the rotation vector.
+    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): where the
+    springs do not pull, None where that is at the start [length].
     """
 
     name: str
@@ -45,6 +48,21 @@ class GroundLink:
     held: BoolArray
     stiffness: FloatArray
     damping: FloatArray
+    rest: FloatArray | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkReading:
+    """One joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge its ``angle``
+    [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body, about the point
+    of the joint [force | force·length]."""
+
+    name: str
+    gap: float
+    angle: float
+    rate: float
+    force: FloatArray
+    torque: FloatArray
 
 
 class Linkage(Protocol):
@@ -52,12 +70,17 @@ class Linkage(Protocol):
 
     ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
     or to the ground alone, its own number. ``linked`` (N,): which motions have links at all. ``frequency``: of the
-    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time].
+    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time]. ``driven``: whether
+    anything moves as it is told, so that rates and the power of springs may not be zero.
     """
 
     clusters: IntArray
     linked: BoolArray
     frequency: float
+    driven: bool
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""
@@ -68,8 +91,18 @@ class Linkage(Protocol):
     def misfit(self, motions: Pose, time: float) -> FloatArray:
         """By how much rigid links do not fit, a row for each [length | rad]."""
 
+    def tolerance(self, motions: Pose) -> FloatArray:
+        """Misfits that are rounding there, a row for each [length | rad]."""
+
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Of springs on the motions, N rows."""
 
     def spring_energy(self, motions: Pose, time: float) -> float:
         """Stored in springs [energy]."""
+
+    def spring_power(self, motions: Pose, time: float) -> float:
+        """Of what moves bodies as they are told, against springs [energy/time]."""
+
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
+
+import numpy as np
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
@@ -63,7 +65,8 @@ class System:
     then the motions'.
     ``linkage``: joints, held directions and springs of the motions, None where there are none.
     ``window``: the part of the domain that is meshed, None where all is.
-    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other.
+    ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other. ``joined`` (p, 2): bodies
+    that a joint joins, the lower number first, which do not either.
     ``interactions``: the laws with the contacts that they act in; ``law``: all of them together, None where there are
     none. ``loads``: what contacts must hold; its smallest gap is the least of all laws', and 0 without any.
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
@@ -100,11 +103,18 @@ class System:
     mechanisms: Mechanisms | None = None
     window: Window | None = None
     linkage: Linkage | None = None
+    joined: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
 
     @property
     def controlled_motions(self) -> BoolArray:
         """Which of the motions are given (N,)."""
         return self.controlled if self.mechanisms is None else self.mechanisms.controlled
+
+    @property
+    def quasi_steady(self) -> bool:
+        """Whether there is a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
+        problem = self.backend.problem
+        return problem is not None and not problem.inertia
 
     def meshed(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""

@@ -21,21 +21,33 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
 
 
 def begun_anew(system: System, clock: Clock, state: State) -> State:
-    """At a corner the state without its past, from which nothing after it can be extrapolated; else the same.
+    """At a corner and one step after it, the state without its past, from which nothing can be extrapolated; else the
+    same.
 
-    The fluid, if there is one, then is in motion with bodies that change theirs at once, as at a start.
+    The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start.
     """
-    if state.past is None or _corner_after(system, clock, state.tick - 1) != state.tick:
+    if state.past is None:
         return state
-    level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
-    return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+    if _is_corner(system, clock, state.tick):
+        level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
+        return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+    if _is_corner(system, clock, state.tick - clock.tick_from(state.past.step)):
+        return replace(state, past=None)
+    return state
+
+
+def _is_corner(system: System, clock: Clock, tick: int) -> bool:
+    """Whether there is one at this tick; a start is none."""
+    return tick > 0 and _corner_after(system, clock, tick - 1) == tick
 
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:
     """The first tick after this at which there is a corner; infinite without any."""
-    if system.mechanisms is None:
-        return math.inf
-    corner = system.mechanisms.next_corner(clock.time(tick))
+    corner = _next_corner(system, clock.time(tick))
     while math.isfinite(corner) and clock.tick_from(corner) <= tick:
-        corner = system.mechanisms.next_corner(corner)
+        corner = _next_corner(system, corner)
     return clock.tick_from(corner) if math.isfinite(corner) else math.inf
+
+
+def _next_corner(system: System, time: float) -> float:
+    return min((part.next_corner(time) for part in (system.mechanisms, system.linkage) if part), default=math.inf)

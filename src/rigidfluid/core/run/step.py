@@ -12,10 +12,11 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_o
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
+from rigidfluid.core.mechanics.motions import kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import flat, power, together, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.model.energy import Power, Work
+from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import FreeMotions, LinkLoad, Past, State
 from rigidfluid.core.model.system import System
@@ -83,9 +84,9 @@ def attempt(
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         contact_wrench=_mean(path.impulse, size),
-        ledger=state.ledger.after(
+        ledger=_ledger_at_start(system, state, advance, step, time - size).after(
             size,
-            _power(system, advance, step),
+            _power(system, advance, step, path.free_pose),
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
             stored_energy(system, contacts, path.free_pose, time),
@@ -146,18 +147,31 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     return float(np.sum(energy))
 
 
-def _power(system: System, advance: Advance, step: Step) -> Power:
+def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:
     """What enters by the boundary, what drives bodies and joints in the fluid, what fluid and dampers dissipate."""
     given, where = given_twist(step)
     control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
     if step.links is not None and advance.link_force is not None:
         control += float(advance.link_force @ step.links.rate)
+        control += 0.0 if system.linkage is None else system.linkage.spring_power(motions, step.time)
         damping = float(step.links.compliance @ advance.link_force**2)
     return Power(advance.boundary_power, control, advance.dissipation, advance.dissipation_midway, damping)
+
+
+def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
+    """Where a step begins anew at a corner of a stroke, with the power of its own forces at its start: half of an
+    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps."""
+    ledger = state.ledger
+    if state.tick == 0 or state.past is not None or ledger.power is None:
+        return ledger
+    motions, held = state.free_pose, system.controlled_twist(time)
+    links = None if step.links is None or system.linkage is None else system.linkage.links(motions, time)
+    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
+    return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
     """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     free = float(fallen[~system.controlled].sum())
-    return Work(free, path.actuator_work + by_actuators, path.dissipated, path.friction)
+    return Work(free, path.actuator_work + by_actuators, path.dissipated, path.friction, path.drag_loss)

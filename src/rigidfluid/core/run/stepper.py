@@ -136,13 +136,14 @@ class Stepper:
                 continue
             with self._watch("response"):
                 found = shown_coupling(self.system, state, candidate, path, step)
-            agreed = not provisional and settled(found, path, state, candidate)
+            agreed = not provisional and settled(self.system, found, path, state, candidate)
             if agreed or number == MOST_ATTEMPTS - 1:
                 break
             path = self._path(state, level, found)
             if level < self._clock.levels and self._changes_gaps_too_fast(state, path.pose):
                 raise _too_fast()
-        return replace(candidate, coupling=found, impact=impact_tick(state, path, candidate)), agreed
+        impact = None if self.system.quasi_steady else impact_tick(state, path, candidate)
+        return replace(candidate, coupling=found, impact=impact), agreed
 
     def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodyStep:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""

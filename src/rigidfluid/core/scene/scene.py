@@ -20,13 +20,14 @@ PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 Positive = Annotated[float, Field(gt=0)]
 Vector = tuple[float, ...]
 # In 2D an angular velocity is one number, which stands for a vector of one component.
-Angular = Annotated[
-    Vector,
-    BeforeValidator(
-        lambda value: tuple(value) if isinstance(value, list | tuple) else (value,),
-        json_schema_input_type=float | tuple[float, ...],
-    ),
-]
+_LISTED = BeforeValidator(
+    lambda value: tuple(value) if isinstance(value, list | tuple) else (value,),
+    json_schema_input_type=float | tuple[float, ...],
+)
+Angular = Annotated[Vector, _LISTED]
+NotNegative = tuple[Annotated[float, Field(ge=0)], ...]
+NotNegativeAngular = Annotated[NotNegative, _LISTED]
+Freedom = Literal["x", "y", "z", "rotation", "rx", "ry", "rz"]
 # How bodies and mechanisms start, in their keys alike.
 InitialPosition = Annotated[Vector, Field(description="Initial position of the centre of mass [length]")]
 InitialAngle = Annotated[float | None, Field(description="Initial angle, counter-clockwise; only in 2D [rad]")]
@@ -199,6 +200,29 @@ class PrescribedTable(_Table):
     frequency: Positive | None = Field(default=None, description="Frequency of the sinusoidal displacement [1/time]")
 
 
+class SpringTable(_Table):
+    """Springs and dampers between a body and the ground, along the axes: force = -stiffness · displacement -
+    damping · velocity, and so for rotations."""
+
+    stiffness: NotNegative | None = Field(
+        default=None, description="Along x, y (and z); zero if not given [force/length]"
+    )
+    damping: NotNegative | None = Field(
+        default=None, description="Along x, y, z; zero if not given [force·time/length]"
+    )
+    angular_stiffness: NotNegativeAngular | None = Field(
+        default=None, description="A number in 2D, about x, y and z in 3D; zero if not given [force·length/rad]"
+    )
+    angular_damping: NotNegativeAngular | None = Field(
+        default=None, description="A number in 2D, about x, y and z in 3D; zero if not given [force·length·time/rad]"
+    )
+    rest: Vector | None = Field(
+        default=None,
+        description="Position of the centre of mass at which springs pull nowhere; that at the start if not given; "
+        "rotations rest where they start [length]",
+    )
+
+
 class BodyTable(_OpenTable):
     """One rigid body."""
 
@@ -219,6 +243,12 @@ class BodyTable(_OpenTable):
     )
     fixed: bool = Field(default=False, description="Whether the body is held in place")
     prescribed: PrescribedTable | None = Field(default=None, description="A motion that the fluid cannot change")
+    free: tuple[Freedom, ...] | None = Field(
+        default=None,
+        description="Directions in which it may move, the others are held: of `x`, `y`, `z`, in 2D `rotation`, in 3D "
+        "rotations `rx`, `ry`, `rz` about the axes; all if not given",
+    )
+    spring: SpringTable | None = Field(default=None, description="Springs and dampers between it and the ground")
 
 
 class MechanismTable(_OpenTable):
@@ -235,6 +265,38 @@ class MechanismTable(_OpenTable):
     orientation: InitialOrientation = None
     velocity: InitialVelocity = None
     angular_velocity: InitialAngularVelocity = None
+
+
+class JointTable(_Table):
+    """A joint between two bodies, or of one with the ground."""
+
+    name: str = Field(
+        default="", pattern=PRINTABLE, description="Name in the results; `joint0`, `joint1`, … if not given"
+    )
+    type: Literal["rod", "hinge"] = Field(
+        description="`rod`: the bodies move as if they were one; `hinge`: they turn about a point, in 3D about an axis"
+    )
+    between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
+        description="Names of two bodies or components, or of one, which is joined to the ground"
+    )
+    at: Vector | None = Field(
+        default=None, description="Point of the joint at the start; needed by a hinge; else the first body's [length]"
+    )
+    axis: Vector | None = Field(default=None, description="Direction of a hinge's axis at the start; 3D only [1]")
+    stiffness: Positive | None = Field(
+        default=None, description="Of a spring in a hinge; none if not given [force·length/rad]"
+    )
+    rest_angle: float | None = Field(
+        default=None,
+        description="Angle at which that spring rests, of the first body seen from the second, counter-clockwise about "
+        "the axis; 0, that at the start, if not given [rad]",
+    )
+    damping: Positive | None = Field(
+        default=None, description="Of a damper in a hinge; none if not given [force·length·time/rad]"
+    )
+    drive: StrokeTable | None = Field(
+        default=None, description="The angle of a driven hinge as a function of time, 0 at the start"
+    )
 
 
 class ContactTable(_OpenTable):
@@ -365,6 +427,7 @@ class Scene(_Table):
     boundary: tuple[BoundaryTable, ...] = ()
     body: tuple[BodyTable, ...] = ()
     mechanism: tuple[MechanismTable, ...] = ()
+    joint: tuple[JointTable, ...] = ()
     contact: ContactTable = ContactTable()
     interaction: tuple[InteractionTable, ...] = ()
     mesh: MeshTable | None = Field(default=None, description="The mesh; needed by backends with a mesh")
@@ -381,6 +444,11 @@ class Scene(_Table):
     def _name_mechanisms(cls, tables: tuple[MechanismTable, ...]) -> tuple[MechanismTable, ...]:
         return tuple(one.model_copy(update={"name": one.name or f"mechanism{i}"}) for i, one in enumerate(tables))
 
+    @field_validator("joint")
+    @classmethod
+    def _name_joints(cls, tables: tuple[JointTable, ...]) -> tuple[JointTable, ...]:
+        return tuple(one.model_copy(update={"name": one.name or f"joint{i}"}) for i, one in enumerate(tables))
+
     @property
     def name(self) -> str:
         """Name of the scene."""
@@ -395,7 +463,9 @@ class Scene(_Table):
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal
         scene."""
         # Without keys that came later a scene is the same as before there were such, and its checkpoints go on.
-        left_out: dict[str, Any] = {name: True for name in ("interaction", "mechanism") if not getattr(self, name)}
+        left_out: dict[str, Any] = {
+            name: True for name in ("interaction", "mechanism", "joint") if not getattr(self, name)
+        }
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}
         if self.mesh is not None:

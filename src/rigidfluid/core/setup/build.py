@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
+from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
@@ -30,6 +31,7 @@ from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
+from rigidfluid.core.setup.joints import build_linkage, joined_bodies
 from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
@@ -73,10 +75,15 @@ def build_system(scene: Scene) -> System:
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
     held = opened(conditions(scene, domain), window)
+    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried)
+    if linkage is not None:
+        started = linkage.fitting(start, started, 0.0)
+    if carried is not None:
+        carried.twist = started
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
-    moved = _together(carried, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
-    pulled = _together(carried, weight)
+    moved = _together(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
+    pulled = _together(carried, linkage, weight)
     speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
     surfaces = (*(body.name for body in scene.body), *domain.names)
@@ -111,6 +118,8 @@ def build_system(scene: Scene) -> System:
         implicit=scene.contact.stepping == "implicit",
         mechanisms=carried,
         window=window,
+        linkage=linkage,
+        joined=joined_bodies(scene),
     )
 
 
@@ -131,11 +140,14 @@ def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
     )
 
 
-def _together(carried: CarriedBodies | None, rows: FloatArray) -> FloatArray:
-    """For each body the sum of ``rows`` (n, …) over all that move with it: what it meets something with."""
-    if carried is None:
+def _together(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
+    """For each body the sum of ``rows`` (n, …) over all that a motion or joints let move with it: at most that is what
+    it meets something with."""
+    if carried is None and linkage is None:
         return rows
-    return carried_sum(carried.carrier, rows, len(carried.mass))[carried.carrier]
+    motion = np.arange(len(rows)) if carried is None else carried.carrier
+    whole = motion if linkage is None else linkage.clusters[motion]
+    return carried_sum(whole, rows, int(whole.max()) + 1)[whole]
 
 
 def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:

@@ -11,6 +11,8 @@ from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.interactions import check_interactions
+from rigidfluid.core.setup.joint_checks import check_joints
+from rigidfluid.core.setup.joints import with_drives
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 from rigidfluid.core.setup.time_factor import with_time_tables
@@ -36,11 +38,12 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     PluginError
         If it names a part that is not there.
     """
-    scene = with_time_tables(read_table(Scene, data))
+    scene = with_drives(with_time_tables(read_table(Scene, data)))
     check_tables(scene)
     parts = known_parts(scene)
     check_boundary(parts.scene, parts.domain)
     check_interactions(parts.scene, parts.domain)
+    check_joints(parts.scene)
     check_fluid(parts.scene, parts.backend.part, parts.domain)
     return scene
 

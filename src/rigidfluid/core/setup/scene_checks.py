@@ -113,10 +113,19 @@ def _vectors(scene: Scene) -> Vectors:
             yield f"body.{i}.prescribed.velocity", body.prescribed.velocity, d
             yield f"body.{i}.prescribed.angular_velocity", body.prescribed.angular_velocity, k
             yield f"body.{i}.prescribed.amplitude", body.prescribed.amplitude, d
+        if body.spring:
+            yield f"body.{i}.spring.stiffness", body.spring.stiffness, d
+            yield f"body.{i}.spring.damping", body.spring.damping, d
+            yield f"body.{i}.spring.angular_stiffness", body.spring.angular_stiffness, k
+            yield f"body.{i}.spring.angular_damping", body.spring.angular_damping, k
+            yield f"body.{i}.spring.rest", body.spring.rest, d
     for i, mechanism in enumerate(scene.mechanism):
         yield f"mechanism.{i}.position", mechanism.position, d
         yield f"mechanism.{i}.velocity", mechanism.velocity, d
         yield f"mechanism.{i}.angular_velocity", mechanism.angular_velocity, k
+    for i, joint in enumerate(scene.joint):
+        yield f"joint.{i}.at", joint.at, d
+        yield f"joint.{i}.axis", joint.axis, 3
     for i, box in enumerate(scene.mesh.refine if scene.mesh else ()):
         yield f"mesh.refine.{i}.lower", box.lower, d
         yield f"mesh.refine.{i}.upper", box.upper, d

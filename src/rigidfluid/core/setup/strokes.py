@@ -31,12 +31,21 @@ def build_stroke(table: StrokeTable, at: str) -> Stroke:
         If there are no rows or they do not rise in time from 0, or a period is too short or ends with a jump.
     """
     key = _key(table, at)
-    given = getattr(table, key)
-    rows: Rows = read_rows(given.file, f"{at}.{key}.file") if isinstance(given, TimeFileTable) else given
+    rows: Rows = getattr(with_rows(table, at), key)
     if len(rows) < 2:
         raise SceneError(f"{at}.{key}", f"{len(rows)} rows", "two rows or more", "Add rows of [time, value].")
     check_rows(rows, 0.0, f"{at}.{key}")
     return Stroke(rows, key == "smooth", _period(table, rows, f"{at}.{key}", at))
+
+
+def with_rows(table: StrokeTable, at: str) -> StrokeTable:
+    """A table with the rows of its file in the place of that, so that a checkpoint needs no file; raises SceneError
+    where it cannot be read."""
+    key = _key(table, at)
+    given = getattr(table, key)
+    if not isinstance(given, TimeFileTable):
+        return table
+    return table.model_copy(update={key: read_rows(given.file, f"{at}.{key}.file")})
 
 
 def _key(table: StrokeTable, at: str) -> str:

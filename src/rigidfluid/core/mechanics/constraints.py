@@ -1,0 +1,155 @@
+"""What joints, held directions and dampers ask of the relative motion of two bodies, or of one and the ground."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import remainder, tau
+
+import numpy as np
+
+from rigidfluid.core.mechanics.markers import MarkerPair, PlacedPair
+from rigidfluid.core.model.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Constraint(ABC):
+    """Rows on the motion of the first marker relative to the second, E (v₁ - v₂) + A (ω₁ - ω₂) + compliance · force =
+    rate, with v the velocities of the points; rigid, and at rate zero, unless said otherwise."""
+
+    name: str
+    markers: MarkerPair
+
+    @abstractmethod
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        """E (r, d) and A (r, k) where the markers are there."""
+
+    @abstractmethod
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        """By how much it does not fit (r,), none of a damper; the rows are its rate where it is zero [length | rad]."""
+
+    @property
+    @abstractmethod
+    def compliance(self) -> FloatArray:
+        """(r,), zero for rigid rows, 1/damping for those of dampers."""
+
+    def rate(self, time: float) -> FloatArray:
+        """(r,) [length/time | rad/time]."""
+        return np.zeros_like(self.compliance)
+
+    def add_rows(self, at: PlacedPair, rows: FloatArray) -> None:
+        """Put those on the bodies' twists into ``rows`` (r, n, d+k), zero before."""
+        along, about = self.directions(at)
+        for sign, body, lever in zip((1.0, -1.0), self.markers.bodies, at.levers, strict=True):
+            if body is not None:
+                rows[:, body] += sign * np.concatenate([along, along @ lever + about], axis=1)
+
+
+@dataclass(frozen=True)
+class SamePoint(Constraint):
+    """The points stay together along ``along`` (r, d), axes of space."""
+
+    along: FloatArray
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.zeros(len(self.along))
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return self.along, np.zeros((len(self.along), self.markers.spins))
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.asarray(self.along @ at.gap)
+
+
+@dataclass(frozen=True)
+class SameOrientation(Constraint):
+    """No relative rotation. The misfit in 3D is sin θ of the rotation between the axes, along its axis."""
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.zeros(self.markers.spins)
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((self.markers.spins, len(at.gap))), np.eye(self.markers.spins)
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        if self.markers.spins == 1:
+            return np.array([at.angle])
+        turn = at.axes[0] @ at.axes[1].T
+        skew = 0.5 * (turn - turn.T)
+        return np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
+
+
+@dataclass(frozen=True)
+class SameAxis(Constraint):
+    """The third axes stay parallel: no relative rotation about the second's first two, in 3D."""
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.zeros(2)
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((2, 3)), at.axes[1][:, :2].T
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        first, second = at.axes
+        return np.array([-second[:, 1] @ first[:, 2], second[:, 0] @ first[:, 2]])
+
+
+@dataclass(frozen=True)
+class DrivenAngle(Constraint):
+    """The angle about the last axis is that of a ``drive``, which gives angle and rate at a time; whole turns of
+    difference are none."""
+
+    drive: Callable[[float], tuple[float, float]]
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.zeros(1)
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((1, len(at.gap))), at.spin_axis[None]
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.array([remainder(at.angle - self.drive(time)[0], tau)])
+
+    def rate(self, time: float) -> FloatArray:
+        return np.array([self.drive(time)[1]])
+
+
+@dataclass(frozen=True)
+class HingeDamper(Constraint):
+    """Resists the rate of the angle about the last axis."""
+
+    damping: float
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.array([1.0 / self.damping])
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((1, len(at.gap))), at.spin_axis[None]
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.zeros(0)
+
+
+@dataclass(frozen=True)
+class GroundDamper(Constraint):
+    """Resists velocities of a body, ``along`` (r, d+k) of space, by ``damping`` (r,)."""
+
+    along: FloatArray
+    damping: FloatArray
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.asarray(1.0 / self.damping)
+
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        d = len(at.gap)
+        return self.along[:, :d], self.along[:, d:]
+
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.zeros(0)

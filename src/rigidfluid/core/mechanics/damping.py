@@ -1,0 +1,46 @@
+"""Dampers over a time in which they alone change how fast they are stretched, and a constant push."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+
+_SMALL = 1e-3
+
+
+def damper_impulse(
+    answer: FloatArray, compliance: FloatArray, before: FloatArray, undamped: FloatArray, time: float
+) -> FloatArray:
+    """Impulse -∫ s/compliance of ds/dt = a - answer · s/compliance, a the rate that leads to ``undamped`` without it.
+
+    In the modes of answer/compliance exact: so dampers of any strength give no energy.
+
+    Parameters
+    ----------
+    answer : (c, c) array
+        How the rates at which dampers are stretched answer to impulses in them [1/mass | 1/(mass·length²)].
+    compliance : (c,) array
+        1/damping.
+    before, undamped : (c,) array
+        Rates of stretch at the start, and at the end without dampers [length/time | rad/time].
+    time : float
+        How long it is [time].
+
+    Returns
+    -------
+    (c,) array
+        [force·time | force·length·time].
+    """
+    root = 1.0 / np.sqrt(compliance)
+    decay, modes = np.linalg.eigh(root[:, None] * answer * root)
+    first, second = _phi(np.maximum(decay, 0.0) * time)
+    start, gained = modes.T @ (root * before), modes.T @ (root * (undamped - before))
+    return np.asarray(-time * root * (modes @ (first * start + second * gained)), dtype=np.float64)
+
+
+def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """φ₁ = (1 - e⁻ᶻ)/z and φ₂ = (1 - φ₁)/z."""
+    small, safe = z < _SMALL, np.where(z < _SMALL, 1.0, z)
+    first = np.where(small, 1.0 - z / 2.0 + z**2 / 6.0 - z**3 / 24.0, -np.expm1(-safe) / safe)
+    return first, np.where(small, 0.5 - z / 6.0 + z**2 / 24.0 - z**3 / 120.0, (1.0 - first) / safe)

@@ -1,0 +1,217 @@
+"""How motions go that joints, held directions, springs and dampers link."""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import NamedTuple, Protocol, Self
+
+import numpy as np
+from scipy import sparse
+
+from rigidfluid.core.mechanics.component_dynamics import MotionDynamics
+from rigidfluid.core.mechanics.damping import damper_impulse
+from rigidfluid.core.mechanics.dynamics import LinkWork
+from rigidfluid.core.mechanics.joint_forces import joint_forces
+from rigidfluid.core.mechanics.wrenches import flat, nothing, together
+from rigidfluid.core.model.linkage import Linkage
+from rigidfluid.core.model.state import FreeMotions
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
+from rigidfluid.errors import StepRejected
+
+_MOST_ITERATIONS = 50
+
+_PARTS = 4
+"""In so many parts of a time accelerations are looked at."""
+
+
+class PushedDynamics(MotionDynamics, Protocol):
+    """Motions that take impulses."""
+
+    def push(self, impulse: FloatArray) -> None:
+        """Change the twist as impulses (N, d+k) at once do [force·time | force·length·time]."""
+
+
+class JointedDynamics:
+    """RATTLE: kicks by impulses Cᵀ J after which twists are those that joints allow, drifts after impulses Cᵀ J at
+    their start with which rigid joints fit at their end.
+
+    Second order, reversible, and without a fluid symplectic. Dampers act during a kick, exactly.
+
+    Parameters
+    ----------
+    inner : PushedDynamics
+        The N motions without joints; changed in place.
+    linkage : Linkage
+        What links them.
+    time : float
+        At the start [time].
+
+    Notes
+    -----
+    Andersen, J. Comput. Phys. 52 (1983) 24, doi:10.1016/0021-9991(83)90014-1; Leimkuhler and Skeel, J. Comput. Phys.
+    112 (1994) 117, doi:10.1006/jcph.1994.1085.
+    """
+
+    free: FreeMotions | None = None
+    kinematics: Kinematics | None = None
+
+    def __init__(self, inner: PushedDynamics, linkage: Linkage, time: float) -> None:
+        self._inner, self._linkage, self._time = inner, linkage, time
+        self._here = self._rows_here()
+        self._rigid: BoolArray = self._here.links.compliance == 0.0
+        nothing_yet = np.zeros_like(self._here.links.rate), np.zeros_like(flat(self.twist))
+        self.link_work = LinkWork(*nothing_yet, 0.0, 0.0)
+
+    @property
+    def pose(self) -> Pose:
+        """Of the motions."""
+        return self._inner.pose
+
+    @property
+    def twist(self) -> Twist:
+        return self._inner.twist
+
+    @property
+    def friction_loss(self) -> float:
+        return self._inner.friction_loss
+
+    @property
+    def mobility(self) -> FloatArray:
+        """That without joints, which only make motions give way less: what is planned for it is on the safe side."""
+        return self._inner.mobility
+
+    @property
+    def inverse_inertia(self) -> FloatArray:
+        """As `mobility`."""
+        return self._inner.inverse_inertia
+
+    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """As `mobility`."""
+        return self._inner.inverse_mass(body, direction)
+
+    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+        """W - W Cᵀ (C W Cᵀ)⁻¹ C W, C of rigid joints, W without them."""
+        alone, rows = self._inner.inverse_masses(time), sparse.csr_matrix(self._here.rows[self._rigid])
+        answers = alone @ rows.T
+        held = joint_forces((rows @ answers).toarray(), answers.T.toarray())
+        return sparse.csr_matrix(alone - answers @ sparse.csr_matrix(held))
+
+    def copied(self) -> Self:
+        other = copy(self)
+        other._inner = self._inner.copied()
+        return other
+
+    def max_acceleration(self, time: float) -> FloatArray:
+        """Of the motions without contacts, looked at a few times in so much time from now."""
+        d = self.pose.position.shape[1]
+        return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, :d], axis=2).max(axis=0))
+
+    def angular_pull(self, time: float) -> FloatArray:
+        """As `max_acceleration`."""
+        d = self.pose.position.shape[1]
+        return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, d:], axis=2).max(axis=0))
+
+    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
+        """By ``wrench`` and springs, while dampers act, and then by rigid joints."""
+        springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing()
+        driven = time * self._linkage.spring_power(self.pose, self._time)
+        self._inner.kick(together(wrench, springs), time, at)
+        impulse, links, damped = self._held(), self._here.links, 0.0
+        if not self._rigid.all():
+            by_dampers, damped = self._damped(before, self._missing() - self._here.answer @ impulse, time)
+            impulse += by_dampers
+        self._inner.push(self._on_motions(impulse))
+        self._add(impulse, driven + float(impulse @ links.rate), damped, time * flat(springs))
+
+    def drift(self, time: float) -> None:
+        """So that rigid joints fit at its end, where they then take out of the twist what they do not allow."""
+        rate = self._mean_rate(0.5 * time)
+        impulse = self._close(time)
+        self._add(impulse, float(impulse @ rate))
+        self._time += time
+        self._here = self._rows_here()
+        settled = self._held()
+        self._inner.push(self._on_motions(settled))
+        self._add(settled, float(settled @ self._mean_rate(-0.5 * time)))
+
+    def _close(self, time: float) -> FloatArray:
+        """Drift after the impulses (c,) that make rigid joints fit at the end, by Newton's method."""
+        impulse, rigid, end = np.zeros(len(self._rigid)), self._rigid, self._time + time
+        for _ in range(_MOST_ITERATIONS):
+            trial = self._inner.copied()
+            trial.push(self._on_motions(impulse))
+            trial.drift(time)
+            misfit = self._linkage.misfit(trial.pose, end)
+            if np.all(np.abs(misfit) <= self._linkage.tolerance(trial.pose)):
+                self._inner = trial
+                return impulse
+            there = self._linkage.links(trial.pose, end).rows[rigid]
+            slope = time * there.reshape(len(there), -1) @ self._here.answers[:, rigid]
+            impulse[rigid] -= joint_forces(slope, misfit)
+        found = f"a misfit of {np.abs(misfit).max():.3g} that no force closes"
+        raise StepRejected("joints", found, "forces with which they fit", "Shorten time.step.")
+
+    def _held(self) -> FloatArray:
+        """Impulses (c,) of rigid joints that make the twist what they allow."""
+        impulse, rigid = np.zeros(len(self._rigid)), self._rigid
+        impulse[rigid] = joint_forces(self._here.answer[np.ix_(rigid, rigid)], self._missing()[rigid])
+        return impulse
+
+    def _damped(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
+        """Impulses (c,) of dampers, whose rates lack ``before`` and without them ``undamped`` (c,), and of rigid joints
+        that resist them; and the energy that they take."""
+        rigid, damped, answer = self._rigid, ~self._rigid, self._here.answer
+        across, impulse = answer[np.ix_(rigid, damped)], np.zeros(len(rigid))
+        resisting = -joint_forces(answer[np.ix_(rigid, rigid)], across)
+        alone = answer[np.ix_(damped, damped)] + across.T @ resisting
+        start, end = -before[damped], -undamped[damped]
+        impulse[damped] = damper_impulse(alone, self._here.links.compliance[damped], start, end, time)
+        impulse[rigid] = resisting @ impulse[damped]
+        return impulse, -0.5 * float(impulse[damped] @ (start + end + alone @ impulse[damped]))
+
+    def _missing(self) -> FloatArray:
+        """rate - C u (c,)."""
+        return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
+
+    def _mean_rate(self, ahead: float) -> FloatArray:
+        """Of the rates (c,) now and so long ahead, at the present pose: a drive's may jump between two drifts."""
+        rate = self._here.links.rate
+        if not self._linkage.driven:
+            return rate
+        return np.asarray(0.5 * (rate + self._linkage.links(self.pose, self._time + ahead).rate))
+
+    def _add(self, impulse: FloatArray, driven: float, damped: float = 0.0, springs: FloatArray | float = 0.0) -> None:
+        """To what the joints did."""
+        so_far, pushed = self.link_work, self._on_motions(impulse) + springs
+        self.link_work = LinkWork(
+            so_far.impulse + impulse, so_far.pushed + pushed, so_far.driven + driven, so_far.damped + damped
+        )
+
+    def _on_motions(self, impulse: FloatArray) -> FloatArray:
+        """Cᵀ J (N, d+k)."""
+        return np.asarray(np.einsum("c,cni->ni", impulse, self._here.links.rows))
+
+    def _rows_here(self) -> _Rows:
+        links = self._linkage.links(self.pose, self._time)
+        rows = links.rows.reshape(len(links.rate), -1)
+        answers = self._inner.inverse_masses(0.0) @ rows.T
+        return _Rows(links, rows, answers, rows @ answers)
+
+    def _accelerations(self, time: float) -> FloatArray:
+        """Mean ones in parts of a time (parts, N, d+k)."""
+        trial, none, part = self.copied(), nothing(self.pose), time / _PARTS
+        twists = [flat(self.twist)]
+        for _ in range(_PARTS):
+            trial.kick(none, part)
+            trial.drift(part)
+            twists.append(flat(trial.twist))
+        return np.asarray(np.diff(twists, axis=0) / part)
+
+
+class _Rows(NamedTuple):
+    """Of the links in one pose: ``rows`` C (c, N·(d+k)), ``answers`` W Cᵀ to impulses, ``answer`` C W Cᵀ."""
+
+    links: Links
+    rows: FloatArray
+    answers: FloatArray
+    answer: FloatArray

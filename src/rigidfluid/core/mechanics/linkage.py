@@ -1,0 +1,269 @@
+"""The joints of a system as rows on the twists of its motions, and the poses at which they fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from math import inf
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from rigidfluid.core.mechanics.constraints import Constraint
+from rigidfluid.core.mechanics.joint_forces import joint_forces
+from rigidfluid.core.mechanics.joint_parts import ground_parts, joint_parts
+from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
+from rigidfluid.core.mechanics.link_parts import LinkParts
+from rigidfluid.core.mechanics.markers import Markers, PlacedPair
+from rigidfluid.core.mechanics.redundancy import motion_of, refuse_redundant, refuse_void
+from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
+from rigidfluid.core.mechanics.wrenches import flat, nothing
+from rigidfluid.core.model.linkage import GroundLink, Joint, LinkReading
+from rigidfluid.core.model.system import Mechanisms
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
+from rigidfluid.errors import StepRejected
+
+ROUNDING = 1e-13
+"""Joints fit where their misfit is no more than this part of the lengths and angles there."""
+
+_MOST_ITERATIONS = 30
+
+
+class JointLinkage:
+    """Joints and ground links between bodies, as a `Linkage` of the motions that carry them.
+
+    Its rows are, in this order, those of the joints as they are given, then those of the ground links. Of a joint:
+    its force on the first body, d of them along the axes of space; then torques on that, of a rod all k, of a hinge in
+    3D two across the axis; then that of its drive or its damper about the axis. Of a ground link: forces and torques
+    that hold the body, then those of its dampers.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of the n bodies at the start.
+    joints, ground : sequences of Joint, of GroundLink
+        What links them.
+    mass : (n,) array
+        Of the bodies [mass].
+    inertia : (n, k, k) array
+        In their frames [mass·length²].
+    controlled : (n,) array
+        Which bodies have a given motion.
+    controlled_twist : callable
+        From a time to the twists (N, d+k) of given motions.
+    mechanisms : Mechanisms, optional
+        The motions that carry the bodies, where these do not all move by themselves.
+
+    Raises
+    ------
+    SceneError
+        If a joint holds nothing that moves freely, or what other joints hold already.
+
+    Notes
+    -----
+    ``joint_rows``, ``ground_rows``: which rows are those of each joint and of each ground link. ``frequency`` is that
+    of the springs on the masses without joints, at the start: joints make motions heavier, so it bounds the
+    frequencies with them in any pose.
+    """
+
+    def __init__(
+        self,
+        pose: Pose,
+        joints: Sequence[Joint],
+        ground: Sequence[GroundLink],
+        mass: FloatArray,
+        inertia: FloatArray,
+        controlled: BoolArray,
+        controlled_twist: Callable[[float], FloatArray],
+        mechanisms: Mechanisms | None = None,
+    ) -> None:
+        self._mechanisms, self._controlled_twist = mechanisms, controlled_twist
+        self._mass = mass if mechanisms is None else mechanisms.mass
+        self._own_inertia = inertia
+        self._controlled = controlled if mechanisms is None else mechanisms.controlled
+        self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
+        self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
+        self._slices = _slices(self._parts)
+        self.joint_rows, self.ground_rows = self._slices[: len(joints)], self._slices[len(joints) :]
+        self._constraints = [one for part in self._parts for one in part.constraints]
+        self._springs = [one for part in self._parts for one in part.springs]
+        self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
+        self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
+        lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
+        self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
+        self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
+        self.linked, self.clusters = self._linked(
+            [(one.first, one.second) for one in joints], [one.body for one in ground]
+        )
+        moved = mechanisms is not None and mechanisms.driven
+        self.driven = moved or bool(self._controlled.any()) or any(joint.drive is not None for joint in joints)
+        start = pose if mechanisms is None else mechanisms.pose
+        refuse_void(self._constraints, self._carrier, self._controlled)
+        refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
+        self.frequency = self._greatest_frequency(start)
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
+        return min((corner(time) for corner in self._corners), default=inf)
+
+    def links(self, motions: Pose, time: float) -> Links:
+        """C, rates and compliances, where the ``motions`` are there."""
+        bodies, kinematics = self._bodies(motions, time)
+        rows = np.zeros((len(self._compliance), *flat(nothing(bodies)).shape))
+        rate, start = np.zeros(len(rows)), 0
+        for one, at in self._placed(bodies):
+            here = slice(start, start := start + len(one.compliance))
+            one.add_rows(at, rows[here])
+            rate[here] = one.rate(time)
+        rate -= np.einsum("cni,ni->c", rows, self._given(bodies, kinematics, time))
+        return Links(self._carried(rows, kinematics), rate, self._compliance)
+
+    def misfit(self, motions: Pose, time: float) -> FloatArray:
+        """By how much rigid links do not fit, a row for each [length | rad]."""
+        bodies = self._bodies(motions, time)[0]
+        return np.concatenate([np.zeros(0), *(one.misfit(at, time) for one, at in self._placed(bodies))])
+
+    def tolerance(self, motions: Pose) -> FloatArray:
+        """Misfits that are rounding there, a row for each [length | rad]."""
+        length = np.abs(motions.position[self.linked]).max(initial=0.0) + self._markers.reach
+        angle = 1.0 + np.abs(motions.orientation[self.linked]).max(initial=0.0)
+        return np.asarray(ROUNDING * np.where(self._are_lengths, length, angle))
+
+    def closed(self, motions: Pose, time: float) -> Pose:
+        """The nearest poses at which the joints fit, in the metric of the masses, by Newton's method.
+
+        Raises
+        ------
+        StepRejected
+            If there are none near.
+        """
+        moves, d = (self.linked & ~self._controlled)[:, None], motions.position.shape[1]
+        for _ in range(_MOST_ITERATIONS):
+            misfit = self.misfit(motions, time)
+            if np.all(np.abs(misfit) <= self.tolerance(motions)):
+                return motions
+            way = self._answer(motions, time, misfit)
+            position = motions.position - way[:, :d]
+            orientation = np.where(moves, rotate(motions.orientation, -way[:, d:]), motions.orientation)
+            motions = Pose(position, orientation)
+        raise StepRejected(
+            "joints",
+            f"a misfit of {np.abs(misfit).max():.3g} that cannot be closed",
+            "poses at which they fit",
+            "Shorten time.step.",
+        )
+
+    def fitting(self, motions: Pose, twist: Twist, time: float) -> Twist:
+        """The ``twist`` (N rows) after the impulses of rigid joints that take out of it what they do not allow."""
+        d, links = twist.velocity.shape[1], self.links(motions, time)
+        missing = np.einsum("cni,ni->c", links.rows, flat(twist)) - links.rate
+        change = self._answer(motions, time, missing[links.compliance == 0.0])
+        return Twist(twist.velocity - change[:, :d], twist.angular_velocity - change[:, d:])
+
+    def spring_wrench(self, motions: Pose, time: float) -> Wrench:
+        """Of springs on the motions, N rows."""
+        bodies, kinematics = self._bodies(motions, time)
+        return free_wrench(kinematics, self._pull(bodies))
+
+    def spring_energy(self, motions: Pose, time: float) -> float:
+        """Stored in springs [energy]."""
+        bodies = self._bodies(motions, time)[0]
+        return sum(spring.energy(bodies) for spring in self._springs)
+
+    def spring_power(self, motions: Pose, time: float) -> float:
+        """Of what moves bodies as they are told, against springs [energy/time]."""
+        if not self._springs or not self.driven:
+            return 0.0
+        bodies, kinematics = self._bodies(motions, time)
+        return -float(np.sum(flat(self._pull(bodies)) * self._given(bodies, kinematics, time)))
+
+    def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
+        return zip(self._constraints, self._markers.placed(bodies), strict=True)
+
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""
+        known = np.zeros(len(self._compliance)) if force is None else force
+        placed, readings = iter(self._markers.placed(bodies)), []
+        for part, rows in zip(self._parts, self._slices, strict=True):
+            own = [next(placed) for _ in part.constraints]
+            readings.append(part.reading(own, bodies, twist, time, known[rows]))
+        return readings
+
+    def _pull(self, bodies: Pose) -> Wrench:
+        wrench = nothing(bodies)
+        for spring in self._springs:
+            spring.add_wrench(bodies, wrench)
+        return wrench
+
+    def _bodies(self, motions: Pose, time: float) -> tuple[Pose, Kinematics | None]:
+        if self._mechanisms is None:
+            return motions, None
+        return self._mechanisms.poses(motions, time), self._mechanisms.at(motions, time)
+
+    def _given(self, bodies: Pose, kinematics: Kinematics | None, time: float) -> FloatArray:
+        """Of the bodies' twists what no free motion has a share in (n, d+k)."""
+        d = bodies.position.shape[1]
+        held = np.where(self._controlled[:, None], self._controlled_twist(time), 0.0)
+        return flat(component_twist(kinematics, Twist(held[:, :d], held[:, d:])))
+
+    def _carried(self, rows: FloatArray, kinematics: Kinematics | None) -> FloatArray:
+        """C G of rows (c, n, d+k) on the bodies, zero for given motions (c, N, d+k)."""
+        if kinematics is not None:
+            d = kinematics.arm.shape[1]
+            turning = moment(np.broadcast_to(kinematics.arm, rows[..., :d].shape), rows[..., :d])
+            whole = np.concatenate([rows[..., :d], rows[..., d:] + turning], axis=2)
+            total = carried_sum(kinematics.carrier, np.swapaxes(whole, 0, 1), len(kinematics.centre))
+            rows = np.swapaxes(total, 0, 1)
+        return np.asarray(rows * ~self._controlled[:, None])
+
+    def _rigid(self, rows: FloatArray) -> FloatArray:
+        return np.asarray(rows[self._compliance == 0.0])
+
+    def _answer(self, motions: Pose, time: float, missing: FloatArray) -> FloatArray:
+        """M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ times something of the rigid rows (r,), (N, d+k)."""
+        rows = self._rigid(self.links(motions, time).rows)
+        light = np.einsum("nij,cnj->cni", self._inverse_masses(motions, time), rows)
+        force = joint_forces(np.einsum("cni,eni->ce", rows, light), missing)
+        return np.asarray(np.einsum("c,cni->ni", force, light))
+
+    def _inverse_masses(self, motions: Pose, time: float) -> FloatArray:
+        """M⁻¹ of each motion (N, d+k, d+k)."""
+        count, d = motions.position.shape
+        inertia = self._own_inertia if self._mechanisms is None else self._mechanisms.inertia(time)
+        width = d + inertia.shape[1]
+        blocks = np.zeros((count, width, width))
+        blocks[:, :d, :d] = np.eye(d) / self._mass[:, None, None]
+        blocks[:, d:, d:] = inverse_lab_inertia(inertia, motions.orientation)
+        return blocks
+
+    def _weighted(self, rows: FloatArray, motions: Pose) -> FloatArray:
+        """Rows (c, N, d+k) times the root of M⁻¹ at the start."""
+        root = np.linalg.cholesky(self._inverse_masses(motions, 0.0))
+        return np.asarray(np.einsum("cni,nij->cnj", rows, root))
+
+    def _greatest_frequency(self, motions: Pose) -> float:
+        if not self._springs:
+            return 0.0
+        bodies, kinematics = self._bodies(motions, 0.0)
+        stretch = np.concatenate([spring.stretch(bodies) for spring in self._springs])
+        weighted = self._weighted(self._carried(stretch, kinematics), motions)
+        return float(np.linalg.norm(weighted.reshape(len(weighted), -1), ord=2))
+
+    def _linked(self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]) -> tuple[BoolArray, IntArray]:
+        """Which motions have links, and the lowest number of those that each is linked with."""
+        count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)
+        linked[
+            [self._carrier[body] for body in (*ground, *(one for pair in joints for one in pair if one is not None))]
+        ] = True
+        ends = [[motion_of(body, self._carrier, self._controlled) for body in pair] for pair in joints]
+        pairs = np.array([pair for pair in ends if None not in pair], dtype=np.int64).reshape(-1, 2)
+        graph = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+        parts = connected_components(graph, directed=False)[1]
+        return linked, np.unique(parts, return_index=True)[1][parts]
+
+
+def _slices(parts: Sequence[LinkParts]) -> tuple[slice, ...]:
+    ends = np.cumsum([0, *(part.rows for part in parts)]).tolist()
+    return tuple(slice(start, end) for start, end in pairwise(ends))

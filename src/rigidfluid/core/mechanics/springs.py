@@ -1,0 +1,89 @@
+"""Springs in hinges, and between bodies and the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rigidfluid.core.mechanics.markers import MarkerPair, Markers
+from rigidfluid.core.mechanics.rigid import rotation_between
+from rigidfluid.core.model.types import FloatArray, Pose, Wrench
+
+
+class Spring(Protocol):
+    """Stores energy in a pose of the n bodies."""
+
+    def energy(self, pose: Pose) -> float:
+        """[energy]."""
+
+    def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
+        """Add -d energy/d pose in place."""
+
+    def stretch(self, pose: Pose) -> FloatArray:
+        """Rows B (r, n, d+k) of d energy = ½ |B δ|², δ displacements from where nothing is stretched [√stiffness]."""
+
+
+class HingeSpring:
+    """½ ``stiffness`` (angle - ``rest``)² of the angle about the last axis of ``markers``."""
+
+    def __init__(self, markers: MarkerPair, stiffness: float, rest: float) -> None:
+        self._bodies, self._markers = markers.bodies, Markers([markers], len(markers.first.point))
+        self._stiffness, self._rest = stiffness, rest
+
+    def energy(self, pose: Pose) -> float:
+        return 0.5 * self._stiffness * (self._markers.placed(pose)[0].angle - self._rest) ** 2
+
+    def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
+        at = self._markers.placed(pose)[0]
+        torque = -self._stiffness * (at.angle - self._rest) * at.spin_axis
+        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
+            if body is not None:
+                wrench.torque[body] += sign * torque
+
+    def stretch(self, pose: Pose) -> FloatArray:
+        axis, (count, d) = self._markers.placed(pose)[0].spin_axis, pose.position.shape
+        rows = np.zeros((1, count, d + len(axis)))
+        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
+            if body is not None:
+                rows[0, body, d:] = sign * np.sqrt(self._stiffness) * axis
+        return rows
+
+
+@dataclass(frozen=True, slots=True)
+class GroundSpring:
+    """½ Σ ``stiffness`` · displacement² of a body from ``position`` (d,) and ``orientation`` (q,) along the axes of
+    space; of rotations in 3D the displacement is the rotation vector, of at most half a turn."""
+
+    body: int
+    stiffness: FloatArray
+    position: FloatArray
+    orientation: FloatArray
+
+    def energy(self, pose: Pose) -> float:
+        return 0.5 * float(self.stiffness @ self._displacement(pose) ** 2)
+
+    def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
+        displaced, d = self._displacement(pose), len(self.position)
+        pull = -self.stiffness * displaced
+        wrench.force[self.body] += pull[:d]
+        wrench.torque[self.body] += pull[d:] if d == 2 else _inverse_left_jacobian(displaced[d:]).T @ pull[d:]
+
+    def stretch(self, pose: Pose) -> FloatArray:
+        width = len(self.stiffness)
+        rows = np.zeros((width, len(pose.position), width))
+        rows[:, self.body] = np.diag(np.sqrt(self.stiffness))
+        return rows
+
+    def _displacement(self, pose: Pose) -> FloatArray:
+        turned = rotation_between(self.orientation[None], pose.orientation[self.body : self.body + 1])[0]
+        return np.concatenate([pose.position[self.body] - self.position, turned])
+
+
+def _inverse_left_jacobian(turn: FloatArray) -> FloatArray:
+    """J⁻¹ with log(exp(δ) exp(φ)) = φ + J⁻¹ δ for small δ: 1 - ½ [φ]× + (1 - ½θ cot ½θ)/θ² [φ]×², θ = |φ|."""
+    half = 0.5 * float(np.linalg.norm(turn))
+    skew = np.cross(np.eye(3), turn)
+    bent = 1.0 / 12.0 if half < 1e-3 else (1.0 - half / np.tan(half)) / (4.0 * half**2)
+    return np.asarray(np.eye(3) - 0.5 * skew + bent * skew @ skew)

@@ -1,0 +1,148 @@
+"""A scene's joints, held directions and springs become a linkage of its motions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.scene.scene import SpringTable
+from rigidfluid.core.setup.joint_checks import held_directions
+from rigidfluid.core.setup.strokes import build_stroke, with_rows
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.mechanics.strokes import Stroke
+    from rigidfluid.core.model.system import Mechanisms
+    from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose
+    from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
+
+LONGEST_TURN = 0.5
+"""A spring's frequency times the step is at most that: Verlet's scheme then errs by a hundredth of the frequency."""
+
+
+def build_linkage(
+    scene: Scene,
+    pose: Pose,
+    mass: FloatArray,
+    inertia: FloatArray,
+    controlled: BoolArray,
+    controlled_twist: Callable[[float], FloatArray],
+    mechanisms: Mechanisms | None,
+) -> JointLinkage | None:
+    """What links the motions of a scene, None where nothing does.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the components of mechanisms among its bodies; its tables are checked.
+    pose : Pose
+        Of the n bodies at the start.
+    mass, inertia : (n,), (n, k, k) arrays
+        Of the bodies [mass], [mass·length²].
+    controlled : (n,) array
+        Which bodies have a given motion.
+    controlled_twist : callable
+        Of the N motions (N, d+k) at a time, where they are given.
+    mechanisms : Mechanisms or None
+        The motions that carry the bodies.
+
+    Returns
+    -------
+    JointLinkage or None
+        As they are at the start.
+
+    Raises
+    ------
+    SceneError
+        If joints hold what is held already, nothing can move in one, or a spring is too stiff for the step.
+    """
+    ground = [_ground_link(body, number, scene.dimension) for number, body in enumerate(scene.body) if _is_held(body)]
+    if not scene.joint and not ground:
+        return None
+    joints = joints_of(scene, pose)
+    linkage = JointLinkage(pose, joints, ground, mass, inertia, controlled, controlled_twist, mechanisms)
+    _check_step(scene, linkage)
+    return linkage
+
+
+def joints_of(scene: Scene, pose: Pose) -> list[Joint]:
+    """The joints of a scene, with the components of mechanisms among its bodies, that are at ``pose`` at the start."""
+    return [_joint(scene, table, f"joint.{number}", pose) for number, table in enumerate(scene.joint)]
+
+
+def joined_bodies(scene: Scene) -> IntArray:
+    """Numbers of the two bodies of each joint that is not with the ground (p, 2)."""
+    names = [body.name for body in scene.body]
+    pairs = [sorted(map(names.index, joint.between)) for joint in scene.joint if len(joint.between) == 2]
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+
+def with_drives(scene: Scene) -> Scene:
+    """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file."""
+    tables = [
+        table
+        if table.drive is None
+        else table.model_copy(update={"drive": with_rows(table.drive, f"joint.{number}.drive")})
+        for number, table in enumerate(scene.joint)
+    ]
+    return scene.model_copy(update={"joint": tuple(tables)})
+
+
+def _is_held(body: BodyTable) -> bool:
+    return body.free is not None or body.spring is not None
+
+
+def _ground_link(body: BodyTable, number: int, dimension: int) -> GroundLink:
+    spring = body.spring or SpringTable()
+    return GroundLink(
+        name=body.name,
+        body=number,
+        held=held_directions(body, dimension),
+        stiffness=_along(dimension, spring.stiffness, spring.angular_stiffness),
+        damping=_along(dimension, spring.damping, spring.angular_damping),
+        rest=None if spring.rest is None else np.array(spring.rest),
+    )
+
+
+def _along(dimension: int, straight: Sequence[float] | None, turning: Sequence[float] | None) -> FloatArray:
+    """Values of all directions (d+k,), zero where none are given."""
+    k = 1 if dimension == 2 else 3
+    return np.array([*(straight or [0.0] * dimension), *(turning or [0.0] * k)])
+
+
+def _joint(scene: Scene, table: JointTable, at: str, pose: Pose) -> Joint:
+    names = [body.name for body in scene.body]
+    first, *second = map(names.index, table.between)
+    point = pose.position[first].copy() if table.at is None else np.array(table.at)
+    axis = None if table.axis is None else np.array(table.axis) / np.linalg.norm(table.axis)
+    stroke = None if table.drive is None else build_stroke(table.drive, f"{at}.drive")
+    return Joint(
+        name=table.name,
+        type=table.type,
+        first=first,
+        second=second[0] if second else None,
+        at=point,
+        axis=axis,
+        stiffness=table.stiffness or 0.0,
+        rest_angle=table.rest_angle or 0.0,
+        damping=table.damping or 0.0,
+        drive=None if stroke is None else _followed(stroke),
+        next_corner=None if stroke is None else stroke.next_corner,
+    )
+
+
+def _followed(stroke: Stroke) -> Callable[[float], tuple[float, float]]:
+    """Its value and rate together."""
+    return lambda time: (stroke.value(time), stroke.rate(time))
+
+
+def _check_step(scene: Scene, linkage: JointLinkage) -> None:
+    turn = linkage.frequency * scene.time.step
+    if turn > LONGEST_TURN:
+        found = f"{scene.time.step:g}, in which the stiffest spring turns by {turn:.3g} rad"
+        allowed = f"at most {LONGEST_TURN / linkage.frequency:.3g}, {LONGEST_TURN:g} rad"
+        raise SceneError("time.step", found, allowed, "Shorten it, or soften the spring.")

@@ -1,0 +1,75 @@
+"""Bodies with joints, without a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.mechanics.rigid import rotate
+from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
+
+AXIS = np.array([0.48, 0.6, 0.64])
+"""Of hinges in 3D."""
+
+
+def placed(count: int, dimension: int, seed: int = 0) -> Pose:
+    """Bodies somewhere, turned somehow."""
+    random, k = np.random.default_rng(seed), 1 if dimension == 2 else 3
+    position = random.uniform(-1.0, 1.0, (count, dimension)) + 2.0 * np.arange(count)[:, None]
+    orientation = np.zeros((count, 1)) if dimension == 2 else np.tile(np.eye(1, 4), (count, 1))
+    return Pose(position, rotate(orientation, random.normal(size=(count, k))))
+
+
+def masses(count: int, dimension: int) -> tuple[FloatArray, FloatArray]:
+    """Each body heavier than the one before, with three unequal principal moments in 3D."""
+    mass = 1.0 + 0.5 * np.arange(count)
+    moments = np.array([[0.3]]) if dimension == 2 else np.diag([0.2, 0.3, 0.4])
+    return mass, mass[:, None, None] * moments
+
+
+def joint(kind: str, first: int, second: int | None, at: Sequence[float], **keys: Any) -> Joint:
+    """In 3D a hinge is about `AXIS` unless ``keys`` say otherwise."""
+    point = np.array(at, dtype=float)
+    axis = AXIS if kind == "hinge" and len(point) == 3 else None
+    return Joint(
+        **{"name": f"joint{first}", "type": kind, "first": first, "second": second, "at": point, "axis": axis} | keys
+    )
+
+
+def ground_link(body: int, dimension: int, held: Sequence[int] = (), **keys: Any) -> GroundLink:
+    """Holds some directions, by number; without spring and damper unless ``keys`` say otherwise."""
+    width = 3 if dimension == 2 else 6
+    held_directions, zero = np.zeros(width, dtype=bool), np.zeros(width)
+    held_directions[list(held)] = True
+    given = {"stiffness": zero, "damping": zero} | {key: np.array(value, dtype=float) for key, value in keys.items()}
+    return GroundLink(f"body{body}", body, held_directions, **given)
+
+
+def linkage(
+    pose: Pose,
+    joints: Sequence[Joint] = (),
+    ground: Sequence[GroundLink] = (),
+    controlled: Sequence[int] = (),
+    given: Any = None,
+) -> JointLinkage:
+    """Of bodies with `masses`; ``given``: the twists of those that are controlled, zero if not said."""
+    count, dimension = pose.position.shape
+    held = np.zeros(count, dtype=bool)
+    held[list(controlled)] = True
+    rest = np.zeros((count, 3 if dimension == 2 else 6))
+    return JointLinkage(pose, joints, ground, *masses(count, dimension), held, given or (lambda _: rest))
+
+
+def moved(pose: Pose, twist: FloatArray, time: float) -> Pose:
+    """Where twists (n, d+k) lead to that stay as they are."""
+    d = pose.position.shape[1]
+    return Pose(pose.position + time * twist[:, :d], rotate(pose.orientation, time * twist[:, d:]))
+
+
+def split(twist: FloatArray, dimension: int) -> Twist:
+    """A record of (n, d+k)."""
+    return Twist(twist[:, :dimension], twist[:, dimension:])
