@@ -1254,8 +1254,8 @@ reaches 20 D to the inlet and to either side (blockage 2.5 %) and 30 D to the ou
 
 Published: D. Shiels, A. Leonard, A. Roshko, J. Fluids Struct. 15 (2001) 3, doi:10.1006/jfls.2000.0330, table 2, by a
 vortex method in an unbounded fluid; the figures are taken from works that quote them. At k* = 9.88 and 4.74
-vortices and cylinder swing together (lock-in), away from the frequency at which a fixed cylinder sheds. At k* = 19.8 the
-cylinder hardly moves; nothing published was at hand to compare with.
+vortices and cylinder swing together (lock-in), away from the frequency at which a fixed cylinder sheds. At k* = 19.8
+the cylinder hardly moves; nothing published was at hand to compare with.
 
 Energy is created in coarse cells far downstream, from when vortices come there, and not by the spring. With cells of
 0.7 D there (a second `[[mesh.refine]]` from [8, -5] to [30, 5], 24229 unknowns) the residual at k* = 4.74 and time 75
