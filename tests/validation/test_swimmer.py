@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from swimmer_2d import ADVANCE, SWIMS, two_cycles
 
+pytestmark = pytest.mark.validation
+
 
 def second_cycle(label: str) -> tuple[np.ndarray, dict[str, Any]]:
     """Displacement, and the summary."""
