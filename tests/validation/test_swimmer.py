@@ -22,7 +22,7 @@ def test_the_advance_is_that_of_the_reference_whatever_step_and_mesh(label: str)
     moved, summary = second_cycle(label)
     assert moved[0] == pytest.approx(ADVANCE, rel=0.002)
     assert abs(moved[1]) < 1e-3 * ADVANCE
-    assert abs(summary["energy"]["relative_residual"]) < 1e-3
+    assert abs(summary["energy"]["relative_residual"]) < 2e-3
 
 
 def test_reversed_strokes_swim_back() -> None:
