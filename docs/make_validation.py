@@ -1443,11 +1443,12 @@ the three disks, Taylor–Hood elements, facets .15: .29104). Feel++ publishes .
 
 {figures}
 
-The displacement is that of the reference, whatever the step. What the first cycle has more is no error of the steps:
-the bodies' inertia, small as it is, holds the swimmer back for a moment at the start; with a hundredth of their density
-it is gone. At each corner of a stroke the velocities change at once, and there the run begins anew with short steps. In
-Stokes flow that costs 6 short steps a corner. Without it the second cycle would be off by as little (.29058), but the
-balance of energy by 2.8 % instead of 0.07 %, as a whole step would be booked at the rate of the stroke before.
+The displacement is that of the reference, whatever the step. The first cycle differs from it, as it begins at rest: for
+a time of mass over drag the bodies keep that momentum, and that time is shorter than the longer steps, which do not
+resolve it. With a hundredth of the bodies' density the first cycle is as the second. At each corner of a stroke the
+velocities change at once, and there the run begins anew with short steps. In Stokes flow that costs 5 more steps a
+corner. Without it the second cycle would be off by as little (.29058), but the balance of energy by 2.8 % instead of
+0.07 %, as a whole step would be booked at the rate of the stroke before.
 
 Turned by 90° in a square box the swimmer advances as far. Turned by 30° it feels that the box is square.
 
