@@ -20,7 +20,7 @@ def refuse_unrest(history: History, density: float, epsilon: float) -> None:
 
 
 @pytest.mark.parametrize("step", [0.004, 0.1])
-@pytest.mark.parametrize(("density", "epsilon"), [(2.0, 1e-8), (0.1, 1e-8), (1e-3, 1e-10)])
+@pytest.mark.parametrize(("density", "epsilon"), [(2.0, 1e-8), (0.1, 1e-8), (1e-3, 1e-8)])
 def test_a_disk_comes_to_rest_on_a_wall_and_makes_no_energy(density, epsilon, step):
     """The body's mass alone would say that a light one at rest may move by a thousandth of ten metres a second."""
     history = rigidfluid.run(stokes_pressed(step, density, epsilon, "implicit"))
@@ -42,7 +42,7 @@ def test_an_impact_shortens_no_step_and_loses_little():
     assert history.energy["path_friction"][-1] == 0.0
     created, lost, _ = created_and_lost(history)
     assert created <= 1e-3
-    assert lost <= 0.02
+    assert lost <= 0.04
 
 
 def test_disks_in_a_chimney_come_to_rest_on_each_other():
