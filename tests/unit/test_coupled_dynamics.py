@@ -239,3 +239,16 @@ def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_know
     gained = (joined(bodies.twist) - joined(TWIST)).ravel()[INSIDE]
     mean = np.where(np.isnan(before), LOAD, 0.5 * (LOAD + before))
     np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)
+
+
+def test_an_impulse_at_once_is_answered_by_the_masses_alone():
+    bodies = movement()
+    impulse = flat_wrench().reshape(BODIES, WIDTH)
+    expected = joined(bodies.twist).ravel() + bodies.inverse_masses(0.0) @ impulse.ravel()
+    bodies.push(impulse)
+    np.testing.assert_allclose(joined(bodies.twist).ravel(), expected, rtol=1e-12)
+    pushed, kicked = bodies, movement()
+    kicked.kick(Wrench(1e8 * WRENCH.force, 1e8 * WRENCH.torque), 1e-8)
+    for each in (pushed, kicked):
+        each.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.3)
+    np.testing.assert_allclose(joined(pushed.twist), joined(kicked.twist), rtol=1e-5)

@@ -52,7 +52,7 @@ def assert_rates(links, pose, twist, time):
 
 def angle_of(links):
     """Of the last joint's markers."""
-    return links._constraints[-1].markers.angle
+    return lambda pose: links._markers.placed(pose)[-1].angle
 
 
 @DIMENSIONS

@@ -80,6 +80,20 @@ def force_plot(results: Results) -> Figure:
     return figure
 
 
+def joint_plot(results: Results) -> Figure:
+    """The angles of hinges, and the size of the force in each joint."""
+    figure, (above, below) = time_panels(2)
+    force = np.sqrt(sum(results.joints[f"f{axis}"] ** 2 for axis in results.axes))
+    for axes, values, label in (
+        (above, results.joints["angle"], "angle of hinges\n[rad]"),
+        (below, force, "force in joints\n[force]"),
+    ):
+        draw_bodies(axes, results.time, values, results.joint_names)
+        axes.set_ylabel(label)
+    add_legend(figure)
+    return figure
+
+
 def energy_plot(results: Results) -> Figure:
     """What was supplied against where it went, stacked, and what the balance does not account for."""
     figure, (axes, below) = time_panels(2, height=2.8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, moving
-from rigidfluid.core.output.tables import read_rows
+from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.scene.scene import Scene
@@ -40,7 +40,8 @@ class Results:
     """A run read back: s states of n bodies.
 
     ``summary`` as in summary.json, ``scene`` and ``system`` as the run built them; ``time`` (s,) [time]; ``bodies`` by
-    column (s, n); ``energy`` by column (s,); ``series`` the times and files of the fields, empty without a fluid.
+    column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times
+    and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms).
     """
 
     summary: dict[str, Any]
@@ -48,13 +49,20 @@ class Results:
     system: System
     time: FloatArray
     bodies: dict[str, FloatArray]
+    joints: dict[str, FloatArray]
     energy: dict[str, FloatArray]
     series: tuple[tuple[float, Path], ...]
+    wholes: dict[str, FloatArray] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the bodies."""
         return self.system.surfaces[: len(self.system.bodies)]
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of joints, and of bodies that are held or on springs."""
+        return _joint_names(self.system)
 
     @property
     def axes(self) -> str:
@@ -91,17 +99,20 @@ def read_results(folder: Path) -> Results:
     system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension)
     energy = _table(folder, "energy", scene.dimension)
-    by_state = {
-        name: _by_state(folder, values, len(moving(system)))[:, : len(system.bodies)] for name, values in bodies.items()
-    }
+    by_state = {name: _by_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
+    count = len(system.bodies)
+    links = len(_joint_names(system))
+    joints = _table(folder, "joints", scene.dimension) if links else {}
     return Results(
         summary=summary,
         scene=scene,
         system=system,
         time=by_state["time"][:, 0],
-        bodies=by_state,
+        bodies={name: values[:, :count] for name, values in by_state.items()},
+        joints={name: _by_state(folder / "joints.csv", values, links) for name, values in joints.items()},
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
+        wholes={name: values[:, count:] for name, values in by_state.items()},
     )
 
 
@@ -125,7 +136,13 @@ def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
     path, names = folder / f"{name}.csv", columns(dimension)[name]
     rows = _rows(path, names)
     history = History(dimension, {name: rows})
-    return {key: values.astype(np.float64) for key, values in history.table(name).items() if key != "body"}
+    return {key: values.astype(np.float64) for key, values in history.table(name).items() if KINDS.get(key) is not str}
+
+
+def _joint_names(system: System) -> tuple[str, ...]:
+    if system.linkage is None:
+        return ()
+    return tuple(one.name for one in system.linkage.readings(system.pose, system.twist, 0.0, None))
 
 
 def _rows(path: Path, names: Sequence[str]) -> list[Row]:
@@ -149,9 +166,9 @@ def _rows(path: Path, names: Sequence[str]) -> list[Row]:
     return rows
 
 
-def _by_state(folder: Path, values: FloatArray, count: int) -> FloatArray:
+def _by_state(path: Path, values: FloatArray, count: int) -> FloatArray:
     if len(values) % count:
-        raise _unreadable(folder / "bodies.csv", f"{len(values)} rows, no multiple of {count} bodies")
+        raise _unreadable(path, f"{len(values)} rows, no multiple of the {count} that a state has")
     return values.reshape(-1, count)
 
 

@@ -87,6 +87,23 @@ class MechanismContract:
             found, expected = mechanism.rate(time), _difference(mechanism.placement, time)
             self._same_slopes(flat(found), expected, self._length(mechanism))
 
+    def test_a_period_repeats_the_placement(self, mechanism: Mechanism) -> None:
+        """After a period it is where it was."""
+        for time in self.times:
+            now, later = mechanism.placement(time), mechanism.placement(time + (mechanism.period or 0.0))
+            scale = self.tolerance * self._length(mechanism)
+            np.testing.assert_allclose(later.position, now.position, rtol=0, atol=scale)
+            np.testing.assert_allclose(later.orientation, now.orientation, rtol=0, atol=self.tolerance)
+
+    def test_corners_come_later_and_have_the_rate_before_them(self, mechanism: Mechanism) -> None:
+        """The next corner is after the time asked about, and the rate there is the derivative from before it."""
+        for time in self.times:
+            corner = mechanism.next_corner(time)
+            assert corner > time
+            if np.isfinite(corner):
+                before = _difference(mechanism.placement, corner - _NUDGE)
+                self._same_slopes(flat(mechanism.rate(corner)), before, self._length(mechanism))
+
     def test_placements_do_not_jump(self, mechanism: Mechanism) -> None:
         """From one look to the next they change as the rates before, between and after say."""
         looks = self._looks(mechanism)

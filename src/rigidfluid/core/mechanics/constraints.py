@@ -9,9 +9,8 @@ from math import remainder, tau
 
 import numpy as np
 
-from rigidfluid.core.mechanics.markers import MarkerPair
-from rigidfluid.core.mechanics.rigid import moment
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.mechanics.markers import MarkerPair, PlacedPair
+from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -23,11 +22,11 @@ class Constraint(ABC):
     markers: MarkerPair
 
     @abstractmethod
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        """E (r, d) and A (r, k)."""
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        """E (r, d) and A (r, k) where the markers are there."""
 
     @abstractmethod
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         """By how much it does not fit (r,), none of a damper; the rows are its rate where it is zero [length | rad]."""
 
     @property
@@ -39,13 +38,12 @@ class Constraint(ABC):
         """(r,) [length/time | rad/time]."""
         return np.zeros_like(self.compliance)
 
-    def add_rows(self, pose: Pose, rows: FloatArray) -> None:
+    def add_rows(self, at: PlacedPair, rows: FloatArray) -> None:
         """Put those on the bodies' twists into ``rows`` (r, n, d+k), zero before."""
-        along, about = self.directions(pose)
-        for sign, marker in ((1.0, self.markers.first), (-1.0, self.markers.second)):
-            if marker.body is not None:
-                arm = np.broadcast_to(marker.arm(pose), along.shape)
-                rows[:, marker.body] += sign * np.concatenate([along, moment(arm, along) + about], axis=1)
+        along, about = self.directions(at)
+        for sign, body, lever in zip((1.0, -1.0), self.markers.bodies, at.levers, strict=True):
+            if body is not None:
+                rows[:, body] += sign * np.concatenate([along, along @ lever + about], axis=1)
 
 
 @dataclass(frozen=True)
@@ -58,11 +56,11 @@ class SamePoint(Constraint):
     def compliance(self) -> FloatArray:
         return np.zeros(len(self.along))
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
         return self.along, np.zeros((len(self.along), self.markers.spins))
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
-        return np.asarray(self.along @ self.markers.gap(pose))
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.asarray(self.along @ at.gap)
 
 
 @dataclass(frozen=True)
@@ -73,15 +71,15 @@ class SameOrientation(Constraint):
     def compliance(self) -> FloatArray:
         return np.zeros(self.markers.spins)
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        k = self.markers.spins
-        return np.zeros((k, pose.position.shape[1])), np.eye(k)
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((self.markers.spins, len(at.gap))), np.eye(self.markers.spins)
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         if self.markers.spins == 1:
-            return np.array([self.markers.angle(pose)])
-        first, second = self.markers.axes(pose)
-        return np.asarray(0.5 * np.sum(np.cross(second, first, axis=0), axis=1))
+            return np.array([at.angle])
+        turn = at.axes[0] @ at.axes[1].T
+        skew = 0.5 * (turn - turn.T)
+        return np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
 
 
 @dataclass(frozen=True)
@@ -92,11 +90,11 @@ class SameAxis(Constraint):
     def compliance(self) -> FloatArray:
         return np.zeros(2)
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        return np.zeros((2, 3)), self.markers.axes(pose)[1][:, :2].T
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((2, 3)), at.axes[1][:, :2].T
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
-        first, second = self.markers.axes(pose)
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        first, second = at.axes
         return np.array([-second[:, 1] @ first[:, 2], second[:, 0] @ first[:, 2]])
 
 
@@ -111,11 +109,11 @@ class DrivenAngle(Constraint):
     def compliance(self) -> FloatArray:
         return np.zeros(1)
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        return np.zeros((1, pose.position.shape[1])), self.markers.spin_axis(pose)[None]
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((1, len(at.gap))), at.spin_axis[None]
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
-        return np.array([remainder(self.markers.angle(pose) - self.drive(time)[0], tau)])
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
+        return np.array([remainder(at.angle - self.drive(time)[0], tau)])
 
     def rate(self, time: float) -> FloatArray:
         return np.array([self.drive(time)[1]])
@@ -131,10 +129,10 @@ class HingeDamper(Constraint):
     def compliance(self) -> FloatArray:
         return np.array([1.0 / self.damping])
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        return np.zeros((1, pose.position.shape[1])), self.markers.spin_axis(pose)[None]
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        return np.zeros((1, len(at.gap))), at.spin_axis[None]
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         return np.zeros(0)
 
 
@@ -149,9 +147,9 @@ class GroundDamper(Constraint):
     def compliance(self) -> FloatArray:
         return np.asarray(1.0 / self.damping)
 
-    def directions(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        d = pose.position.shape[1]
+    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
+        d = len(at.gap)
         return self.along[:, :d], self.along[:, d:]
 
-    def misfit(self, pose: Pose, time: float) -> FloatArray:
+    def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         return np.zeros(0)

@@ -15,6 +15,7 @@ from rigidfluid.core.mechanics.constraints import (
     SameOrientation,
     SamePoint,
 )
+from rigidfluid.core.mechanics.link_parts import LinkParts
 from rigidfluid.core.mechanics.markers import MarkerPair, axes_about, marker
 from rigidfluid.core.mechanics.springs import GroundSpring, HingeSpring, Spring
 from rigidfluid.core.model.linkage import GroundLink, Joint
@@ -22,6 +23,18 @@ from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.errors import SceneError
 
 _ROUNDING = 1e-9
+
+
+def joint_parts(joint: Joint, pose: Pose) -> LinkParts:
+    """Of a joint between bodies that are at ``pose`` at the start; raises SceneError as its parts do."""
+    rows, springs = joint_constraints(joint, pose), joint_springs(joint, pose)
+    return LinkParts(joint.name, joint.first, joint.second, rows, springs, joint.type == "hinge")
+
+
+def ground_parts(link: GroundLink, pose: Pose) -> LinkParts:
+    """Of a body that is at ``pose`` at the start; raises SceneError as its parts do."""
+    rows, springs = ground_constraints(link, pose), ground_springs(link, pose)
+    return LinkParts(link.name, link.body, None, rows, springs, has_angle=False)
 
 
 def joint_constraints(joint: Joint, pose: Pose) -> list[Constraint]:

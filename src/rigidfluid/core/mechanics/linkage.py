@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from itertools import pairwise
 from math import inf
 
@@ -12,12 +13,14 @@ from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.mechanics.constraints import Constraint
 from rigidfluid.core.mechanics.joint_forces import joint_forces
-from rigidfluid.core.mechanics.joint_parts import ground_constraints, ground_springs, joint_constraints, joint_springs
+from rigidfluid.core.mechanics.joint_parts import ground_parts, joint_parts
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
+from rigidfluid.core.mechanics.link_parts import LinkParts
+from rigidfluid.core.mechanics.markers import Markers, PlacedPair
 from rigidfluid.core.mechanics.redundancy import motion_of, refuse_redundant, refuse_void
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing
-from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.model.linkage import GroundLink, Joint, LinkReading
 from rigidfluid.core.model.system import Mechanisms
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -81,15 +84,15 @@ class JointLinkage:
         self._own_inertia = inertia
         self._controlled = controlled if mechanisms is None else mechanisms.controlled
         self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
-        by_joint = [joint_constraints(joint, pose) for joint in joints]
-        by_ground = [ground_constraints(link, pose) for link in ground]
-        slices = _slices([*by_joint, *by_ground])
-        self.joint_rows, self.ground_rows = slices[: len(joints)], slices[len(joints) :]
-        self._constraints = [one for part in (*by_joint, *by_ground) for one in part]
-        self._springs = [one for joint in joints for one in joint_springs(joint, pose)]
-        self._springs += [one for link in ground for one in ground_springs(link, pose)]
+        self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
+        self._slices = _slices(self._parts)
+        self.joint_rows, self.ground_rows = self._slices[: len(joints)], self._slices[len(joints) :]
+        self._constraints = [one for part in self._parts for one in part.constraints]
+        self._springs = [one for part in self._parts for one in part.springs]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
-        self._are_lengths = np.concatenate([np.zeros(0, bool), *(_are_lengths(one, pose) for one in self._constraints)])
+        self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
+        lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
+        self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
         self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
         self.linked, self.clusters = self._linked(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
@@ -97,7 +100,6 @@ class JointLinkage:
         moved = mechanisms is not None and mechanisms.driven
         self.driven = moved or bool(self._controlled.any()) or any(joint.drive is not None for joint in joints)
         start = pose if mechanisms is None else mechanisms.pose
-        self._arm = max((one.markers.reach for one in self._constraints), default=0.0)
         refuse_void(self._constraints, self._carrier, self._controlled)
         refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
         self.frequency = self._greatest_frequency(start)
@@ -111,9 +113,9 @@ class JointLinkage:
         bodies, kinematics = self._bodies(motions, time)
         rows = np.zeros((len(self._compliance), *flat(nothing(bodies)).shape))
         rate, start = np.zeros(len(rows)), 0
-        for one in self._constraints:
+        for one, at in self._placed(bodies):
             here = slice(start, start := start + len(one.compliance))
-            one.add_rows(bodies, rows[here])
+            one.add_rows(at, rows[here])
             rate[here] = one.rate(time)
         rate -= np.einsum("cni,ni->c", rows, self._given(bodies, kinematics, time))
         return Links(self._carried(rows, kinematics), rate, self._compliance)
@@ -121,13 +123,13 @@ class JointLinkage:
     def misfit(self, motions: Pose, time: float) -> FloatArray:
         """By how much rigid links do not fit, a row for each [length | rad]."""
         bodies = self._bodies(motions, time)[0]
-        return np.concatenate([np.zeros(0), *(one.misfit(bodies, time) for one in self._constraints)])
+        return np.concatenate([np.zeros(0), *(one.misfit(at, time) for one, at in self._placed(bodies))])
 
     def tolerance(self, motions: Pose) -> FloatArray:
         """Misfits that are rounding there, a row for each [length | rad]."""
-        length = np.abs(motions.position[self.linked]).max(initial=0.0) + self._arm
+        length = np.abs(motions.position[self.linked]).max(initial=0.0) + self._markers.reach
         angle = 1.0 + np.abs(motions.orientation[self.linked]).max(initial=0.0)
-        return np.asarray(ROUNDING * np.where(self._are_lengths[self._compliance == 0.0], length, angle))
+        return np.asarray(ROUNDING * np.where(self._are_lengths, length, angle))
 
     def closed(self, motions: Pose, time: float) -> Pose:
         """The nearest poses at which the joints fit, in the metric of the masses, by Newton's method.
@@ -176,6 +178,25 @@ class JointLinkage:
             return 0.0
         bodies, kinematics = self._bodies(motions, time)
         return -float(np.sum(flat(self._pull(bodies)) * self._given(bodies, kinematics, time)))
+
+    def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
+        return zip(self._constraints, self._markers.placed(bodies), strict=True)
+
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""
+        known = np.zeros(len(self._compliance)) if force is None else force
+        placed, readings = iter(self._markers.placed(bodies)), []
+        for part, rows in zip(self._parts, self._slices, strict=True):
+            own = [next(placed) for _ in part.constraints]
+            readings.append(part.reading(own, bodies, twist, time, known[rows]))
+        return readings
+
+    def following(self, controlled_twist: Callable[[float], FloatArray]) -> JointLinkage:
+        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""
+        other = copy(self)
+        other._controlled_twist = controlled_twist
+        return other
 
     def _pull(self, bodies: Pose) -> Wrench:
         wrench = nothing(bodies)
@@ -250,10 +271,6 @@ class JointLinkage:
         return linked, np.unique(parts, return_index=True)[1][parts]
 
 
-def _slices(parts: Sequence[Sequence[Constraint]]) -> tuple[slice, ...]:
-    ends = np.cumsum([0, *(sum(len(one.compliance) for one in part) for part in parts)]).tolist()
+def _slices(parts: Sequence[LinkParts]) -> tuple[slice, ...]:
+    ends = np.cumsum([0, *(part.rows for part in parts)]).tolist()
     return tuple(slice(start, end) for start, end in pairwise(ends))
-
-
-def _are_lengths(constraint: Constraint, pose: Pose) -> BoolArray:
-    return np.asarray(constraint.directions(pose)[0].any(axis=1))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2
+from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.mechanics.kinematics import levers
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.types import FloatArray, Pose
 
@@ -23,21 +26,6 @@ class Marker:
     point: FloatArray
     axes: FloatArray
     start: float
-
-    def placed(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        """The point (d,) and the axes (d, d) in space."""
-        if self.body is None:
-            return self.point, self.axes
-        rotation = rotation_matrices(pose.orientation[self.body : self.body + 1])[0]
-        return pose.position[self.body] + rotation @ self.point, rotation @ self.axes
-
-    def arm(self, pose: Pose) -> FloatArray:
-        """From the body's centre of mass to the point (d,); zero on the ground, which has no moments [length]."""
-        return np.zeros_like(self.point) if self.body is None else self.placed(pose)[0] - pose.position[self.body]
-
-    def angle(self, pose: Pose) -> float:
-        """In 2D by how much the body has turned since the start, whole turns included [rad]."""
-        return 0.0 if self.body is None else float(pose.orientation[self.body, 0]) - self.start
 
 
 def marker(body: int | None, point: FloatArray, axes: FloatArray, pose: Pose) -> Marker:
@@ -57,34 +45,78 @@ class MarkerPair:
     second: Marker
 
     @property
+    def bodies(self) -> tuple[int | None, int | None]:
+        """That carry them, None for the ground."""
+        return self.first.body, self.second.body
+
+    @property
     def spins(self) -> int:
         """k."""
         return 1 if len(self.first.point) == 2 else 3
 
+
+class PlacedPair(NamedTuple):
+    """A pair in space, in one pose: ``points`` (2, d) [length], ``axes`` (2, d, d), ``levers`` (2, d, k) of the points
+    about the centres of mass, see `levers` [length]; ``turned`` (2,): in 2D by how much the bodies have turned, whole
+    turns included [rad]."""
+
+    points: FloatArray
+    axes: FloatArray
+    levers: FloatArray
+    turned: FloatArray
+
     @property
-    def reach(self) -> float:
-        """How far their points are from where their frames have the origin [length]."""
-        return float(max(np.linalg.norm(self.first.point), np.linalg.norm(self.second.point)))
-
-    def gap(self, pose: Pose) -> FloatArray:
+    def gap(self) -> FloatArray:
         """From the second point to the first one (d,) [length]."""
-        return self.first.placed(pose)[0] - self.second.placed(pose)[0]
+        return np.asarray(self.points[0] - self.points[1])
 
-    def axes(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        """Of both in space (d, d)."""
-        return self.first.placed(pose)[1], self.second.placed(pose)[1]
-
-    def angle(self, pose: Pose) -> float:
+    @property
+    def angle(self) -> float:
         """Of the first seen from the second, about the last axis, zero at the start [rad]; in 2D whole turns included,
         in 3D in (-π, π]."""
-        if self.spins == 1:
-            return self.first.angle(pose) - self.second.angle(pose)
-        first, second = self.axes(pose)
+        if self.levers.shape[-1] == 1:
+            return float(self.turned[0] - self.turned[1])
+        first, second = self.axes
         return atan2(float(first[:, 0] @ second[:, 1]), float(first[:, 0] @ second[:, 0]))
 
-    def spin_axis(self, pose: Pose) -> FloatArray:
+    @property
+    def spin_axis(self) -> FloatArray:
         """About which the angle is counted (k,)."""
-        return np.ones(1) if self.spins == 1 else self.axes(pose)[1][:, 2]
+        return np.ones(1) if self.levers.shape[-1] == 1 else self.axes[1][:, 2]
+
+
+class Markers:
+    """Pairs of markers, to be placed together.
+
+    Parameters
+    ----------
+    pairs : sequence of MarkerPair
+        Of bodies of ``dimension`` d.
+    """
+
+    def __init__(self, pairs: Sequence[MarkerPair], dimension: int) -> None:
+        markers, d = [one for pair in pairs for one in (pair.first, pair.second)], dimension
+        self._body = np.array([-1 if one.body is None else one.body for one in markers], dtype=np.int64)
+        self._point = np.array([one.point for one in markers]).reshape(-1, d)
+        self._axes = np.array([one.axes for one in markers]).reshape(-1, d, d)
+        self._start = np.array([one.start for one in markers])
+
+    @property
+    def reach(self) -> float:
+        """How far their points are from the origins of their frames at most [length]."""
+        return float(np.linalg.norm(self._point, axis=1).max(initial=0.0))
+
+    def placed(self, pose: Pose) -> list[PlacedPair]:
+        """In the order of the pairs."""
+        d = self._point.shape[1]
+        rotation = np.concatenate([rotation_matrices(pose.orientation), np.eye(d)[None]])[self._body]
+        centre = np.concatenate([pose.position, np.zeros((1, d))])[self._body]
+        arms = np.einsum("mij,mj->mi", rotation, self._point)
+        turned = np.append(pose.orientation[:, 0], 0.0)[self._body] - self._start
+        placed = centre + arms, rotation @ self._axes, levers(arms), turned
+        return [
+            PlacedPair(*each) for each in zip(*(rows.reshape(-1, 2, *rows.shape[1:]) for rows in placed), strict=True)
+        ]
 
 
 def axes_about(axis: FloatArray) -> FloatArray:

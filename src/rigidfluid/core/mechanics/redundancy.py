@@ -18,9 +18,7 @@ def refuse_void(constraints: Sequence[Constraint], carrier: IntArray, controlled
     """Refuse what has no free relative motion to hold, for bodies on motions ``carrier`` (n,) of which some (N,) are
     given."""
     for constraint in constraints:
-        ends = [
-            motion_of(end.body, carrier, controlled) for end in (constraint.markers.first, constraint.markers.second)
-        ]
+        ends = [motion_of(body, carrier, controlled) for body in constraint.markers.bodies]
         if ends[0] == ends[1]:
             found = "nothing that moves freely" if ends[0] is None else "parts of one mechanism"
             remedy = "Leave it out, or join a body that is free to move."

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.mechanics.markers import MarkerPair
+from rigidfluid.core.mechanics.markers import MarkerPair, Markers
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import FloatArray, Pose, Wrench
 
@@ -25,29 +25,29 @@ class Spring(Protocol):
         """Rows B (r, n, d+k) of d energy = ½ |B δ|², δ displacements from where nothing is stretched [√stiffness]."""
 
 
-@dataclass(frozen=True, slots=True)
 class HingeSpring:
-    """½ ``stiffness`` (angle - ``rest``)² of the angle about the markers' last axis."""
+    """½ ``stiffness`` (angle - ``rest``)² of the angle about the last axis of ``markers``."""
 
-    markers: MarkerPair
-    stiffness: float
-    rest: float
+    def __init__(self, markers: MarkerPair, stiffness: float, rest: float) -> None:
+        self._bodies, self._markers = markers.bodies, Markers([markers], len(markers.first.point))
+        self._stiffness, self._rest = stiffness, rest
 
     def energy(self, pose: Pose) -> float:
-        return 0.5 * self.stiffness * (self.markers.angle(pose) - self.rest) ** 2
+        return 0.5 * self._stiffness * (self._markers.placed(pose)[0].angle - self._rest) ** 2
 
     def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
-        torque = -self.stiffness * (self.markers.angle(pose) - self.rest) * self.markers.spin_axis(pose)
-        for sign, body in ((1.0, self.markers.first.body), (-1.0, self.markers.second.body)):
+        at = self._markers.placed(pose)[0]
+        torque = -self._stiffness * (at.angle - self._rest) * at.spin_axis
+        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
             if body is not None:
                 wrench.torque[body] += sign * torque
 
     def stretch(self, pose: Pose) -> FloatArray:
-        axis, (count, d) = self.markers.spin_axis(pose), pose.position.shape
+        axis, (count, d) = self._markers.placed(pose)[0].spin_axis, pose.position.shape
         rows = np.zeros((1, count, d + len(axis)))
-        for sign, body in ((1.0, self.markers.first.body), (-1.0, self.markers.second.body)):
+        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
             if body is not None:
-                rows[0, body, d:] = sign * np.sqrt(self.stiffness) * axis
+                rows[0, body, d:] = sign * np.sqrt(self._stiffness) * axis
         return rows
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +51,20 @@ class GroundLink:
     rest: FloatArray | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class LinkReading:
+    """One joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge its ``angle``
+    [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body, about the point
+    of the joint [force | force·length]."""
+
+    name: str
+    gap: float
+    angle: float
+    rate: float
+    force: FloatArray
+    torque: FloatArray
+
+
 class Linkage(Protocol):
     """The joints of a system on its N motions.
 
@@ -88,3 +102,10 @@ class Linkage(Protocol):
 
     def spring_power(self, motions: Pose, time: float) -> float:
         """Of what moves bodies as they are told, against springs [energy/time]."""
+
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
+        None where it is not known yet."""
+
+    def following(self, controlled_twist: Callable[[float], FloatArray]) -> Linkage:
+        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""

@@ -16,7 +16,7 @@ from rigidfluid.errors import OutputError
 
 
 class History:
-    """Tables ``bodies``, ``contacts``, ``energy``, ``steps`` and ``probes``, and the ``summary`` of summary.json.
+    """Tables of a run, as ``bodies`` and ``energy``, and the ``summary`` of summary.json.
 
     Parameters
     ----------
@@ -83,6 +83,11 @@ class History:
     def contacts(self) -> dict[str, NDArray[Any]]:
         """The table of contacts.csv: a row per contact within range."""
         return self.table("contacts")
+
+    @property
+    def joints(self) -> dict[str, NDArray[Any]]:
+        """The table of joints.csv: a row per joint and accepted step."""
+        return self.table("joints")
 
     @property
     def energy(self) -> dict[str, NDArray[Any]]:

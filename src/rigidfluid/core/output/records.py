@@ -37,6 +37,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
             *(*named("f"), *torque, *named("cf"), *named("c", torque), "gap"),
         ),
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
+        "joints": ("time", "step", "joint", "gap", "angle", "rate", *named("f"), *torque),
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error"),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
@@ -49,6 +50,7 @@ def records(system: System, probes: FloatArray, state: State, time: float) -> Re
     return {
         "bodies": list(_body_rows(system, state, stamp)),
         "contacts": list(_contact_rows(system, state, stamp)),
+        "joints": list(_joint_rows(system, state, stamp, time)),
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
         "steps": list(_step_rows(state, stamp)),
         "probes": list(_probe_rows(system, probes, state, stamp)),
@@ -95,6 +97,14 @@ def _contact_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
         names = (system.surfaces[near.body_a[i]], system.surfaces[near.body_b[i]])
         vectors = np.concatenate([near.point_a[i], near.point_b[i], near.normal[i]]).tolist()
         yield (*stamp, *names, *vectors, float(near.gap[i]))
+
+
+def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterator[Row]:
+    if system.linkage is None:
+        return
+    force = None if state.link is None else state.link.force
+    for one in system.linkage.readings(state.pose, state.twist, time, force):
+        yield (*stamp, one.name, one.gap, one.angle, one.rate, *one.force.tolist(), *one.torque.tolist())
 
 
 def _step_rows(state: State, stamp: Row) -> Iterator[Row]:

@@ -59,7 +59,10 @@ class Table:
             csv.writer(file, lineterminator="\n").writerows(rows)
 
 
-KINDS: Mapping[str, type[float | int | str]] = {"body": str, "a": str, "b": str, "step": int, "probe": int}
+KINDS: Mapping[str, type[float | int | str]] = {
+    **dict.fromkeys(("body", "a", "b", "joint"), str),
+    **dict.fromkeys(("step", "probe"), int),
+}
 """What stands in a column; a number with a fraction where it is not named here."""
 
 

@@ -21,14 +21,24 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
 
 
 def begun_anew(system: System, clock: Clock, state: State) -> State:
-    """At a corner the state without its past, from which nothing after it can be extrapolated; else the same.
+    """At a corner and one step after it, the state without its past, from which nothing can be extrapolated; else the
+    same.
 
-    The fluid, if there is one, then is in motion with bodies that change theirs at once, as at a start.
+    The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start.
     """
-    if state.past is None or _corner_after(system, clock, state.tick - 1) != state.tick:
+    if state.past is None:
         return state
-    level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
-    return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+    if _is_corner(system, clock, state.tick):
+        level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
+        return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+    if _is_corner(system, clock, state.tick - clock.tick_from(state.past.step)):
+        return replace(state, past=None)
+    return state
+
+
+def _is_corner(system: System, clock: Clock, tick: int) -> bool:
+    """Whether there is one at this tick; a start is none."""
+    return tick > 0 and _corner_after(system, clock, tick - 1) == tick
 
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:

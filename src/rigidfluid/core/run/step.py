@@ -159,8 +159,8 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
-    """After a corner of a stroke by the forces of this step, which change velocities at once: half of their impulse
-    acts on the rates before the corner, and half on those after it."""
+    """Where a step begins anew at a corner of a stroke, with the power of its own forces at its start: half of an
+    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps."""
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger

@@ -47,6 +47,7 @@ def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
         yield from _fluid(problem)
     yield from _mesh(system, mesh)
     yield from _contact(system)
+    yield _joints(system)
     yield _count("controlled motion", system.controlled, "fixed or prescribed")
 
 
@@ -101,6 +102,14 @@ def _contact(system: System) -> Iterator[Feature]:
         yield _count("components that do not repel each other", parts, "parts of an articulated body")
     yield Feature("contact detection", True, f"detector {system.detector.name!r}, {system.detector_why}")
     yield _measured(system.reach)
+
+
+def _joints(system: System) -> Feature:
+    linkage = system.linkage
+    if linkage is None:
+        return Feature("joints", False, "no table [[joint]], no body with `free` or `spring`")
+    count = int(np.count_nonzero(linkage.linked))
+    return Feature("joints", True, f"they hold {count} of {len(linkage.linked)} motions")
 
 
 def _law(system: System, interaction: Interaction) -> str:

@@ -35,9 +35,10 @@ def check_joints(scene: Scene) -> None:
     for number, body in enumerate(scene.body):
         _check_free(body, scene.dimension, f"body.{number}")
         _check_spring(body, scene.dimension, f"body.{number}")
-    for name, count in Counter(joint.name for joint in scene.joint).items():
-        if count > 1:
-            raise SceneError("joint.name", repr(name), "a name that no other joint has", "Rename it.")
+    names = Counter(joint.name for joint in scene.joint)
+    for name in names:
+        if names[name] > 1 or name in (body.name for body in scene.body):
+            raise SceneError("joint.name", repr(name), "a name that no other joint or body has", "Rename it.")
     for number, joint in enumerate(scene.joint):
         _check_ends(scene, joint, f"joint.{number}")
         (_check_hinge if joint.type == "hinge" else _check_rod)(joint, scene.dimension, f"joint.{number}")

@@ -63,10 +63,15 @@ def build_linkage(
     ground = [_ground_link(body, number, scene.dimension) for number, body in enumerate(scene.body) if _is_held(body)]
     if not scene.joint and not ground:
         return None
-    joints = [_joint(scene, table, f"joint.{number}", pose) for number, table in enumerate(scene.joint)]
+    joints = joints_of(scene, pose)
     linkage = JointLinkage(pose, joints, ground, mass, inertia, controlled, controlled_twist, mechanisms)
     _check_step(scene, linkage)
     return linkage
+
+
+def joints_of(scene: Scene, pose: Pose) -> list[Joint]:
+    """The joints of a scene, with the components of mechanisms among its bodies, that are at ``pose`` at the start."""
+    return [_joint(scene, table, f"joint.{number}", pose) for number, table in enumerate(scene.joint)]
 
 
 def joined_bodies(scene: Scene) -> IntArray:

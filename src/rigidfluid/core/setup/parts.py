@@ -14,6 +14,7 @@ from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, Force
 from rigidfluid.core.model.wall import is_round, radius_of
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
@@ -98,6 +99,7 @@ def select_plugins(scene: Scene) -> Parts:
     _refuse_contact_keys(scene.contact, detector, laws)
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
     exact = exact_detector(bodies, domain, registry)
+    refuse_overlap_along(mechanisms, scene.time.end, exact)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
     return Parts(scene, backend, domain, bodies, mechanisms, found, chosen, why, exact)
 

@@ -23,8 +23,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     ------
     CrosscheckError
         For a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
-        articulated bodies, several laws or one for some contacts alone, and laws that take energy out, but for
-        ``spring-dashpot``.
+        articulated bodies, joints, springs, held directions, several laws or one for some contacts alone, and laws that
+        take energy out, but for ``spring-dashpot``.
     """
     if system.backend.needs_mesh:
         raise CrosscheckError(
@@ -33,6 +33,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     if scene.mechanism:
         found = f"{len(scene.mechanism)} of them"
         raise CrosscheckError("mechanism", found, "bodies that each move by themselves", "Leave mechanisms out.")
+    if scene.joint:
+        raise CrosscheckError("joint", f"{len(scene.joint)} of them", "bodies without joints", "Leave joints out.")
     for number, (table, body) in enumerate(zip(scene.body, system.bodies, strict=True)):
         field = f"body.{number}"
         if body.radius is None:
@@ -49,6 +51,9 @@ def refuse_foreign(scene: Scene, system: System) -> None:
                 "free and fixed bodies",
                 "Use fixed = true, or leave it out.",
             )
+        for key in ("free", "spring"):
+            if getattr(table, key) is not None:
+                raise CrosscheckError(f"{field}.{key}", "it", "bodies that nothing holds", f"Leave `{key}` out.")
         if table.part_of is not None:
             raise CrosscheckError(f"{field}.part_of", repr(table.part_of), "bodies of one part", "Leave part_of out.")
     for wall in system.walls:

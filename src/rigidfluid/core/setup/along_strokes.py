@@ -1,0 +1,87 @@
+"""Components of mechanisms along their strokes: when they are nearest to each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.interfaces import Detector, Mechanism
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import SceneError
+
+SAMPLES = 129
+"""A stroke is looked at so often, and at its corners."""
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """Two components that come nearest to each other, by their numbers, at a ``time`` and with a ``gap`` [length],
+    negative where they overlap."""
+
+    gap: float
+    time: float
+    first: int
+    second: int
+
+
+def times_along(mechanism: Mechanism, end: float) -> FloatArray:
+    """Times of one period, or until the ``end`` if that is sooner or there is none (s,) [time]."""
+    last = min(end, mechanism.period or end)
+    return np.union1d(np.linspace(0.0, last, SAMPLES), np.fromiter(corners(mechanism, last), dtype=float))
+
+
+def corners(mechanism: Mechanism, end: float) -> Iterator[float]:
+    """The times at which its rate jumps, until the ``end``; no more than there are samples."""
+    time = mechanism.next_corner(0.0)
+    for _ in range(SAMPLES):
+        if time > end:
+            return
+        yield time
+        time = mechanism.next_corner(time)
+
+
+def nearest_components(mechanism: Mechanism, end: float, detector: type[Detector]) -> Nearest | None:
+    """The nearest approach of two components along the stroke.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Two components or more.
+    end : float
+        Of the simulation [time].
+    detector : type
+        What finds gaps between the components without a mesh.
+
+    Returns
+    -------
+    Nearest or None
+        Of the times looked at; None of one component.
+    """
+    shapes = [component.shape for component in mechanism.components]
+    if len(shapes) < 2:
+        return None
+    finder, found = detector(detector.Options(), shapes, ()), Nearest(math.inf, 0.0, 0, 1)
+    for time in times_along(mechanism, end) if mechanism.driven else (0.0,):
+        contacts = finder.detect(mechanism.placement(float(time)), None, math.inf)
+        worst = int(np.argmin(contacts.gap))
+        if contacts.gap[worst] < found.gap:
+            pair = int(contacts.body_a[worst]), int(contacts.body_b[worst])
+            found = Nearest(float(contacts.gap[worst]), float(time), *pair)
+    return found
+
+
+def refuse_overlap_along(mechanisms: Mapping[str, Mechanism], end: float, detector: type[Detector]) -> None:
+    """Raise SceneError where a stroke makes components overlap; those that do so at rest are refused as bodies are."""
+    for name, mechanism in mechanisms.items():
+        nearest = nearest_components(mechanism, end, detector) if mechanism.driven else None
+        if nearest is not None and nearest.gap <= 0.0:
+            a, b = (repr(mechanism.components[number].name) for number in (nearest.first, nearest.second))
+            raise SceneError(
+                f"mechanism {name!r}",
+                f"components {a} and {b} that overlap by {-nearest.gap:.6g} at time {nearest.time:g} of the stroke",
+                "components that stay clear of each other",
+                "Shorten the stroke, or move them apart.",
+            )
