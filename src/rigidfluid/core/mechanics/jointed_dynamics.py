@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -19,6 +20,9 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
+
+_AHEAD = 1e-4
+"""A part of the first kick, so soon after a corner in a drive its new rate is read."""
 
 _PARTS = 4
 """In so many parts of a time accelerations are looked at."""
@@ -61,6 +65,7 @@ class JointedDynamics:
         self._rigid: BoolArray = self._here.links.compliance == 0.0
         nothing_yet = np.zeros_like(self._here.links.rate), np.zeros_like(flat(self.twist))
         self.link_work = LinkWork(*nothing_yet, 0.0, 0.0)
+        self._begun = not linkage.driven
 
     @property
     def pose(self) -> Pose:
@@ -113,6 +118,8 @@ class JointedDynamics:
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """By ``wrench`` and springs, while dampers act, and then by rigid joints."""
+        if not self._begun:
+            self._begin(_AHEAD * time)
         springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing()
         driven = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(together(wrench, springs), time, at)
@@ -133,6 +140,15 @@ class JointedDynamics:
         settled = self._held()
         self._inner.push(self._on_motions(settled))
         self._add(settled, float(settled @ self._mean_rate(-0.5 * time)))
+
+    def _begin(self, ahead: float) -> None:
+        """From the rates before the start, which may be a corner of a drive, on to those after it."""
+        before, self._begun = self._here.links, True
+        after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
+        self._here = self._here._replace(links=after)
+        impulse = self._held()
+        self._inner.push(self._on_motions(impulse))
+        self._add(impulse, 0.5 * float(impulse @ (before.rate + after.rate)))
 
     def _close(self, time: float) -> FloatArray:
         """Drift after the impulses (c,) that make rigid joints fit at the end, by Newton's method."""
@@ -174,7 +190,7 @@ class JointedDynamics:
         return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
 
     def _mean_rate(self, ahead: float) -> FloatArray:
-        """Of the rates (c,) now and so long ahead, at the present pose: a drive's may jump between two drifts."""
+        """Of the rates (c,) now and so long ahead, at the present pose."""
         rate = self._here.links.rate
         if not self._linkage.driven:
             return rate
