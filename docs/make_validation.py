@@ -58,7 +58,7 @@ from fluid_contact_table import made  # noqa: E402
 from fluid_contacts import created_and_lost, put_in  # noqa: E402
 from periodic_arrays import array_of_balls, exact_array  # noqa: E402
 from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_SPEED  # noqa: E402
-from spheres_in_box import BACK, Swim, drag, swim, without_box  # noqa: E402
+from spheres_in_box import BACK, BACK_FROM_SHORT, Swim, drag, swim, without_box  # noqa: E402
 from spheres_on_a_line import cycle as exact_cycle  # noqa: E402
 from spheres_on_a_line import drag as exact_drag  # noqa: E402
 from stokes_contacts import rows as stokes_rows  # noqa: E402
@@ -1387,6 +1387,7 @@ PHASES = ("left in", "right in", "left out", "right out")
 OTHER_SWIMS = {
     "half the step": ["time.step=0.125"],
     "strokes reversed": [BACK],
+    "strokes reversed, begun with short arms": [BACK_FROM_SHORT],
     "size_body 0.5": ["mesh.size_body=0.5"],
     "growth 0.4": ["mesh.growth=0.4"],
     "size_body 0.5, growth 0.4": ["mesh.size_body=0.5", "mesh.growth=0.4"],
