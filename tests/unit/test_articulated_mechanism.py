@@ -1,5 +1,6 @@
 """Mechanisms that a scene spells out: bodies of any shape, and strokes that move them."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ from articulated_scenes import BALL, OUT, WAG, components, scene
 
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene
+from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.errors import PluginError, SceneError
 
 
@@ -148,3 +149,14 @@ def test_the_phases_of_the_three_sphere_swimmer_are_four():
         load_scene(path, ['mechanism.0.order=["left in", "left in", "left out", "right out"]'])
     with pytest.raises(SceneError, match=r"mechanism.0.amplitude.*less than 8"):
         load_scene(path, ["mechanism.0.amplitude=8.0"])
+
+
+def test_the_scene_of_the_page_on_mechanisms_swims():
+    page = (Path(__file__).parents[2] / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    tables = tomllib.loads(page.partition("```toml\n")[2].partition("```")[0])
+    tables["mesh"] |= {"size": 0.8, "size_body": 0.1}
+    tables["time"] |= {"end": 0.1, "step": 0.05}
+    it = Simulation(scene_from_dict(tables))
+    it.go()
+    assert it.bodies["fish"].velocity[0] != 0.0
+    assert it.state.ledger.control > 0.0

@@ -46,4 +46,4 @@ def test_summary_and_report_have_the_cycles_of_a_run(tmp_path):
 
 
 def test_what_is_rigid_has_no_cycles():
-    assert rigidfluid.run(scene()).summary["cycles"] == {}
+    assert "cycles" not in rigidfluid.run(scene()).summary

@@ -32,8 +32,6 @@ def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str
         ``rotation``, in 2D an angle, in 3D a rotation vector [rad]. Where no step ends with a cycle, values are
         linear between two steps.
     """
-    if not periods:
-        return {}
     axes, orientation = _axes(history.dimension)
     table = history.table("bodies", ("time", "body", *axes, *orientation))
     return {name: _of_one(table, name, period, history.dimension) for name, period in periods.items()}

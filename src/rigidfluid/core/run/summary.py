@@ -62,16 +62,17 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        "cycles": cycles(simulation.history, _periods(simulation.scene)),
+        **_cycles(simulation),
         "energy": energy_balance(state.ledger, energy_account(simulation.history.energy)),
         "auto_epsilon": chosen_strengths(system),
     }
 
 
-def _periods(scene: Scene) -> dict[str, float]:
-    """Of the mechanisms that have one, by name [time]."""
-    found = {name: mechanism.period for name, mechanism in known_parts(scene).mechanisms.items()}
-    return {name: period for name, period in found.items() if period is not None}
+def _cycles(simulation: Simulation) -> dict[str, Any]:
+    """Of mechanisms whose strokes repeat, where there are any."""
+    periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
+    repeated = {name: period for name, period in periods.items() if period is not None}
+    return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
 
 
 def _cells(mesh: Mesh) -> int:
