@@ -127,6 +127,20 @@ def test_springs_that_are_fast_are_cut_into_parts():
     assert it.bodies["body0"].velocity[1] == pytest.approx(np.cos(4.0), abs=8e-3)
 
 
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+@pytest.mark.parametrize("damping", [0.0, 0.02])
+def test_a_ball_with_springs_alone_bounces_between_them_and_a_wall(stepping, damping):
+    spring = {"stiffness": [0.0, 1.0], "damping": [0.0, damping]}
+    contact = {"law": "centre", "range": 0.02, "epsilon": 1e-5, "stepping": stepping}
+    it = Simulation(linked_scene([body(2.0, 0.3, velocity=[0.0, -2.0], spring=spring)], contact=contact, end=0.4))
+    it.go(0.2)
+    assert it.bodies["body0"].velocity[1] > 0.5
+    it.go()
+    account = energy_account(it.history.energy)
+    assert max(account.created, account.lost) < 1e-2
+    assert (it.state.ledger.contact_loss > 0.0) == (damping > 0.0)
+
+
 @pytest.mark.parametrize("damping", [0.1, 2.0, 1e6])
 def test_a_damper_is_exact_at_any_strength(damping):
     """m u' = m g - c u."""
