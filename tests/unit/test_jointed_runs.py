@@ -233,3 +233,15 @@ def test_a_run_of_linked_bodies_taken_up_again(tmp_path):
     rigidfluid.run(whole, tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_ball_on_a_spring_alone_in_a_fluid():
+    """It is pulled back along the spring by what is stored in it, and no link has a force."""
+    ball = body(0.5, 0.5, velocity=[0.0, 0.1], spring={"stiffness": [0.0, 1.0]})
+    fluid, mesh = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.1}, {"size": 0.2, "size_body": 0.08}
+    it = run(linked_scene([ball], end=0.03, upper=1.0, fluid=fluid, mesh=mesh))
+    displaced = it.bodies["body0"].position[1] - 0.5
+    assert displaced > 1e-3
+    np.testing.assert_allclose(it.state.link.wrench, [[0.0, -displaced, 0.0]], atol=1e-15)
+    assert len(it.state.link.force) == 0
+    assert it.state.ledger.contact == pytest.approx(0.5 * displaced**2, rel=1e-12)
