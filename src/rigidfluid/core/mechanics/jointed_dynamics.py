@@ -41,7 +41,7 @@ class JointedDynamics:
     Parameters
     ----------
     inner : PushedDynamics
-        The N motions without joints; changed in place.
+        The N motions without joints, at the start; what goes on is its copies.
     linkage : Linkage
         What links them.
     time : float
@@ -161,7 +161,7 @@ class JointedDynamics:
                 self._inner = trial
                 return impulse
             there = self._linkage.links(trial.pose, end).rows[rigid]
-            slope = time * there.reshape(len(there), -1) @ self._here.answers[:, rigid]
+            slope = time * there.reshape(len(there), flat(trial.twist).size) @ self._here.answers[:, rigid]
             impulse[rigid] -= joint_forces(slope, misfit)
         found = f"a misfit of {np.abs(misfit).max():.3g} that no force closes"
         raise StepRejected("joints", found, "forces with which they fit", "Shorten time.step.")
@@ -204,7 +204,7 @@ class JointedDynamics:
 
     def _rows_here(self) -> _Rows:
         links = self._linkage.links(self.pose, self._time)
-        rows = links.rows.reshape(len(links.rate), -1)
+        rows = links.rows.reshape(len(links.rate), flat(self.twist).size)
         answers = self._inner.inverse_masses(0.0) @ rows.T
         return _Rows(links, rows, answers, rows @ answers)
 
