@@ -9,7 +9,6 @@ from math import inf
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.mechanics.constraints import Constraint
 from rigidfluid.core.mechanics.joint_forces import joint_forces
@@ -260,6 +259,8 @@ class JointLinkage:
 
     def _linked(self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]) -> tuple[BoolArray, IntArray]:
         """Which motions have links, and the lowest number of those that each is linked with."""
+        from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
+
         count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)
         linked[
             [self._carrier[body] for body in (*ground, *(one for pair in joints for one in pair if one is not None))]

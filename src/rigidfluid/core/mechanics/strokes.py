@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from rigidfluid.core.model.types import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 _ROUNDING = 1e-9
 """Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded."""
@@ -91,6 +94,8 @@ class Stroke:
     @cached_property
     def _curve(self) -> PchipInterpolator:
         """Through the rows and those around them: of the periods before and after, or of a value that is held."""
+        from scipy.interpolate import PchipInterpolator  # slow to load, and few scenes have strokes
+
         times, values, span = self._times, self._values, self._span
         if self.period is None:
             around = [-span, *times, 2.0 * span], [values[0], *values, values[-1]]
