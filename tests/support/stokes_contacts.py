@@ -116,7 +116,7 @@ def cases() -> Iterator[tuple[str, Callable[[float, Stepping], Scene], Figures, 
             return stokes_pressed(step, density, epsilon, stepping)
 
         figures = partial(pressed_figures, density, epsilon)
-        yield f"disk, density {density:g}, ε {epsilon:g}", disk, figures, (0.00025, 0.001, 0.004, 0.01, 0.1)
+        yield f"disk, density {density:g}, ε {epsilon:g}", disk, figures, (0.01, 0.1)
     for epsilon in (1e-8, 1e-10):
         four = partial(sum_figures, 4.0 * disk_weight(2.0), "y")
         yield f"column, ε {epsilon:g}", partial(column, epsilon=epsilon), four, (0.01, 0.1)

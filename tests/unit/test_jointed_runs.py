@@ -154,9 +154,11 @@ def test_the_ledger_has_what_a_hinge_damper_takes_to_second_order():
 def test_a_body_of_given_motion_works_on_what_is_hinged_to_it():
     errors = []
     for step in (0.02, 0.01, 0.005):
-        driver = body(1.5, 2.0, name="driver", prescribed={"amplitude": [0.1, 0.0], "frequency": 1.0})
+        driver = body(
+            1.5, 2.0, name="driver", prescribed={"amplitude": [0.1, 0.0], "frequency": 1.0, "angular_velocity": 2.0}
+        )
         given = hinge("bar", "driver", at=[1.7, 2.0], stiffness=1e-3)
-        it = run(linked_scene([driver, bar(2.0, 2.0, name="bar")], [given], gravity=[0.0, -3.0], end=0.7, step=step))
+        it = run(linked_scene([driver, bar(2.0, 2.0, name="bar")], [given], gravity=[0.0, -3.0], end=0.4, step=step))
         assert misfit(it) < 1e-12
         errors.append(abs(it.state.ledger.residual))
     assert abs(it.state.ledger.control) > 100.0 * errors[-1]
@@ -171,11 +173,11 @@ def test_a_bar_hinged_to_a_mechanism_that_changes_its_shape(install):
         stroke = {"name": "it", "type": "stroke", "radius": 0.05, "length": 0.3, "stroke": 0.1, "ratio": 3.0}
         stroke |= {"density": 1.0, "position": [1.5, 1.5], "angular_velocity": 1.0}
         held = bar(2.3, 1.5, name="bar", spring={"stiffness": [0.1, 0.1]})
-        given = hinge("it.left", "bar", at=[2.05, 1.5], stiffness=1e-3)
+        given = hinge("it.right", "bar", at=[2.05, 1.5], stiffness=1e-3)
         it = run(linked_scene([held], [given], mechanism=[stroke], gravity=[0.0, -3.0], end=0.5, step=step))
         assert misfit(it) < 1e-12
         errors.append(abs(it.state.ledger.residual))
-    assert abs(it.state.ledger.control) > 100.0 * errors[1]
+    assert errors[1] < 1e-4 * it.state.ledger.kinetic
     assert errors[1] < 0.3 * errors[0]
 
 
