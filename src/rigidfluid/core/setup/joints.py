@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions

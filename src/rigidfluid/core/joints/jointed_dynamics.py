@@ -9,10 +9,10 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.joints.damping import damper_impulse
+from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.mechanics.component_dynamics import MotionDynamics
-from rigidfluid.core.mechanics.damping import damper_impulse
 from rigidfluid.core.mechanics.dynamics import LinkWork
-from rigidfluid.core.mechanics.joint_forces import joint_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, together
 from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.state import FreeMotions
