@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.joint_forces import joint_forces
+from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.model.types import FloatArray, Links
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
