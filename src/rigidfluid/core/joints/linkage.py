@@ -62,9 +62,9 @@ class JointLinkage:
 
     Notes
     -----
-    ``joint_rows``, ``ground_rows``: which rows are those of each joint and of each ground link. ``frequency`` is that
-    of the springs on the masses without joints, at the start: joints make motions heavier, so it bounds the
-    frequencies with them in any pose.
+    ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
+    or to the ground alone, its own number. ``frequency`` is that of the springs on the masses without joints, at the
+    start: joints make motions heavier, so it bounds the frequencies with them in any pose.
     """
 
     def __init__(
@@ -85,7 +85,6 @@ class JointLinkage:
         self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
         self._slices = _slices(self._parts)
-        self.joint_rows, self.ground_rows = self._slices[: len(joints)], self._slices[len(joints) :]
         self._constraints = [one for part in self._parts for one in part.constraints]
         self._springs = [one for part in self._parts for one in part.springs]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
