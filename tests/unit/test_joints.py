@@ -41,6 +41,7 @@ def tables(*bodies, joint=(), dimension=2, end=0.1, step=1e-3, every=None, conta
 
 PAIR = ball("one", 0.3, 0.5), ball("two", 0.7, 0.5)
 IN_3D = ball("one", 0.3, 0.5, 0.5), ball("two", 0.7, 0.5, 0.5)
+WATER = {"backend": "scikit-fem", "density": 0.01, "viscosity": 1e-4}
 STROKE = {"piecewise": [[0.0, 0.0], [1.0, 0.5], [2.0, 0.0]]}
 
 
@@ -255,6 +256,18 @@ def test_a_held_body_is_told_of_by_its_own_name(swing):
     np.testing.assert_allclose(held["fy"], -0.3 * (y - 0.7), rtol=1e-12)
     assert np.isnan(held["angle"]).all()
     assert np.abs(held["gap"]).max() < 1e-15
+
+
+@pytest.mark.parametrize(("fluid", "lost"), [({"backend": "dry"}, 0.0), (WATER, 0.005)])
+def test_a_spring_alone_needs_no_joint(fluid, lost):
+    """Half a period of a ball of mass m on a spring k, in a fluid of much less mass: x = a cos(√(k/m) t)."""
+    mass, stiffness = 0.01 * np.pi, 0.01 * np.pi**3
+    spring = {"stiffness": [stiffness, 0.0], "rest": [0.5, 0.5]}
+    it = Simulation(scene_from_dict(tables(ball("one", 0.6, 0.5, spring=spring), end=1.0, step=0.05, **fluid)))
+    it.go()
+    assert stiffness / mass == pytest.approx(np.pi**2)
+    assert it.history.bodies["x"][-1] == pytest.approx(0.4, abs=lost + 1e-4)
+    assert it.history.joints["gap"].max() == 0.0
 
 
 def test_tables_of_a_scene_are_left_as_they_were_given():

@@ -45,7 +45,7 @@ def solve_linked(
     Solution
         With the forces in it.
     (c,) array or None
-        λ; None without links [force | force·length].
+        λ, of size 0 where there are springs alone; None without links [force | force·length].
 
     Raises
     ------
@@ -54,6 +54,8 @@ def solve_linked(
     """
     if links is None:
         return discretisation.solve(system, tolerance), None
+    if len(links.rate) == 0:  # springs alone
+        return discretisation.solve(system, tolerance), np.zeros(0)
     answers = discretisation.twists_by(system.matrix, np.moveaxis(links.rows, 0, -1), _ANSWER_TOLERANCE)
     compliance: FloatArray = np.tensordot(links.rows, answers, axes=2) + np.diag(links.compliance)
     force = _solved(compliance, links.rate)  # what a drive needs from rest, when there is no other load

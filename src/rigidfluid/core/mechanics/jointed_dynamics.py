@@ -193,7 +193,7 @@ class JointedDynamics:
 
     def _rows_here(self) -> _Rows:
         links = self._linkage.links(self.pose, self._time)
-        rows = links.rows.reshape(len(links.rate), -1)
+        rows = links.rows.reshape(len(links.rate), flat(self.twist).size)
         answers = self._inner.inverse_masses(0.0) @ rows.T
         return _Rows(links, rows, answers, rows @ answers)
 
