@@ -38,6 +38,11 @@ def _sections() -> Iterator[str]:
 def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -> Iterator[str]:
     schema = definitions[name]
     yield f"## `{title}`\n\n{schema['description']}\n\n{_table(schema)}"
+    yield from _within(path, schema, definitions)
+
+
+def _within(path: str, schema: Schema, definitions: dict[str, Schema]) -> Iterator[str]:
+    """The tables in a table."""
     for key, place in schema["properties"].items():
         if target := _target(place):
             title = f"[[{path}.{key}]]" if place.get("type") == "array" else f"[{path}.{key}]"
@@ -50,6 +55,7 @@ def _parts() -> Iterator[str]:
         if entry.origin.startswith("rigidfluid ") and schema["properties"]:
             meaning = " ".join(schema["description"].replace("``", "`").split())
             yield f"## `{_named(entry)}`\n\n{meaning}\n\n{_table(schema)}"
+            yield from _within(entry.kind.field.partition(".")[0], schema, schema.get("$defs", {}))
 
 
 def _named(entry: Entry) -> str:

@@ -34,6 +34,7 @@ def in_fluid(
     gravity: float = GRAVITY,
     fluid: Table | None = None,
     mesh: Table | None = None,
+    mechanism: Sequence[Table] = (),
 ) -> Scene:
     """Bodies in a box full of fluid of density 1 and viscosity .01, from the origin to ``upper``."""
     dimension = len(upper)
@@ -44,6 +45,7 @@ def in_fluid(
             "fluid": {"density": 1.0, "viscosity": 0.01, "gravity": downward} | (fluid or {}),
             "domain": {"lower": [0.0] * dimension, "upper": list(upper)},
             "body": list(bodies),
+            "mechanism": list(mechanism),
             "contact": contact,
             "mesh": MESH | (mesh or {}),
             "time": {"end": end, "step": step},
@@ -65,7 +67,7 @@ def heavy(x: float, y: float, velocity: Sequence[float] = REST, **keys: Any) -> 
 def resting_gap(epsilon: float, density: float = 3.0) -> float:
     """The gap of a disk to the floor where the contact bears its submerged weight, by bisection."""
     centre = CentreLaw(CentreOptions(epsilon=epsilon), RANGE)
-    weight = (density - 1.0) * np.pi * RADIUS**2 * GRAVITY
+    weight = abs(density - 1.0) * np.pi * RADIUS**2 * GRAVITY
     low, high = 0.0, RANGE
     while low < (gap := 0.5 * (low + high)) < high:
         force = np.linalg.norm(centre.force(one_contact(gap, RADIUS, np.inf)))
@@ -125,11 +127,16 @@ def settling(step: float) -> Scene:
     return in_fluid(repulsion("substeps", 1e-10), disk, end=0.4, step=step)
 
 
-def stokes_pressed(step: float, density: float = 2.0) -> Scene:
+STOKES: Table = {"model": "stokes", "viscosity": 0.3}
+
+
+def stokes_pressed(
+    step: float, density: float = 2.0, epsilon: float = 1e-8, stepping: Stepping = "substeps", steps: int = 10
+) -> Scene:
     """Without inertia of the fluid, a disk sinks onto the floor, or rises to the ceiling if it is light."""
     disk = heavy(0.4, 0.14 if density > 1.0 else SIDE - 0.14, density=density)
-    fluid = {"model": "stokes", "viscosity": 0.3}
-    return in_fluid(repulsion("substeps", 1e-8), disk, end=0.3, step=step, fluid=fluid)
+    end = max(0.3, 10.0 * step)
+    return in_fluid(repulsion(stepping, epsilon), disk, end=end, step=step, fluid=STOKES)
 
 
 def ellipse(step: float, stepping: Stepping = "substeps") -> Scene:

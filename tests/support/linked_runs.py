@@ -1,39 +1,64 @@
-"""Dry runs of bodies with joints."""
+"""Dry scenes of linked bodies, and what is read from their runs."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import component_twist
-from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
-from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
+
+Table = dict[str, Any]
 
 
-def linked_run(scene: Scene, joints: Sequence[Joint] = (), ground: Sequence[GroundLink] = ()) -> Simulation:
-    """At its start, with twists that the joints allow."""
-    it = Simulation(scene)
-    system = it.system
-    given = system.mass, system.inertia, system.controlled, system.controlled_twist, system.mechanisms
-    linkage = JointLinkage(system.pose, joints, ground, *given)
-    carried = system.mechanisms
-    if carried is None:
-        system = replace(system, twist=linkage.fitting(system.pose, system.twist, 0.0))
-    else:
-        carried.twist = linkage.fitting(carried.pose, carried.twist, 0.0)
-        system = replace(system, twist=component_twist(carried.at(carried.pose, 0.0), carried.twist))
-    it.stepper.system = replace(system, linkage=linkage)
-    it.state = initial_state(it.system, it.mesh_updater, it.clock)
-    it.history.cut(dict.fromkeys(it.history.lengths, 0))
-    it._record()
-    return it
+def linked_scene(
+    bodies: Sequence[Table],
+    joints: Sequence[Table] = (),
+    contact: Table | None = None,
+    gravity: Sequence[float] | None = None,
+    end: float = 1.0,
+    step: float = 1e-2,
+    upper: float = 4.0,
+    **tables: Any,
+) -> Scene:
+    """In a box from the origin on."""
+    dimension = len(bodies[0]["position"])
+    fluid = {"backend": "dry"} if gravity is None else {"backend": "dry", "gravity": list(gravity)}
+    return scene_from_dict(
+        {
+            "scene": {"name": "linked", "dimension": dimension},
+            "fluid": fluid,
+            "domain": {"lower": [0.0] * dimension, "upper": [upper] * dimension},
+            "body": list(bodies),
+            "joint": list(joints),
+            "contact": contact or {},
+            "time": {"end": end, "step": step},
+            "output": {"every": end},
+        }
+        | tables
+    )
+
+
+def body(*position: float, **keys: Any) -> Table:
+    """A ball of radius 0.1 and density 1, unless ``keys`` say otherwise."""
+    return {"type": "sphere", "radius": 0.1, "density": 1.0, "position": list(position)} | keys
+
+
+def bar(*position: float, **keys: Any) -> Table:
+    """Of length 0.5 along x."""
+    axes = [0.25, 0.05, 0.08][: len(position)]
+    return {"type": "ellipsoid", "semi_axes": axes, "density": 1.0, "position": list(position)} | keys
+
+
+def hinge(*between: str, at: Sequence[float], **keys: Any) -> Table:
+    """In 3D about an axis that is none of the box's, unless ``keys`` say otherwise."""
+    axis = {"axis": [0.48, 0.6, 0.64]} if len(at) == 3 else {}
+    return {"type": "hinge", "between": list(between), "at": list(at)} | axis | keys
 
 
 def momenta(it: Simulation) -> FloatArray:
@@ -44,7 +69,7 @@ def momenta(it: Simulation) -> FloatArray:
     return np.concatenate([linear.sum(axis=0), (spin + moment(pose.position, linear)).sum(axis=0)])
 
 
-def gap(it: Simulation) -> float:
-    """The greatest misfit of its joints."""
+def misfit(it: Simulation) -> float:
+    """The greatest of its joints [length | rad]."""
     assert it.system.linkage is not None
     return float(np.abs(it.system.linkage.misfit(it.state.free_pose, it.time)).max())

@@ -13,8 +13,10 @@ import rigidfluid
 from rigidfluid.core.model.types import FloatArray
 
 SCENE = Path(__file__).parents[2] / "scenes" / "swimmer_3d.toml"
-BACK = 'mechanism.0.order=["right out", "left out", "right in", "left in"]'
-"""The cycle of `SCENE`, backwards."""
+BACK = 'mechanism.0.order=["right in", "left in", "right out", "left out"]'
+"""The cycle of `SCENE`, backwards in time."""
+BACK_FROM_SHORT = 'mechanism.0.order=["right out", "left out", "right in", "left in"]'
+"""The same, begun with short arms."""
 
 
 @dataclass(frozen=True)

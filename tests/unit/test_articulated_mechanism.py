@@ -1,42 +1,16 @@
 """Mechanisms that a scene spells out: bodies of any shape, and strokes that move them."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from articulated_scenes import BALL, OUT, WAG, components, scene
 
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.errors import PluginError, SceneError
-
-BALL = {"type": "sphere", "radius": 0.05, "density": 1.0}
-WAG = {"moves": ["tail"], "about": [0.6, 0.0], "smooth": [[0.0, 0.0], [0.1, 0.5], [0.3, -0.5], [0.4, 0.0]]}
-OUT = {"moves": ["head"], "along": [-1.0, 0.0], "piecewise": [[0.0, 0.0], [0.03, 0.06], [0.05, 0.06], [0.1, 0.0]]}
-
-
-def components(**tail):
-    square = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]
-    return [
-        BALL | {"name": "head", "position": [0.0, 0.0]},
-        {"name": "trunk", "type": "ellipsoid", "semi_axes": [0.2, 0.1], "density": 2.0, "position": [0.4, 0.0]},
-        {"name": "tail", "type": "polygon", "points": square, "density": 3.0, "position": [0.8, 0.0]} | tail,
-    ]
-
-
-def scene(*strokes, parts=None, end=0.2, step=0.01, position=(2.0, 2.0), fluid=None, **keys):
-    table = {"name": "it", "type": "articulated", "component": parts or components(), "stroke": list(strokes)}
-    return scene_from_dict(
-        {
-            "scene": {"name": "articulated", "dimension": 2},
-            "fluid": fluid or {"backend": "dry"},
-            "domain": {"lower": [0.0, 0.0], "upper": [4.0, 4.0]},
-            "mechanism": [table | {"position": list(position)} | keys],
-            "mesh": {"size": 0.8, "size_body": 0.08},
-            "time": {"end": end, "step": step},
-            "output": {"every": end},
-        }
-    )
 
 
 def momenta(it):
@@ -175,3 +149,14 @@ def test_the_phases_of_the_three_sphere_swimmer_are_four():
         load_scene(path, ['mechanism.0.order=["left in", "left in", "left out", "right out"]'])
     with pytest.raises(SceneError, match=r"mechanism.0.amplitude.*less than 8"):
         load_scene(path, ["mechanism.0.amplitude=8.0"])
+
+
+def test_the_scene_of_the_page_on_mechanisms_swims():
+    page = (Path(__file__).parents[2] / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    tables = tomllib.loads(page.partition("```toml\n")[2].partition("```")[0])
+    tables["mesh"] |= {"size": 0.8, "size_body": 0.1}
+    tables["time"] |= {"end": 0.1, "step": 0.05}
+    it = Simulation(scene_from_dict(tables))
+    it.go()
+    assert it.bodies["fish"].velocity[0] != 0.0
+    assert it.state.ledger.control > 0.0

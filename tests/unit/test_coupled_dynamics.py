@@ -83,6 +83,46 @@ def test_with_friction_as_the_exponential_says(time, substeps):
     np.testing.assert_allclose(end - joined(TWIST).ravel()[INSIDE], gained, rtol=1e-8, atol=1e-11)
 
 
+def resisted(load_before: FloatArray) -> CoupledDynamics:
+    """A fluid without inertia, whose Φ grows from ``load_before``."""
+    coupling = coupling_of(model_of(MASS, FRICTION), LOAD, load_before)
+    return CoupledDynamics(START, TWIST, RATE, LINEAR, ANGULAR, coupling, weight=WEIGHT)
+
+
+WEIGHT = RNG.normal(size=len(INSIDE))
+
+
+def test_without_inertia_of_the_fluid_all_friction_is_known():
+    """∫ (W - Φ + R (U - Uⁿ))·U dt = W·Δx + ∫ F·U dt - Δ(½ UᵀMU), less what Simpson's rule sees."""
+    before, time, parts = 0.5 * LOAD, 0.3, 4000
+    bodies = resisted(before)
+    bodies.vary_load(time)
+    start, pushed, path = joined(TWIST).ravel()[INSIDE], flat_wrench()[INSIDE], 0.0
+    for _ in range(parts):
+        bodies.kick(WRENCH, 0.5 * time / parts)
+        middle = joined(bodies.twist).ravel()[INSIDE]
+        bodies.drift(time / parts)
+        bodies.kick(WRENCH, 0.5 * time / parts)
+        path += (WEIGHT + pushed) @ middle * time / parts
+    end = joined(bodies.twist).ravel()[INSIDE]
+    path -= 0.5 * (end @ MASS @ end - start @ MASS @ start)
+    mean, last = 0.5 * (start + end), WEIGHT - LOAD
+    seen = (WEIGHT - before) @ start + 4.0 * (last + FRICTION @ (mean - start)) @ mean
+    seen += (last + FRICTION @ (end - start)) @ end
+    assert bodies.friction_loss == pytest.approx(path - time * seen / 6.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("time", [1e-4, 0.02, 5.0])
+def test_without_inertia_of_the_fluid_friction_bounds_what_a_pull_adds(time):
+    """|Φ|/λ at the end; a pull that nothing ends would go on for ever."""
+    bodies = resisted(LOAD)
+    bound = time * bodies.max_acceleration(time)
+    bodies.kick(Wrench(np.zeros((BODIES, 2)), np.zeros((BODIES, 1))), time)
+    gained = np.linalg.norm(joined(bodies.twist)[:, :2] - joined(TWIST)[:, :2], axis=1)
+    assert (gained <= bound * (1.0 + 1e-12)).all()
+    assert bound[0] <= 3.0 * np.linalg.norm(np.linalg.solve(FRICTION, LOAD)) or time < 0.1
+
+
 @pytest.mark.parametrize("factor", [0.0, 1.0, 1e12])
 def test_rest_is_kept_to_rounding(factor):
     load = -flat_wrench()[INSIDE]
@@ -199,3 +239,16 @@ def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_know
     gained = (joined(bodies.twist) - joined(TWIST)).ravel()[INSIDE]
     mean = np.where(np.isnan(before), LOAD, 0.5 * (LOAD + before))
     np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)
+
+
+def test_an_impulse_at_once_is_answered_by_the_masses_alone():
+    bodies = movement()
+    impulse = flat_wrench().reshape(BODIES, WIDTH)
+    expected = joined(bodies.twist).ravel() + bodies.inverse_masses(0.0) @ impulse.ravel()
+    bodies.push(impulse)
+    np.testing.assert_allclose(joined(bodies.twist).ravel(), expected, rtol=1e-12)
+    pushed, kicked = bodies, movement()
+    kicked.kick(Wrench(1e8 * WRENCH.force, 1e8 * WRENCH.torque), 1e-8)
+    for each in (pushed, kicked):
+        each.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.3)
+    np.testing.assert_allclose(joined(pushed.twist), joined(kicked.twist), rtol=1e-5)

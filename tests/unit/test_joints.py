@@ -5,6 +5,8 @@ import copy
 import numpy as np
 import pytest
 
+import rigidfluid
+from rigidfluid.checks import check
 from rigidfluid.core.contact.proximity import interacting
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
@@ -13,6 +15,7 @@ from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.errors import CrosscheckError, SceneError
 from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
+from rigidfluid.reports import report
 
 LAW = {"law": "centre", "range": 0.05, "epsilon": 1e-3}
 
@@ -268,6 +271,71 @@ def test_a_spring_alone_needs_no_joint(fluid, lost):
     assert stiffness / mass == pytest.approx(np.pi**2)
     assert it.history.bodies["x"][-1] == pytest.approx(0.4, abs=lost + 1e-4)
     assert it.history.joints["gap"].max() == 0.0
+
+
+def test_a_joint_follows_a_body_that_is_prescribed_later():
+    hand = ball("hand", 0.5, 0.8, fixed=True)
+    simulation = Simulation(scene_from_dict(tables(hand, ball("bob", 0.5, 0.3), joint=[hinge("bob", "hand")])))
+    simulation.go(0.02)
+    simulation.prescribe("hand", velocity=[0.3, 0.0])
+    simulation.go()
+    pin = rows_of(simulation, "joint0")
+    assert pin["gap"].max() < 1e-13
+    np.testing.assert_allclose(simulation.bodies["hand"].position, [0.524, 0.8])
+    assert pin["rate"][-1] < -0.1
+
+
+def test_a_saved_run_goes_on_with_the_same_bits(tmp_path):
+    bodies = PAIR[0], PAIR[1] | {"density": 2.0}, ball("held", 0.5, 0.2, free=["y"], spring={"stiffness": [0.0, 5.0]})
+    joint = hinge("one", "two", stiffness=0.02, damping=1e-3)
+    fluid = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.1, "gravity": [0.0, -9.81]}
+    data = tables(
+        *bodies, joint=[joint], end=0.04, step=0.005, every=0.02, mesh={"size": 0.3, "size_body": 0.1}, **fluid
+    )
+    whole = rigidfluid.run(scene_from_dict(data), tmp_path / "whole")
+    rigidfluid.run(scene_from_dict(data | {"time": {"end": 0.02, "step": 0.005}}), tmp_path / "resumed")
+    rigidfluid.run(scene_from_dict(data), tmp_path / "resumed", resume=True)
+    assert whole.summary["steps"] > 4
+    for name in ("bodies.csv", "joints.csv", "energy.csv"):
+        assert (tmp_path / "resumed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert np.abs(whole.joints["fx"]).max() > 0.0
+
+
+def test_a_report_draws_hinges(tmp_path):
+    joint = hinge("one", "two", stiffness=0.02)
+    rigidfluid.run(scene_from_dict(tables(*PAIR, joint=[joint], gravity=[0.0, -1.0], end=0.01)), tmp_path)
+    assert {"joints.png", "joints.svg"} <= {path.name for path in report(tmp_path)}
+
+
+def findings(*bodies, **keys):
+    found = check(scene_from_dict(tables(*bodies, **keys))).findings
+    return {one.text.split()[0]: one for one in found if one.question == "joints"}
+
+
+def test_the_check_counts_what_joints_leave_free():
+    found = findings(*PAIR, ball("held", 0.5, 0.2, free=["y"]), joint=[hinge("one", "two")])
+    assert dict(found["joints"].found) == {"joints": 1, "velocities": 9, "held": 4, "left": 5}
+
+
+@pytest.mark.parametrize(("stiffness", "grade"), [(100.0, "note"), (2000.0, "warning")])
+def test_the_check_sets_springs_beside_the_step(stiffness, grade):
+    found = findings(ball("one", 0.5, 0.5, spring={"stiffness": [stiffness, 0.0]}))["the"]
+    assert found.found["frequency"] == pytest.approx(np.sqrt(stiffness / (0.01 * np.pi)))
+    assert found.grade == grade
+    if grade == "warning":
+        assert found.enough["time_step"] == pytest.approx(0.2 / found.found["frequency"])
+
+
+def test_the_check_tells_how_far_a_hinge_turns():
+    """Two balls of radius 0.1 at 0.2 from the hinge touch at ±(180° - 60°)."""
+    found = findings(*PAIR, joint=[hinge("one", "two")])["hinge"]
+    assert found.grade == "warning"
+    assert found.found["gap"] == pytest.approx(0.2)
+    assert found.found["greatest_angle"] == pytest.approx(2.0 * np.pi / 3.0, abs=1e-3)
+    assert found.found["least_angle"] == pytest.approx(-2.0 * np.pi / 3.0, abs=1e-3)
+    for angle, grade in ((2.0, "note"), (2.2, "error")):
+        drive = {"piecewise": [[0.0, 0.0], [0.05, angle], [0.1, 0.0]]}
+        assert findings(*PAIR, joint=[hinge("one", "two", drive=drive)])["hinge"].grade == grade
 
 
 def test_tables_of_a_scene_are_left_as_they_were_given():

@@ -9,12 +9,13 @@ import numpy as np
 
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.core.model.linkage import Joint, Linkage
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.joints import joints_of
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.parts import Parts
 
 QUESTION = "joints"
 
@@ -26,13 +27,13 @@ _BISECTIONS = 10
 _STROKE_SAMPLES = 400
 
 
-def of_joints(scene: Scene, system: System) -> Iterator[Finding]:
+def of_joints(parts: Parts, system: System) -> Iterator[Finding]:
     """Count freedoms, compare springs with the step, and turn hinges until their bodies touch.
 
     Parameters
     ----------
-    scene : Scene
-        With the components of mechanisms among its bodies.
+    parts : Parts
+        Of the scene.
     system : System
         What was built from it.
 
@@ -44,12 +45,13 @@ def of_joints(scene: Scene, system: System) -> Iterator[Finding]:
     """
     if system.linkage is None:
         return
+    scene = parts.scene
     yield _freedoms(scene, system, system.linkage)
     if system.linkage.frequency > 0.0:
         yield _springs(scene, system, system.linkage)
     for joint in joints_of(scene, system.pose):
         if joint.type == "hinge" and joint.second is not None:
-            yield _clearance(scene, system, joint, joint.second)
+            yield _clearance(parts, system, joint, joint.second)
 
 
 def _freedoms(scene: Scene, system: System, linkage: Linkage) -> Finding:
@@ -82,17 +84,17 @@ def _springs(scene: Scene, system: System, linkage: Linkage) -> Finding:
     return Finding("warning", QUESTION, (), f"{text}: few steps for a period", remedy, found, enough)
 
 
-def _clearance(scene: Scene, system: System, joint: Joint, second: int) -> Finding:
+def _clearance(parts: Parts, system: System, joint: Joint, second: int) -> Finding:
     """How far the first body can turn either way before it touches the second."""
     names = system.surfaces[joint.first], system.surfaces[second]
-    gap = partial(_gap, scene, system, joint, second)
+    gap = partial(_gap, parts.exact_detector, system, joint, second)
     up, down = _touches(gap, 1.0), _touches(gap, -1.0)
     found = {"gap": gap(0.0), "least_angle": -down, "greatest_angle": up}
     text = f"hinge {joint.name} of {names[0]} and {names[1]}, a gap of {figure(gap(0.0))} apart, "
     if np.isinf(up) and np.isinf(down):
         return Finding("note", QUESTION, names, text + "turns all around", found=found)
     text += f"turns from {figure(-down)} to {figure(up)} until they touch"
-    least, greatest = _driven(scene, joint)
+    least, greatest = _driven(parts.scene, joint)
     if least <= -down or greatest >= up:
         text += f", and its drive from {figure(least)} to {figure(greatest)}"
         return Finding("error", QUESTION, names, text, "Move them apart, or drive it less far.", found)
@@ -126,7 +128,7 @@ def _touches(gap: Callable[[float], float], sign: float) -> float:
     return before
 
 
-def _gap(scene: Scene, system: System, joint: Joint, second: int, angle: float) -> float:
+def _gap(detector: type[Detector], system: System, joint: Joint, second: int, angle: float) -> float:
     """Between the two where the first has turned by an ``angle`` [length]."""
     pair = [joint.first, second]
     position, orientation = system.pose.position[pair], system.pose.orientation[pair]
@@ -137,7 +139,6 @@ def _gap(scene: Scene, system: System, joint: Joint, second: int, angle: float) 
         np.stack([joint.at + matrix @ (position[0] - joint.at), position[1]]),
         np.concatenate([rotate(orientation[:1], turn), orientation[1:]]),
     )
-    detector = known_parts(scene).exact_detector
     bodies = tuple(system.bodies[body] for body in pair)
     return float(detector(detector.Options(), bodies, ()).detect(turned, None, np.inf).gap.min())
 

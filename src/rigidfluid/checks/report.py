@@ -15,6 +15,7 @@ from rigidfluid.checks.energy_error import in_the_fluid
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.joints import of_joints
+from rigidfluid.checks.mechanisms import of_mechanisms
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
@@ -29,7 +30,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.parts import Parts, known_parts
 
 
 @dataclass(frozen=True)
@@ -97,18 +98,19 @@ def check(scene: Scene) -> Report:
         system, parts = build_system(scene), known_parts(scene)
         scene = parts.scene
         start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
-        found = sorted(findings(scene, system, start), key=lambda finding: GRADES.index(finding.grade))
+        found = sorted(findings(parts, system, start), key=lambda finding: GRADES.index(finding.grade))
         domain = domain_row(scene, system.domain)
         return Report(
             scene.name, domain, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found)
         )
 
 
-def findings(scene: Scene, system: System, start: Contacts) -> Iterator[Finding]:
+def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
+    scene = parts.scene
     yield from chain(by_a_law(system), by_walls(system), by_auto(system))
     yield from chain(to_a_tolerance(scene.time), of_facets(system))
-    yield from of_joints(scene, system)
+    yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

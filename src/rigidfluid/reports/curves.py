@@ -23,7 +23,7 @@ def draw_bodies(axes: Axes, time: FloatArray, values: FloatArray, names: Sequenc
         _draw_spread(axes, time, finite, len(names))
         return
     for curve, name, colour in zip(finite.T, names, PALETTE, strict=False):
-        axes.plot(time, curve, color=colour, label=_as_it_is(name))
+        axes.plot(time, curve, color=colour, label=as_it_is(name))
 
 
 def add_legend(figure: Figure | SubFigure) -> None:
@@ -57,6 +57,6 @@ def _draw_spread(axes: Axes, time: FloatArray, values: FloatArray, count: int) -
     axes.plot(time, half, color=BLUE, label="median")
 
 
-def _as_it_is(name: str) -> str:
+def as_it_is(name: str) -> str:
     """Dollars in a name enclose no formula."""
     return name.replace("$", r"\$")

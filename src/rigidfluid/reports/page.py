@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.scene.scene_text import scene_text
-from rigidfluid.reports.html import document, picture, table
+from rigidfluid.reports.html import document, grid, picture, table
 
 _MOST_BODIES = 8
 _ENERGIES = {
@@ -53,6 +53,7 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
         *(f'<p class="note">{escape(note)}</p>' for note in notes),
         table(_figures(summary)),
+        *_cycles(summary.get("cycles", {})),
         *(picture(path, caption) for path, caption in pictures),
         "<h2>Energy balance</h2>",
         table(_energy(summary["energy"])),
@@ -76,6 +77,21 @@ def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
         yield f"last position of {body} [length]", ", ".join(f"{value:.5g}" for value in place)
     if len(places) > _MOST_BODIES:
         yield "", f"and of {len(places) - _MOST_BODIES} more bodies, in bodies.csv"
+
+
+def _cycles(mechanisms: Mapping[str, Any]) -> Iterator[str]:
+    """A table for each mechanism whose strokes repeat."""
+    for name, found in mechanisms.items():
+        moved, turned = found["displacement"], found["rotation"]
+        if not moved:
+            continue
+        three = len(moved[0]) == 3
+        yield f"<h2>Cycles of {escape(name)}</h2>"
+        yield f"<p>Each takes {found['period']:.5g} [time].</p>"
+        head = ("cycle", *(f"along {axis} [length]" for axis in "xyz"[: len(moved[0])]))
+        spins = ("about x [rad]", "about y [rad]", "about z [rad]") if three else ("turned [rad]",)
+        rows = enumerate(zip(moved, turned, strict=True), start=1)
+        yield grid((*head, *spins), [(number, *place, *(turn if three else (turn,))) for number, (place, turn) in rows])
 
 
 def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.output.writer import writing
 from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, joint_plot, position_plot, speed_plot, step_plot
+from rigidfluid.reports.mechanisms import mechanism_plot
 from rigidfluid.reports.page import page
 from rigidfluid.reports.pictures import gap_picture, mesh_picture, moments, narrowest_moment, speed_picture
 from rigidfluid.reports.results import Results, read_results
@@ -63,6 +64,8 @@ def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, .
         caption = "The smallest gap among the output times."
         yield "smallest_gap", caption, gap_picture(narrowest_moment(results)), raster
     yield "position", "Where the bodies are.", position_plot(results), both
+    if results.system.mechanisms is not None:
+        yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
     yield "speed", "How fast the bodies are.", speed_plot(results), both
     if np.isfinite(results.bodies["gap"]).any():
         yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +41,7 @@ class Results:
 
     ``summary`` as in summary.json, ``scene`` and ``system`` as the run built them; ``time`` (s,) [time]; ``bodies`` by
     column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times
-    and files of the fields, empty without a fluid.
+    and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms).
     """
 
     summary: dict[str, Any]
@@ -52,6 +52,7 @@ class Results:
     joints: dict[str, FloatArray]
     energy: dict[str, FloatArray]
     series: tuple[tuple[float, Path], ...]
+    wholes: dict[str, FloatArray] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -98,10 +99,8 @@ def read_results(folder: Path) -> Results:
     system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension)
     energy = _table(folder, "energy", scene.dimension)
-    by_state = {
-        name: _by_state(folder / "bodies.csv", values, len(moving(system)))[:, : len(system.bodies)]
-        for name, values in bodies.items()
-    }
+    by_state = {name: _by_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
+    count = len(system.bodies)
     links = len(_joint_names(system))
     joints = _table(folder, "joints", scene.dimension) if links else {}
     return Results(
@@ -109,10 +108,11 @@ def read_results(folder: Path) -> Results:
         scene=scene,
         system=system,
         time=by_state["time"][:, 0],
-        bodies=by_state,
+        bodies={name: values[:, :count] for name, values in by_state.items()},
         joints={name: _by_state(folder / "joints.csv", values, links) for name, values in joints.items()},
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
+        wholes={name: values[:, count:] for name, values in by_state.items()},
     )
 
 

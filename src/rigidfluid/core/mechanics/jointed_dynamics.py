@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -19,6 +20,9 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
+
+_AHEAD = 1e-4
+"""A part of the first kick, so soon after a corner in a drive its new rate is read."""
 
 _PARTS = 4
 """In so many parts of a time accelerations are looked at."""
@@ -61,6 +65,7 @@ class JointedDynamics:
         self._rigid: BoolArray = self._here.links.compliance == 0.0
         nothing_yet = np.zeros_like(self._here.links.rate), np.zeros_like(flat(self.twist))
         self.link_work = LinkWork(*nothing_yet, 0.0, 0.0)
+        self._begun = not linkage.driven
 
     @property
     def pose(self) -> Pose:
@@ -113,26 +118,36 @@ class JointedDynamics:
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """By ``wrench`` and springs, while dampers act, and then by rigid joints."""
+        if not self._begun:
+            self._begin(_AHEAD * time)
         springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing()
         driven = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(together(wrench, springs), time, at)
-        impulse, links, damped = self._held(), self._here.links, 0.0
+        impulse, damped = self._held(), 0.0
         if not self._rigid.all():
             by_dampers, damped = self._damped(before, self._missing() - self._here.answer @ impulse, time)
             impulse += by_dampers
         self._inner.push(self._on_motions(impulse))
-        self._add(impulse, driven + float(impulse @ links.rate), damped, time * flat(springs))
+        self._add(impulse, driven, damped, time * flat(springs))
 
     def drift(self, time: float) -> None:
         """So that rigid joints fit at its end, where they then take out of the twist what they do not allow."""
-        rate = self._mean_rate(0.5 * time)
         impulse = self._close(time)
-        self._add(impulse, float(impulse @ rate))
+        self._add(impulse)
         self._time += time
         self._here = self._rows_here()
         settled = self._held()
         self._inner.push(self._on_motions(settled))
-        self._add(settled, float(settled @ self._mean_rate(-0.5 * time)))
+        self._add(settled)
+
+    def _begin(self, ahead: float) -> None:
+        """From the rates before the start, which may be a corner of a drive, on to those after it."""
+        before, self._begun = self._here.links, True
+        after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
+        self._here = self._here._replace(links=after)
+        impulse = self._held()
+        self._inner.push(self._on_motions(impulse))
+        self._add(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
 
     def _close(self, time: float) -> FloatArray:
         """Drift after the impulses (c,) that make rigid joints fit at the end, by Newton's method."""
@@ -173,16 +188,12 @@ class JointedDynamics:
         """rate - C u (c,)."""
         return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
 
-    def _mean_rate(self, ahead: float) -> FloatArray:
-        """Of the rates (c,) now and so long ahead, at the present pose: a drive's may jump between two drifts."""
-        rate = self._here.links.rate
-        if not self._linkage.driven:
-            return rate
-        return np.asarray(0.5 * (rate + self._linkage.links(self.pose, self._time + ahead).rate))
-
-    def _add(self, impulse: FloatArray, driven: float, damped: float = 0.0, springs: FloatArray | float = 0.0) -> None:
-        """To what the joints did."""
+    def _add(
+        self, impulse: FloatArray, driven: float = 0.0, damped: float = 0.0, springs: FloatArray | float = 0.0
+    ) -> None:
+        """To what joints did, by impulses (c,) here, at the rates that hold here, and else."""
         so_far, pushed = self.link_work, self._on_motions(impulse) + springs
+        driven += float(impulse @ self._here.links.rate)
         self.link_work = LinkWork(
             so_far.impulse + impulse, so_far.pushed + pushed, so_far.driven + driven, so_far.damped + damped
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from itertools import pairwise
 from math import inf
 
@@ -190,6 +191,12 @@ class JointLinkage:
             own = [next(placed) for _ in part.constraints]
             readings.append(part.reading(own, bodies, twist, time, known[rows]))
         return readings
+
+    def following(self, controlled_twist: Callable[[float], FloatArray]) -> JointLinkage:
+        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""
+        other = copy(self)
+        other._controlled_twist = controlled_twist
+        return other
 
     def _pull(self, bodies: Pose) -> Wrench:
         wrench = nothing(bodies)

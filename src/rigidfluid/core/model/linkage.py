@@ -106,3 +106,6 @@ class Linkage(Protocol):
     def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
         """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
         None where it is not known yet."""
+
+    def following(self, controlled_twist: Callable[[float], FloatArray]) -> Linkage:
+        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""

@@ -226,7 +226,10 @@ class Simulation:
         tables["body"][number] = body
         self.scene = scene_from_dict(tables)
         motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
-        self.stepper.system = replace(self.system, controlled_twist=motion, controlled_pose=motion.pose_at)
+        linkage = None if self.system.linkage is None else self.system.linkage.following(motion)
+        self.stepper.system = replace(
+            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, linkage=linkage
+        )
         if self.system.backend.needs_mesh:  # the fluid is set in motion at once
             estimate = self.state.estimate and self.state.estimate.restarted
             self.state = replace(self.state, level=start_level(self.clock), estimate=estimate)

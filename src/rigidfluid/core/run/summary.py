@@ -13,6 +13,7 @@ from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.output.cycles import cycles
 from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 from rigidfluid.core.run.process import peak_memory
@@ -29,7 +30,7 @@ _PACKAGES = (
 FIGURES = (
     *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
     *("failed_remeshes", "wall_time", "wall_time_per_stage"),
-    *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "energy"),
+    *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ACCOUNT = ("put_in", "created", "lost", "unaccounted")
@@ -61,9 +62,17 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
+        **_cycles(simulation),
         "energy": energy_balance(state.ledger, energy_account(simulation.history.energy)),
         "auto_epsilon": chosen_strengths(system),
     }
+
+
+def _cycles(simulation: Simulation) -> dict[str, Any]:
+    """Of mechanisms whose strokes repeat, where there are any."""
+    periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
+    repeated = {name: period for name, period in periods.items() if period is not None}
+    return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
 
 
 def _cells(mesh: Mesh) -> int:

@@ -1,0 +1,63 @@
+"""How far mechanisms get in each cycle of their strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.mechanics.rigid import rotation_between
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
+
+_ROUNDING = 1e-9
+
+
+def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str, Any]]:
+    """Displacement and rotation of each whole cycle.
+
+    Parameters
+    ----------
+    history : History
+        With the table of bodies.
+    periods : mapping of str to float
+        Of mechanisms, by name [time].
+
+    Returns
+    -------
+    dict of str to dict
+        By name: ``period`` [time]; of each whole cycle ``displacement`` of the centre of mass, a vector [length], and
+        ``rotation``, in 2D an angle, in 3D a rotation vector [rad]. Where no step ends with a cycle, values are
+        linear between two steps.
+    """
+    axes, orientation = _axes(history.dimension)
+    table = history.table("bodies", ("time", "body", *axes, *orientation))
+    return {name: _of_one(table, name, period, history.dimension) for name, period in periods.items()}
+
+
+def _of_one(table: Mapping[str, FloatArray], name: str, period: float, dimension: int) -> dict[str, Any]:
+    mine = table["body"] == name
+    time, (axes, orientation) = table["time"][mine], _axes(dimension)
+    whole = int(np.floor(time[-1] / period + _ROUNDING)) if len(time) else 0
+    ends = period * np.arange(whole + 1)
+
+    def at_ends(names: tuple[str, ...]) -> FloatArray:
+        return np.column_stack([np.interp(ends, time, table[column][mine]) for column in names])
+
+    places, turns = at_ends(axes), at_ends(orientation)
+    if dimension == 3:
+        turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    rotation = rotation_between(turns[:-1], turns[1:])
+    return {
+        "period": period,
+        "displacement": np.diff(places, axis=0).tolist(),
+        "rotation": (rotation[:, 0] if dimension == 2 else rotation).tolist(),
+    }
+
+
+def _axes(dimension: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the columns of position and of orientation."""
+    names = columns(dimension)["bodies"][3:]
+    return names[:dimension], names[dimension : dimension + (1 if dimension == 2 else 4)]

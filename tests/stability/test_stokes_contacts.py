@@ -1,0 +1,63 @@
+"""Contacts in a fluid without inertia, at steps far longer than bodies of next to no mass take to stop."""
+
+import numpy as np
+import pytest
+import stokes_contacts as scenes
+from fluid_contact_table import track
+from fluid_contacts import created_and_lost, resting_gap, stokes_pressed
+from stokes_contacts import disk_weight, last_fifth, mean_over_time
+
+import rigidfluid
+from rigidfluid.core.output.history import History
+
+
+def refuse_unrest(history: History, density: float, epsilon: float) -> None:
+    """The contact bears the weight at the gap where it does so exactly, and the disk lies still."""
+    late = last_fifth(history)
+    np.testing.assert_allclose(np.abs(track(history, "cfy")[late, 0]) / disk_weight(density), 1.0, atol=1e-5)
+    assert np.abs(track(history, "vy")[late, 0]).max() <= 1e-5
+    assert track(history, "gap")[-1, 0] == pytest.approx(resting_gap(epsilon, density), abs=2e-7)
+
+
+@pytest.mark.parametrize("density", [2.0, 0.1, 1e-3])
+def test_a_disk_comes_to_rest_on_a_wall_and_makes_no_energy(density):
+    """The body's mass alone would say that a light one at rest may move by a thousandth of ten metres a second."""
+    history = rigidfluid.run(stokes_pressed(0.1, density, 1e-8, "implicit"))
+    refuse_unrest(history, density, 1e-8)
+    assert np.abs(track(history, "vy")).max() <= 1.31
+    assert created_and_lost(history)[0] <= 1e-3
+
+
+def test_substeps_follow_a_light_disk_onto_a_wall():
+    history = rigidfluid.run(stokes_pressed(0.1, 1e-3))
+    refuse_unrest(history, 1e-3, 1e-8)
+    assert created_and_lost(history)[0] <= 1e-3
+
+
+def test_an_impact_shortens_no_step_and_loses_little():
+    """The fluid has no layer that a shorter step would make thinner, and the path's friction is all accounted for."""
+    history = rigidfluid.run(stokes_pressed(0.01, 1e-3, 1e-8, "implicit"))
+    assert len(history.energy["time"]) <= 40
+    assert history.energy["path_friction"][-1] == 0.0
+    created, lost, _ = created_and_lost(history)
+    assert created <= 1e-3
+    assert lost <= 0.04
+
+
+@pytest.mark.validation
+def test_disks_in_a_chimney_come_to_rest_on_each_other():
+    history = rigidfluid.run(scenes.column(0.1, "implicit"))
+    late = last_fifth(history)
+    np.testing.assert_allclose(track(history, "cfy")[late].sum(axis=1), 4.0 * disk_weight(2.0), rtol=1e-4)
+    assert np.abs(track(history, "vy")[late]).max() <= 1e-4
+    assert created_and_lost(history)[0] <= 1e-3
+
+
+@pytest.mark.validation
+def test_a_swimmer_crawls_on_the_floor_and_weighs_what_it_weighs():
+    """Its balls are driven up and down on the contacts; the mean is over half a cycle and more."""
+    history = rigidfluid.run(scenes.swimmer(0.05, "implicit"))
+    floor = track(history, "cfy")[:, :3].sum(axis=1)
+    assert mean_over_time(history, floor) == pytest.approx(3.0 * disk_weight(2.0), rel=0.02)
+    assert history.bodies["gap"].min() > 0.02
+    assert created_and_lost(history)[0] <= 0.01
