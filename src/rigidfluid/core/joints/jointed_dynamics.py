@@ -31,6 +31,10 @@ _PARTS = 4
 class PushedDynamics(MotionDynamics, Protocol):
     """Motions that take impulses."""
 
+    def begin(self, ahead: float) -> None:
+        """Have, until the first drift, the twist after a corner that may be at the start: rates are read so much later
+        [time]."""
+
     def push(self, impulse: FloatArray) -> None:
         """Change the twist as impulses (N, d+k) at once do [force·time | force·length·time]."""
 
@@ -145,6 +149,7 @@ class JointedDynamics:
         before, self._begun = self._here.links, True
         after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
         self._here = self._here._replace(links=after)
+        self._inner.begin(ahead)
         impulse = self._held()
         self._inner.push(self._on_motions(impulse))
         self._add(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
