@@ -20,6 +20,12 @@ def test_halvings_are_counted_exactly(step):
     assert Clock.for_steps(0.3, 0.1, 1.0).levels == 1
 
 
+def test_a_time_between_two_ticks_has_one_on_either_side():
+    clock = Clock.for_steps(0.1, 0.1 / 8, 1.0)
+    assert (clock.tick_until(0.03), clock.tick_from(0.03)) == (2, 3)
+    assert (clock.tick_until(0.3), clock.tick_from(0.3)) == (24, 24)
+
+
 def test_the_end_leaves_no_sliver_of_a_step():
     clock = Clock.for_steps(0.1, 0.1 / 1024, 0.3537)
     assert clock.time(clock.last_tick) == pytest.approx(0.3625)

@@ -21,9 +21,6 @@ from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
 
-_AHEAD = 1e-4
-"""A part of the first kick, so soon after a corner in a drive its new rate is read."""
-
 _PARTS = 4
 """In so many parts of a time accelerations are looked at."""
 
@@ -123,7 +120,7 @@ class JointedDynamics:
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """By ``wrench`` and springs, while dampers act, and then by rigid joints."""
         if not self._begun:
-            self._begin(_AHEAD * time)
+            self._begin(time)
         springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing()
         driven = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(together(wrench, springs), time, at)
@@ -144,10 +141,13 @@ class JointedDynamics:
         self._inner.push(self._on_motions(settled))
         self._add(settled)
 
-    def _begin(self, ahead: float) -> None:
-        """From the rates before the start, which may be a corner of a drive, on to those after it."""
-        before, self._begun = self._here.links, True
-        after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
+    def _begin(self, time: float) -> None:
+        """Where the first drift, twice as long as its first kick of so much ``time``, begins at a corner of a drive or
+        just before: from the rates before it on to those after it, as they still are at the drift's end."""
+        self._begun, before, end = True, self._here.links, self._time + 2.0 * time
+        if self._linkage.next_corner(self._time - time) >= end:
+            return
+        after = replace(before, rate=self._linkage.links(self.pose, end).rate)
         self._here = self._here._replace(links=after)
         self._inner.begin(ahead)
         impulse = self._held()

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 _END_LEVEL = 3
 
+_ROUNDING = 1e-6
+"""Of a tick: times that near to one are there."""
+
 
 @dataclass(frozen=True, slots=True)
 class Clock:
@@ -32,7 +35,11 @@ class Clock:
 
     def tick_from(self, time: float) -> int:
         """The first tick that is not before a time."""
-        return math.ceil(time / self.step * (1 << self.levels) - 1e-6)
+        return math.ceil(time / self.step * (1 << self.levels) - _ROUNDING)
+
+    def tick_until(self, time: float) -> int:
+        """The last tick that is not after a time."""
+        return math.floor(time / self.step * (1 << self.levels) + _ROUNDING)
 
     def time(self, tick: int) -> float:
         """The time of a tick."""

@@ -42,11 +42,14 @@ def _is_corner(system: System, clock: Clock, tick: int) -> bool:
 
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:
-    """The first tick after this at which there is a corner; infinite without any."""
+    """The first tick after this at which there is a corner; infinite without any.
+
+    Between two ticks that is the earlier one, so that the rate there is still that before the corner.
+    """
     corner = _next_corner(system, clock.time(tick))
-    while math.isfinite(corner) and clock.tick_from(corner) <= tick:
+    while math.isfinite(corner) and clock.tick_until(corner) <= tick:
         corner = _next_corner(system, corner)
-    return clock.tick_from(corner) if math.isfinite(corner) else math.inf
+    return clock.tick_until(corner) if math.isfinite(corner) else math.inf
 
 
 def _next_corner(system: System, time: float) -> float:
