@@ -149,7 +149,7 @@ class JointedDynamics:
             return
         after = replace(before, rate=self._linkage.links(self.pose, end).rate)
         self._here = self._here._replace(links=after)
-        self._inner.begin(ahead)
+        self._inner.begin(2.0 * time)
         impulse = self._held()
         self._inner.push(self._on_motions(impulse))
         self._add(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
