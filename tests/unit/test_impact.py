@@ -167,3 +167,12 @@ def test_loads_hold_the_added_mass_and_nothing_for_driven_bodies() -> None:
     np.testing.assert_allclose(loads.mass, [4.0 * area, np.inf])
     np.testing.assert_allclose(loads.weight, [2.0 * area * GRAVITY, 0.0])
     assert loads.smallest_gap == 0.25 * RANGE
+
+
+def test_components_have_the_greatest_speed_of_their_strokes() -> None:
+    """A smooth stroke s = 3 a (t/T)² - 2 a (t/T)³ begins at rest; one of two equal balls has half of its rate."""
+    parts = [BALL | {"name": name, "position": [x, 0.0]} for name, x in (("left", 0.0), ("right", 1.0))]
+    stroke = {"moves": ["right"], "along": [1.0, 0.0], "smooth": [[0.0, 0.0], [0.5, 0.4], [1.0, 0.0]]}
+    mechanism = {"type": "articulated", "component": parts, "stroke": [stroke], "position": [1.0, 1.0]}
+    speeds = build_system(scene(gravity=(0.0, 0.0), mechanism=[mechanism])).loads.speed
+    np.testing.assert_allclose(speeds, 0.5 * 1.5 * 0.4 / 0.5, rtol=1e-3)

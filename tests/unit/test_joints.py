@@ -44,6 +44,7 @@ def tables(*bodies, joint=(), dimension=2, end=0.1, step=1e-3, every=None, conta
 
 PAIR = ball("one", 0.3, 0.5), ball("two", 0.7, 0.5)
 IN_3D = ball("one", 0.3, 0.5, 0.5), ball("two", 0.7, 0.5, 0.5)
+WATER = {"backend": "scikit-fem", "density": 0.01, "viscosity": 1e-4}
 STROKE = {"piecewise": [[0.0, 0.0], [1.0, 0.5], [2.0, 0.0]]}
 
 
@@ -258,6 +259,33 @@ def test_a_held_body_is_told_of_by_its_own_name(swing):
     np.testing.assert_allclose(held["fy"], -0.3 * (y - 0.7), rtol=1e-12)
     assert np.isnan(held["angle"]).all()
     assert np.abs(held["gap"]).max() < 1e-15
+
+
+def test_a_corner_of_a_stroke_that_a_joint_resists_is_in_the_balance():
+    """A pinned mechanism throws one of its balls to and fro: it turns back at once when the ball does."""
+    parts = [{key: value for key, value in one.items() if key != "position"} for one in PAIR]
+    parts = [part | {"position": place} for part, place in zip(parts, ([-0.2, 0.0], [0.2, 0.0]), strict=True)]
+    stroke = {"moves": ["one"], "along": [0.0, 1.0], "piecewise": [[0.0, 0.0], [0.5, 0.15], [1.0, 0.0]]}
+    mechanism = {"name": "it", "type": "articulated", "component": parts, "stroke": [stroke], "position": [0.5, 0.5]}
+    data = tables(joint=[hinge("it.two", at=[0.6, 0.5])], end=1.0, step=0.02) | {"mechanism": [mechanism]}
+    it = Simulation(scene_from_dict(data))
+    it.go(0.5)
+    before = it.state.ledger.residual
+    it.go(0.52)
+    assert it.state.ledger.put_in > 1e-4
+    assert abs(it.state.ledger.residual - before) < 0.005 * it.state.ledger.put_in
+
+
+@pytest.mark.parametrize(("fluid", "lost"), [({"backend": "dry"}, 0.0), (WATER, 0.005)])
+def test_a_spring_alone_needs_no_joint(fluid, lost):
+    """Half a period of a ball of mass m on a spring k, in a fluid of much less mass: x = a cos(√(k/m) t)."""
+    mass, stiffness = 0.01 * np.pi, 0.01 * np.pi**3
+    spring = {"stiffness": [stiffness, 0.0], "rest": [0.5, 0.5]}
+    it = Simulation(scene_from_dict(tables(ball("one", 0.6, 0.5, spring=spring), end=1.0, step=0.05, **fluid)))
+    it.go()
+    assert stiffness / mass == pytest.approx(np.pi**2)
+    assert it.history.bodies["x"][-1] == pytest.approx(0.4, abs=lost + 1e-4)
+    assert it.history.joints["gap"].max() == 0.0
 
 
 def test_a_joint_follows_a_body_that_is_prescribed_later():

@@ -46,7 +46,7 @@ def solve_linked(
     Solution
         With the forces in it.
     (c,) array or None
-        λ; None without links [force | force·length].
+        λ, of size 0 where there are springs alone; None without links [force | force·length].
 
     Raises
     ------

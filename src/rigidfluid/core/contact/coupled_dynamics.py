@@ -126,6 +126,9 @@ class CoupledDynamics:
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
 
+    def begin(self, ahead: float) -> None:
+        """Nothing is given of these motions that jumps."""
+
     def push(self, impulse: FloatArray) -> None:
         """Change the velocities as impulses (n, d+k) at once do, by the masses alone."""
         d, model = self.pose.position.shape[1], self._model

@@ -21,12 +21,19 @@ from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
 
+_AHEAD = 1e-4
+"""Of its first kick: so long after a corner its rates are read."""
+
 _PARTS = 4
 """In so many parts of a time accelerations are looked at."""
 
 
 class PushedDynamics(MotionDynamics, Protocol):
     """Motions that take impulses."""
+
+    def begin(self, ahead: float) -> None:
+        """Have, until the first drift, the twist after a corner that may be at the start: rates are read so much later
+        [time]."""
 
     def push(self, impulse: FloatArray) -> None:
         """Change the twist as impulses (N, d+k) at once do [force·time | force·length·time]."""
@@ -139,12 +146,15 @@ class JointedDynamics:
 
     def _begin(self, time: float) -> None:
         """Where the first drift, twice as long as its first kick of so much ``time``, begins at a corner of a drive or
-        just before: from the rates before it on to those after it, as they still are at the drift's end."""
-        self._begun, before, end = True, self._here.links, self._time + 2.0 * time
-        if self._linkage.next_corner(self._time - time) >= end:
+        stroke or just before: from the rates before it on to those after it."""
+        self._begun, before = True, self._here.links
+        corner = self._linkage.next_corner(self._time - time)
+        if corner >= self._time + 2.0 * time:
             return
-        after = replace(before, rate=self._linkage.links(self.pose, end).rate)
+        ahead = max(corner - self._time, 0.0) + _AHEAD * time
+        after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
         self._here = self._here._replace(links=after)
+        self._inner.begin(ahead)
         impulse = self._held()
         self._inner.push(self._on_motions(impulse))
         self._add(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))

@@ -92,6 +92,8 @@ class JointLinkage:
         lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
         self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
         self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
+        if mechanisms is not None:
+            self._corners.append(mechanisms.next_corner)
         self.linked, self.clusters = self._linked(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
@@ -103,7 +105,7 @@ class JointLinkage:
         self.frequency = self._greatest_frequency(start)
 
     def next_corner(self, time: float) -> float:
-        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
+        """The first time after this at which rates of links jump; infinite if there is none [time]."""
         return min((corner(time) for corner in self._corners), default=inf)
 
     def links(self, motions: Pose, time: float) -> Links:

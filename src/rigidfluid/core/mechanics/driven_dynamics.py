@@ -45,13 +45,17 @@ class DrivenDynamics(DryDynamics):
     ) -> None:
         inertia = mechanisms.inertia(start)
         super().__init__(pose, twist, mechanisms.mass, inertia, weight, mechanisms.controlled, controlled_twist)
-        self._mechanisms, self._start = mechanisms, start
+        self._mechanisms, self._start, self._ahead = mechanisms, start, 0.0
         self._momentum = self._momentum + turned(pose.orientation, mechanisms.spin(start))
 
     @property
     def twist(self) -> Twist:
-        spin = self._rate(self.pose.orientation, self._start + self._time)
+        spin = self._rate(self.pose.orientation, self._start + max(self._time, self._ahead))
         return Twist(self._velocity.copy(), spin)
+
+    def begin(self, ahead: float) -> None:
+        """Where h(t) jumps at the start, the rotation does so too."""
+        self._ahead = ahead
 
     def drift(self, time: float) -> None:
         """Motions without relative motion turn freely."""

@@ -183,6 +183,9 @@ class DryDynamics:
         state = self._velocity, self._momentum
         _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)
 
+    def begin(self, ahead: float) -> None:
+        """Nothing is given of these motions that jumps."""
+
     def push(self, impulse: FloatArray) -> None:
         """Change momenta by impulses (n, d+k) at once."""
         d = self._velocity.shape[1]

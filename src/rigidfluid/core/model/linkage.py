@@ -78,7 +78,7 @@ class Linkage(Protocol):
     driven: bool
 
     def next_corner(self, time: float) -> float:
-        """The first time after this at which the rate of a drive jumps; infinite if there is none [time]."""
+        """The first time after this at which rates of links jump; infinite if there is none [time]."""
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""

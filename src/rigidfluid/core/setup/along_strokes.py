@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
@@ -33,14 +35,38 @@ def times_along(mechanism: Mechanism, end: float) -> FloatArray:
     return np.union1d(np.linspace(0.0, last, SAMPLES), np.fromiter(corners(mechanism, last), dtype=float))
 
 
-def corners(mechanism: Mechanism, end: float) -> Iterator[float]:
+def corners(moving: Mechanism | Stroke, end: float) -> Iterator[float]:
     """The times at which its rate jumps, until the ``end``; no more than there are samples."""
-    time = mechanism.next_corner(0.0)
+    time = moving.next_corner(0.0)
     for _ in range(SAMPLES):
         if time > end:
             return
         yield time
-        time = mechanism.next_corner(time)
+        time = moving.next_corner(time)
+
+
+def fastest_given(carried: CarriedBodies, mechanisms: Iterable[Mechanism], end: float) -> FloatArray:
+    """The greatest velocity and angular velocity that mechanisms give their components about their centres of mass.
+
+    Parameters
+    ----------
+    carried : CarriedBodies
+        All bodies.
+    mechanisms : iterable of Mechanism
+        Those in it.
+    end : float
+        Of the simulation [time].
+
+    Returns
+    -------
+    (n, 2) array
+        Of the times looked at; zero of single bodies [length/time], [rad/time].
+    """
+    driven = [mechanism for mechanism in mechanisms if mechanism.driven]
+    times = [float(time) for mechanism in driven for time in times_along(mechanism, end)]
+    given = np.array([carried.at(carried.pose, time).given for time in times or [0.0]])
+    d = carried.pose.position.shape[1]
+    return np.stack([np.linalg.norm(part, axis=2).max(axis=0) for part in (given[..., :d], given[..., d:])], axis=1)
 
 
 def nearest_components(mechanism: Mechanism, end: float, detector: type[Detector]) -> Nearest | None:

@@ -26,6 +26,7 @@ from rigidfluid.core.model.types import (
     Twist,
 )
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import impact_speeds
@@ -84,7 +85,8 @@ def build_system(scene: Scene) -> System:
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = _together(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
     pulled = _together(carried, linkage, weight)
-    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh)
+    given = None if carried is None else fastest_given(carried, mechanisms.values(), scene.time.end)
+    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh, given)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)

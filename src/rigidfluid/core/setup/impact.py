@@ -27,15 +27,21 @@ Vectors = Sequence[float] | FloatArray | None
 
 
 def impact_speeds(
-    scene: Scene, domain: Domain, bodies: Sequence[Body], mass: FloatArray, weight: FloatArray, wet: bool
+    scene: Scene,
+    domain: Domain,
+    bodies: Sequence[Body],
+    mass: FloatArray,
+    weight: FloatArray,
+    wet: bool,
+    carried: FloatArray | None = None,
 ) -> FloatArray:
     """The speed at which each body is expected to hit something.
 
     v = √(v₀² + 2 (W/m) h), h the free height along the weight to the end of the box around the domain, less the
     shortest range of a law. In a fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest
-    inflow. For v₀ the surface of a body that is no ball turns with it. A driven body has the greatest speed of its
-    prescription. An ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it
-    cannot lower.
+    inflow. For v₀ the surface of a body that is no ball turns with it; v₀ of a component is at least the greatest speed
+    that strokes give it. A driven body has the greatest speed of its prescription. An ``impact_speed`` in the scene
+    takes the place of all that for free bodies, but for v₀, which it cannot lower.
 
     Parameters
     ----------
@@ -51,6 +57,8 @@ def impact_speeds(
         Submerged weight W [force].
     wet : bool
         Whether a fluid is computed.
+    carried : (n, 2) array, optional
+        Greatest velocity and angular velocity that mechanisms give their components [length/time], [rad/time].
 
     Returns
     -------
@@ -59,6 +67,8 @@ def impact_speeds(
     """
     lever = _by_shape(_lever, bodies)
     start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
+    if carried is not None:
+        start = np.maximum(start, carried[:, 0] + lever * carried[:, 1])
     pull = np.linalg.norm(weight, axis=1)
     falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
     if wet:

@@ -11,6 +11,7 @@ from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions
+from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
 
@@ -109,6 +110,8 @@ def _joint(scene: Scene, table: JointTable, at: str, pose: Pose) -> Joint:
     point = pose.position[first].copy() if table.at is None else np.array(table.at)
     axis = None if table.axis is None else np.array(table.axis) / np.linalg.norm(table.axis)
     stroke = None if table.drive is None else build_stroke(table.drive, f"{at}.drive")
+    if stroke is not None:
+        refuse_quick_drive(stroke, table.name, scene.time)
     return Joint(
         name=table.name,
         type=table.type,

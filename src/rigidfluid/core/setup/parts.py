@@ -19,6 +19,7 @@ from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.core.setup.periodic import periodic_pairs
+from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
 
@@ -99,6 +100,7 @@ def select_plugins(scene: Scene) -> Parts:
     _refuse_contact_keys(scene.contact, detector, laws)
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
     exact = exact_detector(bodies, domain, registry)
+    refuse_quick_mechanisms(mechanisms, scene.time)
     refuse_overlap_along(mechanisms, scene.time.end, exact)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
     return Parts(scene, backend, domain, bodies, mechanisms, found, chosen, why, exact)

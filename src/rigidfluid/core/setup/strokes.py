@@ -34,6 +34,8 @@ def build_stroke(table: StrokeTable, at: str) -> Stroke:
     rows: Rows = getattr(with_rows(table, at), key)
     if len(rows) < 2:
         raise SceneError(f"{at}.{key}", f"{len(rows)} rows", "two rows or more", "Add rows of [time, value].")
+    if rows[0][0] != 0.0:
+        raise SceneError(f"{at}.{key}.0", f"time {rows[0][0]:g}", "time 0", "Begin with a row at time 0.")
     check_rows(rows, 0.0, f"{at}.{key}")
     return Stroke(rows, key == "smooth", _period(table, rows, f"{at}.{key}", at))
 
@@ -68,9 +70,7 @@ def _key(table: StrokeTable, at: str) -> str:
 
 
 def _period(table: StrokeTable, rows: Rows, place: str, at: str) -> float | None:
-    (start, first), (end, last) = rows[0], rows[-1]
-    if start != 0.0:
-        raise SceneError(f"{place}.0", f"time {start:g}", "time 0", "Begin with a row at time 0.")
+    first, (end, last) = rows[0][1], rows[-1]
     if not table.repeat:
         if table.period is not None:
             raise SceneError(f"{at}.period", table.period, "none with repeat = false", "Leave out one of them.")

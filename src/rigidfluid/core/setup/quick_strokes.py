@@ -1,0 +1,61 @@
+"""Strokes and drives that are too quick for the steps: a step would go past their turns without meeting them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.setup.along_strokes import corners
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import TimeTable
+
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+_SAMPLES = 400
+_FEWEST_STEPS = 8
+"""Motion that does not repeat is looked at for so many steps at least."""
+
+
+def refuse_quick_mechanisms(mechanisms: Mapping[str, Mechanism], time: TimeTable) -> None:
+    """Raise SceneError where components could go all of their way, to and fro, within a step."""
+    for name, mechanism in mechanisms.items():
+        if mechanism.driven:
+            times = _times(mechanism, time)
+            values = np.array([mechanism.placement(float(at)).position.ravel() for at in times])
+            rates = np.array([mechanism.rate(float(at)).velocity.ravel() for at in times])
+            _refuse(f"mechanism {name!r}", mechanism, values, rates, time)
+
+
+def refuse_quick_drive(stroke: Stroke, joint: str, time: TimeTable) -> None:
+    """Raise SceneError where a drive could go all of its way within a step."""
+    times = _times(stroke, time)
+    values, rates = (np.array([[found(float(at))] for at in times]) for found in (stroke.value, stroke.rate))
+    _refuse(f"the drive of joint {joint!r}", stroke, values, rates, time)
+
+
+def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
+    """Of a period, at places that no oscillation in it meets always in the same phase, and its corners (s,)."""
+    last = moving.period or max(time.end, _FEWEST_STEPS * time.step)
+    spread = last * (np.arange(_SAMPLES) * _GOLDEN % 1.0)
+    return np.concatenate([spread, np.fromiter(corners(moving, last), dtype=float)])
+
+
+def _refuse(what: str, moving: Mechanism | Stroke, values: FloatArray, rates: FloatArray, time: TimeTable) -> None:
+    """Steps end at corners, so that what has them needs only that the shortest step is short enough."""
+    way, speed = np.ptp(values, axis=0), np.abs(rates).max(axis=0)
+    least = float(np.min(way[speed > 0.0] / speed[speed > 0.0], initial=np.inf))
+    key = "shortest" if np.isfinite(moving.next_corner(0.0)) else "step"
+    found = getattr(time, key)
+    if found > least:
+        raise SceneError(
+            f"time.{key}",
+            f"{found:g}, in which {what} at its fastest goes more than all of its way",
+            f"at most {least:.3g}",
+            "Shorten it, or slow the motion down.",
+        )
