@@ -14,8 +14,12 @@ from rigidfluid.core.model.types import FloatArray
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
-_ROUNDING = 1e-9
-"""Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded."""
+_ROUNDING = 1e-11
+"""Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded; so little
+that what is read just after a corner is beyond it, however long the stroke is."""
+
+_SAME_SLOPE = 1e-9
+"""Between slopes that differ by less than this part of them there is no corner."""
 
 
 class Stroke:
@@ -89,7 +93,7 @@ class Stroke:
         before = np.roll(slopes, 1)
         if self.period is None:
             slopes, times, before = self._slopes[1:], self._times[1:], slopes
-        return np.asarray(times[~np.isclose(slopes, before, rtol=_ROUNDING, atol=0.0)])
+        return np.asarray(times[~np.isclose(slopes, before, rtol=_SAME_SLOPE, atol=0.0)])
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
