@@ -261,7 +261,6 @@ def test_a_held_body_is_told_of_by_its_own_name(swing):
     assert np.abs(held["gap"]).max() < 1e-15
 
 
-@pytest.mark.parametrize(("fluid", "lost"), [({"backend": "dry"}, 0.0), (WATER, 0.005)])
 def test_a_corner_of_a_stroke_that_a_joint_resists_is_in_the_balance():
     """A pinned mechanism throws one of its balls to and fro: it turns back at once when the ball does."""
     parts = [{key: value for key, value in one.items() if key != "position"} for one in PAIR]
@@ -277,6 +276,7 @@ def test_a_corner_of_a_stroke_that_a_joint_resists_is_in_the_balance():
     assert abs(it.state.ledger.residual - before) < 0.005 * it.state.ledger.put_in
 
 
+@pytest.mark.parametrize(("fluid", "lost"), [({"backend": "dry"}, 0.0), (WATER, 0.005)])
 def test_a_spring_alone_needs_no_joint(fluid, lost):
     """Half a period of a ball of mass m on a spring k, in a fluid of much less mass: x = a cos(√(k/m) t)."""
     mass, stiffness = 0.01 * np.pi, 0.01 * np.pi**3
