@@ -1327,11 +1327,10 @@ def swimmer_3d() -> None:
     write_page("swimmer_3d", "Swimmer in three dimensions", "python docs/make_validation.py swimmer_3d", text)
 
 
-SWIMMER_3D = """
-Three spheres of radius 1 in a row, whose arms of 10 shorten and lengthen by 4 in turn (`scenes/swimmer_3d.toml`):
-Stokes flow, and spheres too light to have inertia. Exact are series of Stokes' stream function about each sphere, in
-a fluid without walls (`tests/support/spheres_on_a_line.py`, doi:10.1017/S0022112071002854). Displacements are those
-of the middle sphere, in radii.
+SWIMMER_3D = """Three spheres of radius 1 in a row, whose arms of 10 shorten and lengthen by 4 in turn
+(`scenes/swimmer_3d.toml`): Stokes flow, and spheres too light to have inertia. Exact are series of Stokes' stream
+function about each sphere, in a fluid without walls (`tests/support/spheres_on_a_line.py`,
+doi:10.1017/S0022112071002854). Displacements are those of the middle sphere, in radii.
 
 ## How far walls matter
 
@@ -1347,6 +1346,8 @@ faces.
 
 """
 EACH_STROKE = """
+
+Each cube has a mesh of its own, and what finer meshes change, below, is as much as what walls do.
 
 ## Stroke by stroke
 
@@ -1368,7 +1369,8 @@ OTHERS = """
 
 ## Steps, meshes and the way back
 
-In the smallest closed cube.
+In the smallest closed cube. The mesh is moved with the spheres and not made anew: one that begins round short arms is
+stretched when they lengthen, and is less accurate then.
 
 """
 DRAG = """

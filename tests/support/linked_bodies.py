@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.model.types import FloatArray, Pose, Twist

@@ -7,9 +7,9 @@ import pytest
 from articulated_scenes import OUT, WAG, scene
 
 import rigidfluid
-from rigidfluid.core.output.cycles import cycles
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
+from rigidfluid.core.run.cycles import cycles
 from rigidfluid.reports.report import report
 
 

@@ -7,9 +7,9 @@ import pytest
 from linked_bodies import ground_link, joint, linkage, masses, placed, split
 from scipy.linalg import expm
 
-from rigidfluid.core.mechanics.damping import damper_impulse
+from rigidfluid.core.joints.damping import damper_impulse
+from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
-from rigidfluid.core.mechanics.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.rigid import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.types import Pose, Twist, Wrench

@@ -127,6 +127,20 @@ def test_springs_that_are_fast_are_cut_into_parts():
     assert it.bodies["body0"].velocity[1] == pytest.approx(np.cos(4.0), abs=8e-3)
 
 
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+@pytest.mark.parametrize("damping", [0.0, 0.02])
+def test_a_ball_with_springs_alone_bounces_between_them_and_a_wall(stepping, damping):
+    spring = {"stiffness": [0.0, 1.0], "damping": [0.0, damping]}
+    contact = {"law": "centre", "range": 0.02, "epsilon": 1e-5, "stepping": stepping}
+    it = Simulation(linked_scene([body(2.0, 0.3, velocity=[0.0, -2.0], spring=spring)], contact=contact, end=0.4))
+    it.go(0.2)
+    assert it.bodies["body0"].velocity[1] > 0.5
+    it.go()
+    account = energy_account(it.history.energy)
+    assert max(account.created, account.lost) < 1e-2
+    assert (it.state.ledger.contact_loss > 0.0) == (damping > 0.0)
+
+
 @pytest.mark.parametrize("damping", [0.1, 2.0, 1e6])
 def test_a_damper_is_exact_at_any_strength(damping):
     """m u' = m g - c u."""
@@ -219,3 +233,15 @@ def test_a_run_of_linked_bodies_taken_up_again(tmp_path):
     rigidfluid.run(whole, tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_ball_on_a_spring_alone_in_a_fluid():
+    """It is pulled back along the spring by what is stored in it, and no link has a force."""
+    ball = body(0.5, 0.5, velocity=[0.0, 0.1], spring={"stiffness": [0.0, 1.0]})
+    fluid, mesh = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.1}, {"size": 0.2, "size_body": 0.08}
+    it = run(linked_scene([ball], end=0.03, upper=1.0, fluid=fluid, mesh=mesh))
+    displaced = it.bodies["body0"].position[1] - 0.5
+    assert displaced > 1e-3
+    np.testing.assert_allclose(it.state.link.wrench, [[0.0, -displaced, 0.0]], atol=1e-15)
+    assert len(it.state.link.force) == 0
+    assert it.state.ledger.contact == pytest.approx(0.5 * displaced**2, rel=1e-12)

@@ -6,8 +6,8 @@ import pytest
 from linked_bodies import AXIS, ground_link, joint, linkage, moved, placed, split
 from mechanism_parts import PairOptions
 
-from rigidfluid.core.mechanics.joint_forces import joint_forces
-from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.joints.joint_forces import joint_forces
+from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat

@@ -118,8 +118,8 @@ def test_a_wall_without_friction_takes_momentum_across_itself_alone(stepping):
 
 
 @pytest.mark.validation
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_over_ten_thousand_steps(dimension):
-    changed, _, account = gone(alone(dimension, end=10.0, step=1e-3))
+@pytest.mark.parametrize(("dimension", "end"), [(2, 10.0), (3, 1.6)])
+def test_over_thousands_of_steps(dimension, end):
+    changed, _, account = gone(alone(dimension, end=end, step=1e-3))
     assert np.abs(changed).max() < 1e-9
     assert max(account.created, account.lost) < 1e-3

@@ -14,12 +14,13 @@ SOURCE = Path(rigidfluid.__file__).parent
 BELOW = {
     "model": "",
     "mechanics": "model",
+    "joints": "mechanics model",
     "scene": "model",
     "output": "model",
     "mesh": "mechanics model",
-    "contact": "mechanics model",
-    "setup": "mechanics scene model",
-    "run": "setup mesh contact output mechanics scene model",
+    "contact": "joints mechanics model",
+    "setup": "joints mechanics scene model",
+    "run": "setup mesh contact output joints mechanics scene model",
 }
 
 PARTS = {

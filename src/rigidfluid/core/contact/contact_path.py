@@ -15,10 +15,10 @@ from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics, MotionDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
-from rigidfluid.core.mechanics.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,

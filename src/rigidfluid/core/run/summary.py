@@ -13,9 +13,9 @@ from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh
-from rigidfluid.core.output.cycles import cycles
 from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
 from rigidfluid.core.output.records import LEDGER_COLUMNS
+from rigidfluid.core.run.cycles import cycles
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.parts import known_parts

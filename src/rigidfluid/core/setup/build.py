@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
-from rigidfluid.core.mechanics.linkage import JointLinkage
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.mechanics.linkage import JointLinkage
+from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
-from rigidfluid.core.setup.strokes import build_stroke, with_rows
+from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -80,17 +80,6 @@ def joined_bodies(scene: Scene) -> IntArray:
     names = [body.name for body in scene.body]
     pairs = [sorted(map(names.index, joint.between)) for joint in scene.joint if len(joint.between) == 2]
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
-
-
-def with_drives(scene: Scene) -> Scene:
-    """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file."""
-    tables = [
-        table
-        if table.drive is None
-        else table.model_copy(update={"drive": with_rows(table.drive, f"joint.{number}.drive")})
-        for number, table in enumerate(scene.joint)
-    ]
-    return scene.model_copy(update={"joint": tuple(tables)})
 
 
 def _is_held(body: BodyTable) -> bool:

@@ -12,9 +12,9 @@ from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.joint_checks import check_joints
-from rigidfluid.core.setup.joints import with_drives
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
+from rigidfluid.core.setup.strokes import with_drives
 from rigidfluid.core.setup.time_factor import with_time_tables
 
 

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.mechanics.markers import MarkerPair, Markers
+from rigidfluid.core.joints.markers import MarkerPair, Markers
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import FloatArray, Pose, Wrench
 

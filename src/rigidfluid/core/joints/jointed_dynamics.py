@@ -9,10 +9,10 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.joints.damping import damper_impulse
+from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.mechanics.component_dynamics import MotionDynamics
-from rigidfluid.core.mechanics.damping import damper_impulse
 from rigidfluid.core.mechanics.dynamics import LinkWork
-from rigidfluid.core.mechanics.joint_forces import joint_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, together
 from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.state import FreeMotions
@@ -48,7 +48,7 @@ class JointedDynamics:
     Parameters
     ----------
     inner : PushedDynamics
-        The N motions without joints; changed in place.
+        The N motions without joints, at the start; what goes on is its copies.
     linkage : Linkage
         What links them.
     time : float
@@ -166,7 +166,7 @@ class JointedDynamics:
                 self._inner = trial
                 return impulse
             there = self._linkage.links(trial.pose, end).rows[rigid]
-            slope = time * there.reshape(len(there), -1) @ self._here.answers[:, rigid]
+            slope = time * there.reshape(len(there), flat(trial.twist).size) @ self._here.answers[:, rigid]
             impulse[rigid] -= joint_forces(slope, misfit)
         found = f"a misfit of {np.abs(misfit).max():.3g} that no force closes"
         raise StepRejected("joints", found, "forces with which they fit", "Shorten time.step.")

@@ -11,13 +11,13 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from rigidfluid.core.mechanics.constraints import Constraint
-from rigidfluid.core.mechanics.joint_forces import joint_forces
-from rigidfluid.core.mechanics.joint_parts import ground_parts, joint_parts
+from rigidfluid.core.joints.constraints import Constraint
+from rigidfluid.core.joints.joint_forces import joint_forces
+from rigidfluid.core.joints.joint_parts import ground_parts, joint_parts
+from rigidfluid.core.joints.link_parts import LinkParts
+from rigidfluid.core.joints.markers import Markers, PlacedPair
+from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refuse_void
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
-from rigidfluid.core.mechanics.link_parts import LinkParts
-from rigidfluid.core.mechanics.markers import Markers, PlacedPair
-from rigidfluid.core.mechanics.redundancy import motion_of, refuse_redundant, refuse_void
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.linkage import GroundLink, Joint, LinkReading

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.mechanics.constraints import Constraint
+from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.errors import SceneError
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.mechanics.constraints import Constraint, SamePoint
-from rigidfluid.core.mechanics.markers import PlacedPair
-from rigidfluid.core.mechanics.springs import Spring
+from rigidfluid.core.joints.constraints import Constraint, SamePoint
+from rigidfluid.core.joints.markers import PlacedPair
+from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.linkage import LinkReading
 from rigidfluid.core.model.types import FloatArray, Pose, Twist

@@ -6,7 +6,7 @@ from math import remainder, tau
 
 import numpy as np
 
-from rigidfluid.core.mechanics.constraints import (
+from rigidfluid.core.joints.constraints import (
     Constraint,
     DrivenAngle,
     GroundDamper,
@@ -15,9 +15,9 @@ from rigidfluid.core.mechanics.constraints import (
     SameOrientation,
     SamePoint,
 )
-from rigidfluid.core.mechanics.link_parts import LinkParts
-from rigidfluid.core.mechanics.markers import MarkerPair, axes_about, marker
-from rigidfluid.core.mechanics.springs import GroundSpring, HingeSpring, Spring
+from rigidfluid.core.joints.link_parts import LinkParts
+from rigidfluid.core.joints.markers import MarkerPair, axes_about, marker
+from rigidfluid.core.joints.springs import GroundSpring, HingeSpring, Spring
 from rigidfluid.core.model.linkage import GroundLink, Joint
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.errors import SceneError

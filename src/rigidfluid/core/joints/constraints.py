@@ -9,7 +9,7 @@ from math import remainder, tau
 
 import numpy as np
 
-from rigidfluid.core.mechanics.markers import MarkerPair, PlacedPair
+from rigidfluid.core.joints.markers import MarkerPair, PlacedPair
 from rigidfluid.core.model.types import FloatArray
 
 
