@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.model.types import FloatArray, Links
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
@@ -50,7 +51,7 @@ def solve_linked(
     Raises
     ------
     StepRejected
-        If the links do not hold.
+        If the links do not hold, or two of them hold the same.
     """
     if links is None:
         return discretisation.solve(system, tolerance), None
@@ -58,14 +59,14 @@ def solve_linked(
         return discretisation.solve(system, tolerance), np.zeros(0)
     answers = discretisation.twists_by(system.matrix, np.moveaxis(links.rows, 0, -1), _ANSWER_TOLERANCE)
     compliance: FloatArray = np.tensordot(links.rows, answers, axes=2) + np.diag(links.compliance)
-    force = _solved(compliance, links.rate)  # what a drive needs from rest, when there is no other load
+    force = joint_forces(compliance, links.rate)  # what a drive needs from rest, when there is no other load
     solution = discretisation.solve(_pulled(system, links, force), tolerance)
     missing = _missing(links, solution, force)
     scale = sum(_power(compliance, each) for each in (links.rate, missing)) + _power_of_motions(system, solution)
     for _ in range(_MOST_ROUNDS):
         if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
             break
-        force = force + _solved(compliance, missing)
+        force = force + joint_forces(compliance, missing)
         velocity, pressure, twist = solution.velocity, solution.pressure, solution.twist
         nearer = replace(system, velocity=velocity, pressure=pressure, twist=twist, again=True)
         solution = discretisation.solve(_pulled(nearer, links, force), tolerance)
@@ -88,13 +89,9 @@ def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
     return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
 
 
-def _solved(compliance: FloatArray, velocity: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.solve(compliance, velocity), dtype=np.float64)
-
-
 def _power(compliance: FloatArray, missing: FloatArray) -> float:
     """Of the forces that would mend it [energy/time]."""
-    return float(missing @ _solved(compliance, missing))
+    return float(missing @ joint_forces(compliance, missing))
 
 
 def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:

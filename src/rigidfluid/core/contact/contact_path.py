@@ -317,9 +317,10 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
     linear, angular = mobility(system, state)
     rate = accelerations(system, state)
-    weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
-    resisted = weight if system.quasi_steady else None
-    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, resisted)
+    weight = None
+    if system.quasi_steady:
+        weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
+    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, weight)
 
 
 def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodyStep:

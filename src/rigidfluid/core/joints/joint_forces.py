@@ -9,12 +9,12 @@ from rigidfluid.errors import StepRejected
 
 
 def joint_forces(answer: FloatArray, missing: FloatArray) -> FloatArray:
-    """λ of (C W Cᵀ) λ = missing.
+    """λ of (C W Cᵀ + κ) λ = missing.
 
     Parameters
     ----------
     answer : (c, c) array
-        C W Cᵀ of joint rows C and what motions answer to impulses, W.
+        C W Cᵀ + κ of joint rows C, what motions answer to impulses or forces, W, and compliances κ, if there are any.
     missing : (c,) or (c, m) array
         What the joints have to change.
 

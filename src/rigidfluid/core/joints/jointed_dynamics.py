@@ -21,7 +21,7 @@ from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
 
-_AHEAD = 1e-4
+_AHEAD = 1e-3
 """Of its first kick: so long after a corner its rates are read."""
 
 _PARTS = 4

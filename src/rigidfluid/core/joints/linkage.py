@@ -9,7 +9,6 @@ from math import inf
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.joint_forces import joint_forces
@@ -63,9 +62,9 @@ class JointLinkage:
 
     Notes
     -----
-    ``joint_rows``, ``ground_rows``: which rows are those of each joint and of each ground link. ``frequency`` is that
-    of the springs on the masses without joints, at the start: joints make motions heavier, so it bounds the
-    frequencies with them in any pose.
+    ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
+    or to the ground alone, its own number. ``frequency`` is that of the springs on the masses without joints, at the
+    start: joints make motions heavier, so it bounds the frequencies with them in any pose.
     """
 
     def __init__(
@@ -86,7 +85,6 @@ class JointLinkage:
         self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
         self._slices = _slices(self._parts)
-        self.joint_rows, self.ground_rows = self._slices[: len(joints)], self._slices[len(joints) :]
         self._constraints = [one for part in self._parts for one in part.constraints]
         self._springs = [one for part in self._parts for one in part.springs]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
@@ -262,6 +260,8 @@ class JointLinkage:
 
     def _linked(self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]) -> tuple[BoolArray, IntArray]:
         """Which motions have links, and the lowest number of those that each is linked with."""
+        from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
+
         count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)
         linked[
             [self._carrier[body] for body in (*ground, *(one for pair in joints for one in pair if one is not None))]

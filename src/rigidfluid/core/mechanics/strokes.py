@@ -5,14 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from rigidfluid.core.model.types import FloatArray
 
-_ROUNDING = 1e-9
-"""Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded."""
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
+_ROUNDING = 1e-11
+"""Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded; so little
+that what is read just after a corner is beyond it, however long the stroke is."""
+
+_SAME_SLOPE = 1e-9
+"""Between slopes that differ by less than this part of them there is no corner."""
 
 
 class Stroke:
@@ -86,11 +93,13 @@ class Stroke:
         before = np.roll(slopes, 1)
         if self.period is None:
             slopes, times, before = self._slopes[1:], self._times[1:], slopes
-        return np.asarray(times[~np.isclose(slopes, before, rtol=_ROUNDING, atol=0.0)])
+        return np.asarray(times[~np.isclose(slopes, before, rtol=_SAME_SLOPE, atol=0.0)])
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
         """Through the rows and those around them: of the periods before and after, or of a value that is held."""
+        from scipy.interpolate import PchipInterpolator  # slow to load, and few scenes have strokes
+
         times, values, span = self._times, self._values, self._span
         if self.period is None:
             around = [-span, *times, 2.0 * span], [values[0], *values, values[-1]]

@@ -168,7 +168,8 @@ class Mechanism(SpatialPart):
     def next_corner(self, time: float) -> float:
         """The first time after this at which the rate jumps; infinite where it does not [time].
 
-        A step ends there, and the next begins anew; the rate at a corner is that before it, at time 0 that after it.
+        A step ends there, or less than a tick before, and the next begins anew. The rate at a corner is that before it,
+        at time 0 that after it.
         """
         return math.inf
 

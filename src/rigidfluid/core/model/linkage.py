@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, Links, Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +68,11 @@ class LinkReading:
 class Linkage(Protocol):
     """The joints of a system on its N motions.
 
-    ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
-    or to the ground alone, its own number. ``linked`` (N,): which motions have links at all. ``frequency``: of the
-    stiffest spring with the masses that it moves, without a fluid; 0 without springs [rad/time]. ``driven``: whether
-    anything moves as it is told, so that rates and the power of springs may not be zero.
+    ``linked`` (N,): which motions have links at all. ``frequency``: of the stiffest spring with the masses that it
+    moves, without a fluid; 0 without springs [rad/time]. ``driven``: whether anything moves as it is told, so that
+    rates and the power of springs may not be zero.
     """
 
-    clusters: IntArray
     linked: BoolArray
     frequency: float
     driven: bool

@@ -22,7 +22,7 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 2
+FORMAT = 3
 """Of what is in a checkpoint, the backend's memory included; files of others are refused."""
 
 
