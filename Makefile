@@ -13,7 +13,7 @@ run: install
 install: .venv/.installed
 
 test: .venv/.installed-test
-	$(BIN)/pytest
+	$(BIN)/pytest -n 2 --dist loadfile
 
 test-plugins: .venv/.installed-plugins
 	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest) || exit 1; done

@@ -1447,8 +1447,8 @@ def swimmer_near_wall() -> None:
 
     The paths are the same until a gap is below .24, so that the second one starts where the first is before that.
     """
-    first, _ = run("swimmer_near_wall.toml", ["time.end=640"])
-    tables = rigidfluid.load_scene(ROOT / "scenes" / "swimmer_near_wall.toml", ["time.end=160"]).to_dict()
+    first, _ = run("swimmer_near_wall.toml", ["time.end=570.5"])
+    tables = rigidfluid.load_scene(ROOT / "scenes" / "swimmer_near_wall.toml", ["time.end=127.5"]).to_dict()
     whole = of_body(first, "swimmer")
     there = int(np.flatnonzero(whole["time"] == APART_UNTIL)[0])
     tables["mechanism"][0] |= {"position": [whole["x"][there], whole["y"][there]], "angle": whole["angle"][there]}

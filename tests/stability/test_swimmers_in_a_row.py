@@ -8,7 +8,6 @@ from fluid_contact_table import track
 import rigidfluid
 
 
-@pytest.mark.validation
 def test_three_swimmers_meet_and_never_overlap():
     """The outer two swim towards the middle one; as arms lengthen at the end of a cycle, their balls press on it."""
     coarse = ["time.end=4.25", "mesh.size=8.0", "mesh.size_body=0.8"]

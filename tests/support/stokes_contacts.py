@@ -34,7 +34,7 @@ from rigidfluid.errors import StepError
 def column(step: float, stepping: Stepping, epsilon: float = 1e-8) -> Scene:
     """Four disks of density 2 in a chimney sink onto the floor and onto each other."""
     disks = [heavy(0.2, 0.14 + 0.24 * i, density=2.0) for i in range(4)]
-    contact, end = repulsion(stepping, epsilon), max(0.8, 10.0 * step)
+    contact, end = repulsion(stepping, epsilon), max(2.0, 10.0 * step)
     return in_fluid(contact, *disks, end=end, step=step, upper=(0.4, 1.16), fluid=STOKES)
 
 

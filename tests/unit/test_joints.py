@@ -13,7 +13,7 @@ from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.geometry_checks import initial_contacts
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.errors import CrosscheckError, SceneError
+from rigidfluid.errors import CrosscheckError, SceneError, StepError
 from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
 from rigidfluid.reports import report
 
@@ -274,6 +274,13 @@ def test_a_corner_of_a_stroke_that_a_joint_resists_is_in_the_balance():
     it.go(0.52)
     assert it.state.ledger.put_in > 1e-4
     assert abs(it.state.ledger.residual - before) < 0.005 * it.state.ledger.put_in
+
+
+def test_joined_bodies_that_fold_until_they_touch_end_the_run_with_a_remedy():
+    falling = PAIR[0] | {"fixed": True}, PAIR[1] | {"position": [0.55, 0.55]}
+    data = tables(*falling, joint=[hinge("one", "two", at=[0.4, 0.5])], end=1.0, step=0.01, gravity=[0.0, -9.81])
+    with pytest.raises(StepError, match="Joined bodies do not repel each other: they need a spring"):
+        Simulation(scene_from_dict(data)).go()
 
 
 @pytest.mark.parametrize(("fluid", "lost"), [({"backend": "dry"}, 0.0), (WATER, 0.005)])

@@ -57,3 +57,19 @@ def test_what_turns_to_and_fro_many_times_in_a_period_is_seen():
     rows = [[number / 64, 0.1 * (number % 2)] for number in range(65)]
     with pytest.raises(SceneError, match=r"time.step: found 0.02"):
         built(0.02, {"smooth": rows})
+
+
+def test_a_step_that_meets_only_ends_of_a_prescribed_sine_is_refused():
+    data = {
+        "scene": {"name": "sine", "dimension": 2},
+        "fluid": {"backend": "dry"},
+        "domain": {"lower": [0.0, 0.0], "upper": [2.0, 2.0]},
+        "body": [
+            BALL | {"name": "it", "position": [1.0, 1.0], "prescribed": {"amplitude": [0.5, 0.0], "frequency": 50.0}}
+        ],
+        "time": {"end": 1.0, "step": 0.02},
+        "output": {"every": 1.0},
+    }
+    with pytest.raises(SceneError, match=r"time.step: found 0.02, 1 periods of body 'it'; allowed is at most 0.00637"):
+        scene_from_dict(data)
+    assert scene_from_dict(data | {"time": {"end": 1.0, "step": 0.006}})

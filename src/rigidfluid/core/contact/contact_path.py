@@ -453,7 +453,7 @@ def _refuse_overlap(system: System, contacts: Contacts) -> None:
     if len(contacts) == 0 or contacts.gap.min() > 0.0:
         return
     worst = int(np.argmin(contacts.gap))
-    refuse_overlap(system.surfaces[contacts.body_a[worst]], float(contacts.gap[worst]))
+    refuse_overlap(system, int(contacts.body_a[worst]), float(contacts.gap[worst]))
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:

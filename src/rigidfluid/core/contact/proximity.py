@@ -63,14 +63,17 @@ def of_separate_bodies(system: System, contacts: Contacts) -> BoolArray:
     return np.asarray(apart)
 
 
-def refuse_overlap(surface: str, gap: float) -> None:
-    """Raise StepRejected if the ``gap`` of a body [length] is none."""
+def refuse_overlap(system: System, body: int, gap: float) -> None:
+    """Raise StepRejected if the ``gap`` of a ``body`` [length] is none."""
     if not gap > 0.0:
+        remedy = "Strengthen the contact force, widen its range or refine mesh.size_body."
+        if body in system.joined:
+            remedy += " Joined bodies do not repel each other: they need a spring in the hinge, or more room."
         raise StepRejected(
-            f"body {surface}",
+            f"body {system.surfaces[body]}",
             f"a gap of {gap:.3e}",
             "a positive gap to every other surface",
-            "Strengthen the contact force, widen its range or refine mesh.size_body.",
+            remedy,
         )
 
 

@@ -59,7 +59,7 @@ def attempt(
     with watch("detect"):
         contacts, gaps = detect_contacts_and_gaps(system, pose, mesh)
         nearest = int(np.argmin(gaps))
-        refuse_overlap(system.surfaces[nearest], float(gaps[nearest]))
+        refuse_overlap(system, nearest, float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.raise_on_all():
         step = step_to(system, state, time, size, path.free_pose, _pushed(path, size), mesh)
         if path.coupling is not None:

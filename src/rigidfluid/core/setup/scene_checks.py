@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import pi
 from typing import TYPE_CHECKING
 
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
@@ -184,3 +185,13 @@ def _check_times(scene: Scene) -> None:
         raise SceneError("output.every", scene.output.every, f"at least time.step = {time.step}", "Write less often.")
     if time.shortest > time.step:
         raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
+    for body in scene.body:
+        _check_frequency(body, time.step)
+
+
+def _check_frequency(body: BodyTable, step: float) -> None:
+    """Longer steps could go more than all of the way to and fro, and not meet it."""
+    frequency = abs(body.prescribed.frequency or 0.0) if body.prescribed else 0.0
+    if pi * frequency * step > 1.0:
+        found = f"{step:g}, {frequency * step:.3g} periods of body {body.name!r}"
+        raise SceneError("time.step", found, f"at most {1.0 / (pi * frequency):.3g}", "Shorten it.")
