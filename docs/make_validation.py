@@ -1447,8 +1447,8 @@ def swimmer_near_wall() -> None:
 
     The paths are the same until a gap is below .24, so that the second one starts where the first is before that.
     """
-    first, _ = run("swimmer_near_wall.toml", ["time.end=570.5"])
-    tables = rigidfluid.load_scene(ROOT / "scenes" / "swimmer_near_wall.toml", ["time.end=127.5"]).to_dict()
+    first, _ = run("swimmer_near_wall.toml", ["time.end=1400.0"])
+    tables = rigidfluid.load_scene(ROOT / "scenes" / "swimmer_near_wall.toml", ["time.end=676.0"]).to_dict()
     whole = of_body(first, "swimmer")
     there = int(np.flatnonzero(whole["time"] == APART_UNTIL)[0])
     tables["mechanism"][0] |= {"position": [whole["x"][there], whole["y"][there]], "angle": whole["angle"][there]}
@@ -1527,10 +1527,10 @@ density .1; a cycle takes 4. The printed range .03 and ε 5e-8 are those of a sw
 one the range is .24. Circles are the balls of the first reading at whole cycles. The second one starts where the first
 is at 144, before any gap is below .24.
 
-The swimmer comes to the wall, is turned towards it on its way, and then away from it again, by the wall alone with the
-range as printed: the film bears it at a gap of four times that range, and there is no contact. It glides along the wall
-as it turns back. With the range .24 each stroke presses the right ball onto the contact, which turns the swimmer
-back sooner. The runs end before it has left the wall. No bodies overlap.
+The swimmer comes to the wall, is turned towards it on its way, and then away from it again. With the range as printed the
+wall alone does so: the film bears it at a gap of four times that range, and there is no contact. It passes the parallel
+and then glides along the wall, ever more slowly away from it. With the range .24 each stroke presses the right ball onto
+the contact; that turns the swimmer back sooner and farther, and it leaves. No bodies overlap.
 
 The mesh is coarse (cells of .6 on the balls). The path depends on it: with the same mesh made at other times, two
 cycles from 144 on lead .15 less far.
