@@ -1527,10 +1527,10 @@ density .1; a cycle takes 4. The printed range .03 and ε 5e-8 are those of a sw
 one the range is .24. Circles are the balls of the first reading at whole cycles. The second one starts where the first
 is at 144, before any gap is below .24.
 
-The swimmer comes to the wall, is turned towards it on its way, and then away from it again. With the range as printed the
-wall alone does so: the film bears it at a gap of four times that range, and there is no contact. It passes the parallel
-and then glides along the wall, ever more slowly away from it. With the range .24 each stroke presses the right ball onto
-the contact; that turns the swimmer back sooner and farther, and it leaves. No bodies overlap.
+The swimmer comes to the wall, is turned towards it on its way, and then away from it again. With the range as printed
+the wall alone does so: the film bears it at a gap of four times that range, and there is no contact. It passes the
+parallel and then glides along the wall, ever more slowly away from it. With the range .24 each stroke presses the right
+ball onto the contact; that turns the swimmer back sooner and farther, and it leaves. No bodies overlap.
 
 The mesh is coarse (cells of .6 on the balls). The path depends on it: with the same mesh made at other times, two
 cycles from 144 on lead .15 less far.
