@@ -13,7 +13,10 @@ SOURCE = ROOT / "src" / "rigidfluid"
 SHARED = {"backends": {"taylor_hood"}, "detectors": {"marching"}, "forces": set(), "bodies": set()}
 """Of each room of parts, the rooms of what they share; those import nothing of any part."""
 ROOMS = [*SHARED, "taylor_hood", "marching"]
-NUMERICS = {"contact.broad_phase", "contact.near_pairs", "contact.balls", "contact.repulsion", "mesh.mesh_quality"}
+NUMERICS = {
+    *("contact.broad_phase", "contact.near_pairs", "contact.balls", "contact.repulsion"),
+    *("mesh.mesh_quality", "joints.joint_forces"),
+}
 """Of core's rooms above `mechanics`, what holds no state, and what two parts would otherwise write twice."""
 PUBLIC = {"api", "testing", "taylor_hood"}
 

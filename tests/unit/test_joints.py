@@ -336,7 +336,7 @@ def findings(*bodies, **keys):
 
 def test_the_check_counts_what_joints_leave_free():
     found = findings(*PAIR, ball("held", 0.5, 0.2, free=["y"]), joint=[hinge("one", "two")])
-    assert dict(found["joints"].found) == {"joints": 1, "velocities": 9, "held": 4, "left": 5}
+    assert dict(found["joints"].found) == {"joints": 1, "velocities": 9, "held": 4, "remaining": 5}
 
 
 @pytest.mark.parametrize(("stiffness", "grade"), [(100.0, "note"), (2000.0, "warning")])

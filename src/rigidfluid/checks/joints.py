@@ -60,7 +60,7 @@ def _freedoms(scene: Scene, system: System, linkage: Linkage) -> Finding:
     width = links.rows.shape[2]
     free = width * int(np.count_nonzero(~system.controlled_motions))
     held = int(np.count_nonzero(links.compliance == 0.0))
-    found = {"joints": len(scene.joint), "velocities": free, "held": held, "left": free - held}
+    found = {"joints": len(scene.joint), "velocities": free, "held": held, "remaining": free - held}
     text = f"joints and held directions take {held} of the {free} velocities of free motions; {free - held} are left"
     return Finding("note", QUESTION, (), text, found=found)
 

@@ -49,9 +49,9 @@ class Results:
     system: System
     time: FloatArray
     bodies: dict[str, FloatArray]
-    joints: dict[str, FloatArray]
     energy: dict[str, FloatArray]
     series: tuple[tuple[float, Path], ...]
+    joints: dict[str, FloatArray] = field(default_factory=dict)
     wholes: dict[str, FloatArray] = field(default_factory=dict)
 
     @property

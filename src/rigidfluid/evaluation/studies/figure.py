@@ -40,7 +40,7 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
     """
     if figure.key is not None:
         table, _, rest = figure.key.partition(".")
-        _refuse_unknown("", table, FIGURES)
+        _refuse_unknown("", table, [name for name in FIGURES if name != "cycles" or scene.mechanism])
         if table == "energy":
             _refuse_unknown("", rest, ENERGIES)
         return
