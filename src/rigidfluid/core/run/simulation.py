@@ -21,7 +21,7 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import least_gaps_of_motions, records
+from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state, start_level
@@ -307,7 +307,10 @@ class Simulation:
         self.observe(Simulation._output, self.scene.output.every)
 
     def _record(self) -> None:
-        now = records(self.system, self._probes, self.state, self.time)
+        level, cost = self.state.level, None
+        if self.state.count > 0 and level is not None:
+            cost = StepCost(self.clock.size(level), self.counts.remeshes)
+        now = records(self.system, self._probes, self.state, self.time, cost)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
