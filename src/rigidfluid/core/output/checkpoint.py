@@ -44,6 +44,7 @@ class Checkpoint:
     failed_remeshes: int
     latest_failed_remesh: str | None
     elapsed: float
+    cpu_time: float
     extremes: Extremes
     ranks: int
 

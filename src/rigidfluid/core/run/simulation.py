@@ -115,7 +115,7 @@ class Simulation:
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
-        self._start = time.perf_counter()
+        self._start, self._cpu_start = time.perf_counter(), time.process_time()
         self._writer: Writer | None = None
         self._observers: list[tuple[Schedule, Observer]] = []
         self.state: State
@@ -143,6 +143,11 @@ class Simulation:
     def elapsed(self) -> float:
         """Wall seconds of this run, those before a resumption included."""
         return self._elapsed_before + time.perf_counter() - self._start
+
+    @property
+    def cpu_time(self) -> float:
+        """CPU seconds of this process, of all its threads, those before a resumption included."""
+        return self._cpu_before + time.process_time() - self._cpu_start
 
     @property
     def time(self) -> float:
@@ -277,7 +282,7 @@ class Simulation:
             self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before = 0.0
+        self._elapsed_before = self._cpu_before = 0.0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = initial_state(
@@ -300,7 +305,7 @@ class Simulation:
         self.state = earlier.state
         self.system.backend.recall(earlier.memory, self.state.mesh)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
-        self._elapsed_before, self._times = earlier.elapsed, earlier.times
+        self._elapsed_before, self._cpu_before, self._times = earlier.elapsed, earlier.cpu_time, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
@@ -338,6 +343,7 @@ class Simulation:
             seconds=self.watch.seconds,
             **asdict(self.counts),
             elapsed=self.elapsed,
+            cpu_time=self.cpu_time,
             extremes=self.extremes,
             ranks=self._ranks.size,
         )
