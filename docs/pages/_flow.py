@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
-
 from page_tools import Run
+
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.reports.plane import fine_triangles
@@ -17,7 +17,7 @@ from rigidfluid.reports.style import BODY
 
 
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:
-    """Vorticity in the domain's width and so high a part of it as ``height``, about the bodies; colours up to ``scale``."""
+    """Vorticity in a part of the domain, ``height`` high, about the bodies; colours go up to ``scale``."""
     series = dict(read_pvd(run.folder / "fields.pvd"))
     figure = Figure(figsize=(8.0, 5.2), dpi=120, layout="constrained")
     for axes, moment in zip(figure.subplots(1, len(moments)), moments, strict=True):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-
 from page_tools import Run
 
 Way = dict[str, np.ndarray]
@@ -15,7 +14,7 @@ Way = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Pair:
-    """The disks named ``trailing`` and ``leading`` at the start, of one ``radius`` and range of the law between them."""
+    """The disks named ``trailing`` and ``leading``, of one radius, and the range of the law between them."""
 
     run: Run
     trailing: str

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
+from page_tools import Page, Run, Work, table
 from scipy.optimize import brentq
 
-from page_tools import Page, Run, Work, table
 from pages._flow import vorticity_pictures
 from pages._one_knob import OneKnob
 from pages._pair import Pair, energy_shares
@@ -27,6 +27,7 @@ BEFORE_KISSING = 1.0
 
 STUDY = OneKnob(
     SCENE,
+    name=f"height of the trailing disk at {BEFORE_KISSING:g} s [cm]",
     common=[f"time.end={BEFORE_KISSING}", "output.every=0.5"],
     finest=["mesh.size_body=0.005", "mesh.size=0.08", "time.step=0.0005"],
     values={
@@ -54,13 +55,10 @@ def page(work: Work) -> Page:
     figures = {
         "": over_time(pairs),
         "_moments": vorticity_pictures(pairs["shipped"].run, MOMENTS, height=3.0, scale=40.0),
-        "_study": study.plot(f"height at {BEFORE_KISSING:g} s [cm]"),
+        "_study": study.plot(),
     }
-    parts = (story(pairs["shipped"]), figures_of(pairs), reproducible(pairs), at_rest(rest))
-    text = "\n\n".join(
-        [*parts, "## Error against run time", ABOUT_STUDY, study.table(f"height [cm] at {BEFORE_KISSING:g} s")]
-    )
-    return Page("Two disks", text, figures)
+    parts = (story(pairs["shipped"]), figures_of(pairs), reproducible(pairs), at_rest(rest), study.section("two_disks"))
+    return Page("Two disks", "\n\n".join(parts), figures)
 
 
 def over_time(pairs: dict[str, Pair]) -> Figure:
@@ -96,13 +94,13 @@ def story(one: Pair) -> str:
         "reaches the floor" if lowest < one.range else f"has reached the floor, the lower is {lowest:.2f} cm above it"
     )
     return f"""\
-`scenes/two_disks.toml`, case 5 of [arXiv:2402.19093](https://arxiv.org/abs/2402.19093), to its end at {END:g} s. The disks
-start {one.gap[0]:g} cm apart, the upper one .001 cm beside the line of the lower one, and fall at up to {fastest:.2f} cm/s
-(Reynolds number {one.run.summary["reynolds"]:.1f} with the density of the fluid). The trailing disk drafts in the wake of
-the leading one, and comes within the range of the law at {one.kiss:.3f} s (kissing). They stay in contact for
-{one.in_contact:.2f} s, while their line turns from the vertical (tumbling): they part at {one.parts:.2f} s and are side by
-side at {one.side_by_side:.2f} s. The smallest gap is {closest:.5f} cm, {"no overlap" if closest > 0 else "an OVERLAP"}.
-At {END:g} s {"one" if lowest < one.range else "neither"} {floor}.
+`scenes/two_disks.toml`, case 5 of [arXiv:2402.19093](https://arxiv.org/abs/2402.19093), to its end at {END:g} s.
+The disks start {one.gap[0]:g} cm apart, the upper one .001 cm beside the line of the lower one, and fall at up to
+{fastest:.2f} cm/s (Reynolds number {one.run.summary["reynolds"]:.1f} with the density of the fluid). The trailing disk
+drafts in the wake of the leading one, and comes within the range of the law at {one.kiss:.3f} s (kissing). They stay
+in contact for {one.in_contact:.2f} s, while their line turns from the vertical (tumbling): they part at
+{one.parts:.2f} s and are side by side at {one.side_by_side:.2f} s. The smallest gap is {closest:.5f} cm,
+{"no overlap" if closest > 0 else "an OVERLAP"}. At {END:g} s {"one" if lowest < one.range else "neither"} {floor}.
 
 ![Vorticity](two_disks_moments.png)"""
 
@@ -134,9 +132,9 @@ def reproducible(pairs: dict[str, Pair]) -> str:
     verdict = "no more than" if worst < 2 * fine.radius else "more than"
     told = "; ".join(f"{RUNS[name][0]}: {before[name]:.4f} cm and {after[name]:.3f} cm" for name in before)
     return f"""\
-Largest distance of a disk from where it is in the fine run, until kissing and until the end: {told}. Before kissing this is
-the error of mesh and step. Tumbling begins from .001 cm, grown by the instability of the upright pair, so that all
-differences grow with it; at the end the runs are {verdict} a diameter ({2 * fine.radius:g} cm) apart."""
+Largest distance of a disk from where it is in the fine run, until kissing and until the end: {told}. Before kissing
+this is the error of mesh and step. Tumbling begins from .001 cm, grown by the instability of the upright pair, so that
+all differences grow with it; at the end the runs are {verdict} a diameter ({2 * fine.radius:g} cm) apart."""
 
 
 def at_rest(one: Pair) -> str:
@@ -150,8 +148,8 @@ def at_rest(one: Pair) -> str:
         gap, speed = way["y"][-1] - one.radius, np.hypot(way["vx"][-1], way["vy"][-1])
         landed = way["time"][np.argmax(way["y"] - one.radius < one.range)] if gap < one.range else np.nan
         rows.append((
-            str(way["body"][0]), f"{landed:.3f}", f"{(way['y'] - one.radius).min():.5f}", f"{gap:.5f}", f"{expected:.5f}",
-            f"{way['cfy'][-1] / weight(one):.4f}", f"{speed:.1e}", f"{way['x'][-1]:.3f}",
+            str(way["body"][0]), f"{landed:.3f}", f"{(way['y'] - one.radius).min():.5f}", f"{gap:.5f}",
+            f"{expected:.5f}", f"{way['cfy'][-1] / weight(one):.4f}", f"{speed:.1e}", f"{way['x'][-1]:.3f}",
         ))  # fmt: skip
     created, lost = energy_shares(one.run)
     head = ("disk", "within range of the floor at [s]", "smallest gap there [cm]", f"gap at {REST:g} s [cm]")
@@ -162,11 +160,3 @@ def at_rest(one: Pair) -> str:
 The same scene with `time.end = {REST:g}`. Energy created: {created:.1e} of that put in, lost: {lost:.1e}.
 
 {table(head, rows)}"""
-
-
-ABOUT_STUDY = f"""\
-The height of the trailing disk at {BEFORE_KISSING:g} s, before kissing; one setting at a time differs from the shipped scene,
-the finest run has `{"`, `".join(STUDY.finest)}`. CPU seconds are those of one thread on a machine shared with others.
-
-![Error against run time](two_disks_study.png)
-"""
