@@ -96,7 +96,7 @@ class History:
 
     @property
     def steps(self) -> dict[str, NDArray[Any]]:
-        """The table of steps.csv: a row per accepted step whose error is estimated."""
+        """The table of steps.csv: a row per accepted step, with what it took."""
         return self.table("steps")
 
     @property

@@ -61,7 +61,7 @@ class Table:
 
 KINDS: Mapping[str, type[float | int | str]] = {
     **dict.fromkeys(("body", "a", "b", "joint"), str),
-    **dict.fromkeys(("step", "probe"), int),
+    **dict.fromkeys(("step", "probe", "unknowns", "remeshes"), int),
 }
 """What stands in a column; a number with a fraction where it is not named here."""
 

@@ -29,7 +29,7 @@ _PACKAGES = (
 )
 FIGURES = (
     *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
-    *("failed_remeshes", "wall_time", "wall_time_per_stage"),
+    *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
@@ -57,6 +57,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "failed_remeshes": simulation.counts.failed_remeshes,
         "latest_failed_remesh": simulation.counts.latest_failed_remesh,
         "wall_time": simulation.elapsed,
+        "cpu_time": simulation.cpu_time,
         "wall_time_per_stage": simulation.watch.seconds,
         "peak_memory": _of_all(system.backend.ranks, peak_memory()),
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
