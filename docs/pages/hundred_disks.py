@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-
 from page_tools import Page, Run, Work, table
+
 from pages._studies import study_plot, study_table
 
 RUNS = {
