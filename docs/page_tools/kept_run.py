@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import rigidfluid
-from page_tools.inputs import Inputs
-from page_tools.record import CostTable, Record, Recorder
+from page_tools.record import CostTable, Recorder
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.output.history import History
@@ -42,14 +41,8 @@ class Run:
 
     @property
     def cpu_seconds(self) -> float:
-        """CPU time of all threads, start included [s]; not a number where it was run without these tools."""
-        known = Record.read(self.folder).cpu_seconds
-        return math.nan if known is None else known
-
-    @property
-    def inputs(self) -> Inputs:
-        """The sources that it was made by."""
-        return Record.read(self.folder).inputs
+        """CPU time of all threads, start included [s]; not a number where the run does not tell it."""
+        return self.summary.get("cpu_time", math.nan)
 
 
 def keep_run(scene: Scene, folder: Path, *, fresh: bool = False, may_stop: bool = False) -> Run:
@@ -113,4 +106,4 @@ def _run(scene: Scene, folder: Path, resume: bool) -> None:
     finally:
         cost.close()
         if recorder.began:
-            recorder.note(cost.cpu_seconds)
+            recorder.note()

@@ -1,11 +1,10 @@
-"""What is kept beside results: what they were made from, and what they have cost."""
+"""What is kept beside results: what they were made from, and what each step has cost."""
 
 from __future__ import annotations
 
 import csv
 import json
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TextIO
 
@@ -16,19 +15,11 @@ RECORD, PROGRESS = "made.json", "progress.csv"
 COLUMNS = ("time", "step", "wall_time", "cpu_seconds")
 
 
-@dataclass(frozen=True)
-class Record:
-    """What results were made from, by path, and their CPU time of all threads [s] where it is known."""
-
-    inputs: Inputs = field(default_factory=dict)
-    cpu_seconds: float | None = None
-
-    @classmethod
-    def read(cls, folder: Path) -> Record:
-        """What is recorded; of results that were made without these tools, that nothing is."""
-        if not (folder / RECORD).exists():
-            return cls({f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"})
-        return cls(**json.loads((folder / RECORD).read_text(encoding="utf-8")))
+def read_record(folder: Path) -> Inputs:
+    """What results were made from; of those that were made without these tools, that nothing is known."""
+    if not (folder / RECORD).exists():
+        return {f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"}
+    return json.loads((folder / RECORD).read_text(encoding="utf-8"))
 
 
 class Recorder:
@@ -36,7 +27,7 @@ class Recorder:
 
     def __init__(self, folder: Path, resumed: bool) -> None:
         self._path = folder / RECORD
-        self._before = Record.read(folder).inputs if resumed else {}
+        self._before = read_record(folder) if resumed else {}
         self._mine: Inputs = {}
 
     @property
@@ -44,11 +35,10 @@ class Recorder:
         """Whether anything was noted."""
         return bool(self._mine)
 
-    def note(self, cpu_seconds: float | None = None) -> None:
+    def note(self) -> None:
         """Note what is loaded now. A file that was loaded before may have been edited since, and counts as it was."""
         self._mine = sources() | self._mine
-        told = {"cpu_seconds": cpu_seconds, "inputs": merged(self._before, self._mine)}
-        self._path.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        self._path.write_text(json.dumps(merged(self._before, self._mine), indent=0) + "\n", encoding="utf-8")
 
 
 class CostTable:
@@ -64,16 +54,13 @@ class CostTable:
         self._start = time.process_time()
         self._file: TextIO | None = None
 
-    @property
-    def cpu_seconds(self) -> float:
-        """CPU time of all threads until now [s]."""
-        return (self._rows[-1][-1] if self._rows else 0.0) + time.process_time() - self._start
-
     def add(self, now: Progress) -> None:
         """Write the row of a step."""
         if self._file is None:
             self._begin(now.time)
-        print(now.time, now.step, now.elapsed, self.cpu_seconds, sep=",", file=self._file)
+        before = self._rows[-1][-1] if self._rows else 0.0
+        spent = before + time.process_time() - self._start
+        print(now.time, now.step, now.elapsed, spent, sep=",", file=self._file)
 
     def close(self) -> None:
         """Write no more."""

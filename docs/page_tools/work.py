@@ -9,7 +9,7 @@ import rigidfluid
 from page_tools.inputs import Inputs, changed, hashes, merged, sources
 from page_tools.kept_run import Run, keep_run
 from page_tools.places import RUNS, SCENES, STUDIES
-from page_tools.record import Record, Recorder
+from page_tools.record import Recorder, read_record
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.evaluation.studies import load_study, run_study
 from rigidfluid.evaluation.studies.results import Results
@@ -49,7 +49,7 @@ class Work:
         """
         scene = self.scene(scene, overrides) if isinstance(scene, str) else scene
         run = keep_run(scene, self._folder / label, fresh=self._fresh, may_stop=may_stop)
-        self._kept[label] = run.inputs
+        self._kept[label] = read_record(run.folder)
         return run
 
     def scene(self, name: str, overrides: Iterable[str] = ()) -> Scene:
@@ -74,7 +74,7 @@ class Work:
         results, _ = run_study(study, folder, fresh=self._fresh, progress=observe)
         if recorder.began:
             recorder.note()
-        self._kept[f"study {name}"] = Record.read(folder).inputs
+        self._kept[f"study {name}"] = read_record(folder)
         return results
 
     def file(self, path: Path) -> Path:

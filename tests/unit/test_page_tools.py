@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +74,6 @@ def test_a_run_that_was_stopped_goes_on_to_the_same_end(tmp_path: Path, capsys: 
     assert [row["time"] for row in found] == [row["time"] for row in rows(tmp_path / "whole")]
     assert found[0] == left[0]
     assert np.all(np.diff([row["cpu_seconds"] for row in found]) > 0.0)
-    assert stopped.cpu_seconds >= found[-1]["cpu_seconds"]
 
 
 def test_a_run_of_another_scene_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -116,7 +114,7 @@ def test_a_run_that_was_made_elsewhere_is_used_and_said_to_be_of_unknown_sources
     rigidfluid.run(scene(), tmp_path / "page" / "run")
     work = Work("page", runs=tmp_path)
     run = work.run("run", scene())
-    assert math.isnan(run.cpu_seconds)
+    assert run.cpu_seconds == run.summary["cpu_time"]
     assert work.outdated == {"run": ["out/validation/page/run"]}
     assert "out/validation/page/run" in changed(work.inputs)
 
