@@ -36,6 +36,21 @@ def kernel_study(work: Work, name: str, title: str) -> Page:
     return Page(title, text, {"": study_plot(results)})
 
 
+def study_table(results: Results) -> str:
+    """The runs of a study of a scene, a row each: all knobs, the figure, its error, and the cost."""
+    rows = []
+    for key, settings in zip(results.prints, results.plan, strict=True):
+        outcome, error = results.outcomes.get(key), results.errors.get(key)
+        found = ("failed", "", "", "", "") if outcome is None else (
+            f"{outcome.figure:.6g}", "reference" if error is None else f"{error:.1e}",
+            f"{outcome.seconds:.1f}", f"{outcome.unknowns:,}", f"{outcome.steps:,}",
+        )  # fmt: skip
+        rows.append((*cells(results.study.knobs, settings), *found))
+    return table(
+        (*results.study.knobs, "figure", "error", results.study.tables.study.clock + " [s]", "unknowns", "steps"), rows
+    )
+
+
 def scene_rows(results: Results) -> str:
     """The runs of a study of a scene in a table: error and seconds, or that they failed."""
     rows, (group, knob) = [], results.study.knobs
