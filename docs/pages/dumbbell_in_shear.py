@@ -29,7 +29,7 @@ def page(work: Work) -> Page:
         ("distance of centres", "A", "B", "axis ratio", "period"), map(exact_row, *zip(*exact.items(), strict=True))
     )
     text += RATES + table(
-        ("distance of centres", "walls at", "A", "off", "B", "off", "period", "off"),
+        ("distance of centres", "walls at", "A", "A off", "B", "B off", "period", "period off"),
         (row(exact[key[0]], *key, *found[key]) for key in sorted(found)),
     )
     text += COARSE.format(across=coarse[0] / across - 1.0, along=coarse[1] / along - 1.0)
