@@ -45,8 +45,8 @@ PAIR_LEADING_VELOCITY = np.array(
 )
 PAIR_KISSES = 0.159  # s, when the velocities of the published disks jump towards each other
 
-# Xia, Connington, Rapaka, Yue, Feng & Chen, J. Fluid Mech. 625 (2009) 249: an ellipse in a channel four of its long axes
-# a wide. Digitised, heights over a from the bottom of a channel of 28 a; it starts at 24 a. Angles of the long axis.
+# Xia, Connington, Rapaka, Yue, Feng & Chen, J. Fluid Mech. 625 (2009) 249: an ellipse in a channel that is four of its
+# long axes a wide. Digitised, heights over a from the bottom of a channel of 28 a; it starts at 24 a.
 ELLIPSE_PATH = np.array(  # (y/a, x/a)
     [(0.36, 1.993), (2.22, 2.009), (4.88, 1.985), (6.67, 1.992), (8.46, 1.982), (10.68, 1.934)]
     + [(12.76, 1.974), (14.15, 1.921), (15.82, 1.835), (17.37, 1.870), (18.71, 1.865), (19.65, 1.759)]
