@@ -38,7 +38,7 @@ def _is_remeshed(clock: Clock, state: State) -> bool:
 
 
 def _is_impact(system: System, clock: Clock, state: State, candidate: State) -> bool:
-    """Whether the only contacts begin or end, contacts change at once by more energy than the step left unaccounted for,
+    """Whether the only contacts begin or end, contacts change at once by more energy than the step leaves over,
     or an impact goes on in which they store or give back more than that. Those that push all the time and yield slowly
     are none."""
     before, after = state.ledger, candidate.ledger
