@@ -17,6 +17,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.corners import begun_anew, level_to_corner
+from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
 from rigidfluid.core.run.process import give_back_memory
@@ -97,7 +98,7 @@ class Stepper:
                     raise stuck(self.system, state, rejection, time, shortest) from rejection
             else:
                 self.counts.unsettled += not agreed
-                return new
+                return with_cause(self.system, self._clock, state, new)
 
     def _judged(self, state: State, candidate: State) -> State:
         """The candidate with an estimate of its error, where that is tolerated."""
