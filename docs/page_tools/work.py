@@ -22,13 +22,15 @@ class Work:
     Parameters
     ----------
     name : str
-        Of the page; its runs are kept in out/validation/NAME.
+        Of the page.
     fresh : bool
         Whether to run all anew.
+
+    Its ``folder``, out/validation/NAME, is where they are kept.
     """
 
     def __init__(self, name: str, fresh: bool = False, runs: Path = RUNS) -> None:
-        self._folder, self._fresh = runs / name, fresh
+        self.folder, self._fresh = runs / name, fresh
         self._files: set[Path] = set()
         self._kept: dict[str, Inputs] = {}
         self._loaded = sources()
@@ -48,7 +50,7 @@ class Work:
             Whether a step that fails leaves the run as far as it came, in place of a StepError.
         """
         scene = self.scene(scene, overrides) if isinstance(scene, str) else scene
-        run = keep_run(scene, self._folder / label, fresh=self._fresh, may_stop=may_stop)
+        run = keep_run(scene, self.folder / label, fresh=self._fresh, may_stop=may_stop)
         self._kept[label] = read_record(run.folder)
         return run
 
@@ -61,10 +63,10 @@ class Work:
 
     def study(self, name: str) -> Results:
         """The study studies/NAME.toml, with the runs that are kept of it."""
-        study, folder = load_study(self.file(STUDIES / f"{name}.toml")), self._folder / f"study_{name}"
+        study, folder = load_study(self.file(STUDIES / f"{name}.toml")), self.folder / f"study_{name}"
         if study.scene is not None:
             self.file(study.scene.resolve())
-        print(f"{self._folder.name}: study {name}", flush=True)
+        print(f"{self.folder.name}: study {name}", flush=True)
         recorder = Recorder(folder, resumed=(folder / TABLE).exists() and not self._fresh)
 
         def observe(now: StudyProgress) -> None:

@@ -62,3 +62,14 @@ def scene_rows(results: Results) -> str:
         )  # fmt: skip
         rows.append((*names, *figures, front))
     return table((group, knob, "error", "seconds", "steps", "Pareto front"), rows)
+
+
+def errors_by(results: Results) -> dict[str, dict[float, float]]:
+    """The errors of a study of a scene by its group, in few words, and by its other knob."""
+    group, knob = results.study.knobs
+    found: dict[str, dict[float, float]] = {}
+    for key, settings in zip(results.prints, results.plan, strict=True):
+        errors = found.setdefault(short_text(settings[group], results.study.tables.vary[group]), {})
+        if key in results.errors:
+            errors[settings[knob]] = results.errors[key]
+    return found

@@ -1,4 +1,4 @@
-"""Published figures of the falling disk (case 1 of arXiv:2402.19093), with their sources."""
+"""Published figures of falling disks, with their sources: one (case 1 of arXiv:2402.19093), and two in a line."""
 
 import numpy as np
 
@@ -16,3 +16,31 @@ GLOWINSKI_2001 = np.array(  # Glowinski, Pan, Hesla, Joseph, Périaux, J. Comput
 TERMINAL_SPEED = 5.59
 HIGHEST_REYNOLDS = 17.46  # P2-P1 body-fitted, with the solid's density; Wan & Turek 2006: 17.42
 WEIGHT = (1.25 - 1.0) * np.pi * 0.125**2 * 981.0
+
+
+# Two disks of diameter .25 and density 1.5 in a box 2 × 6, viscosity .01, released at the heights 5 and 4.5: Glowinski,
+# Pan, Hesla, Joseph, Périaux, J. Comput. Phys. 169 (2001) 363; (time [s], height [cm]) and (time [s], velocity [cm/s]).
+PAIR_TRAILING_HEIGHT = np.array(
+    [(0.0088, 4.982), (0.0280, 4.924), (0.0406, 4.830), (0.0548, 4.737), (0.0694, 4.608)]
+    + [(0.0886, 4.398), (0.1024, 4.234), (0.1166, 4.047), (0.1273, 3.883), (0.1419, 3.637)]
+    + [(0.1561, 3.380), (0.1706, 3.135), (0.1856, 2.912), (0.1998, 2.690), (0.2151, 2.433)]
+    + [(0.2289, 2.211), (0.2435, 2.023)]
+)
+PAIR_TRAILING_VELOCITY = np.array(
+    [(0.0164, -3.16), (0.0409, -6.82), (0.0627, -9.03), (0.0981, -11.60), (0.1133, -13.53)]
+    + [(0.1336, -17.04), (0.1460, -18.03), (0.1581, -18.07), (0.1600, -16.57), (0.1604, -15.94)]
+    + [(0.1608, -16.29), (0.1636, -15.54), (0.1998, -16.29), (0.2165, -15.70), (0.2333, -13.49)]
+    + [(0.2492, -11.79)]
+)
+PAIR_LEADING_HEIGHT = np.array(
+    [(0.0096, 4.480), (0.0238, 4.433), (0.0368, 4.363), (0.0514, 4.257), (0.0640, 4.140)]
+    + [(0.0775, 4.012), (0.0928, 3.836), (0.1058, 3.696), (0.1185, 3.556), (0.1334, 3.380)]
+    + [(0.1472, 3.205), (0.1614, 3.029), (0.1748, 2.830), (0.1921, 2.573), (0.2071, 2.351)]
+    + [(0.2270, 2.117), (0.2427, 1.977)]
+)
+PAIR_LEADING_VELOCITY = np.array(
+    [(0.0343, -5.96), (0.0475, -7.73), (0.0639, -9.35), (0.0872, -10.61), (0.1402, -11.95)]
+    + [(0.1585, -12.70), (0.1612, -14.91), (0.1647, -15.38), (0.1873, -15.07), (0.1994, -14.48)]
+    + [(0.2091, -13.18), (0.2313, -8.76), (0.2410, -7.46), (0.2461, -7.14)]
+)
+PAIR_KISSES = 0.159  # s, when the velocities of the published disks jump towards each other
