@@ -49,12 +49,20 @@ def test_a_smooth_fall_is_wrong_by_its_steps_alone() -> None:
     assert shares(finer_mesh)["steps"] == pytest.approx(shares(coarse)["steps"], rel=0.1)
 
 
-def test_new_meshes_are_the_cause_in_the_two_steps_after_them() -> None:
+def test_new_meshes_are_no_cause_but_in_the_two_steps_after_them() -> None:
     history = fall(0.008, remesh_every=0.05)
     grown = np.diff(history.energy["residual_remeshing"]) != 0.0
     new = np.diff(history.steps["remeshes"], prepend=0) > 0
     assert 0 < new.sum() < len(new) / 2
-    np.testing.assert_array_equal(grown, new | np.concatenate([[False], new[:-1]]))
+    assert grown.any()
+    assert not (grown & ~new & ~np.concatenate([[False], new[:-1]])).any()
+
+
+def test_frequent_new_meshes_are_not_blamed_for_long_steps() -> None:
+    """With a new mesh every third step the disk loses what it loses without: what is more is re-meshing's."""
+    alone, often = shares(fall(0.008)), shares(fall(0.008, remesh_every=0.024))
+    assert often["steps"] == pytest.approx(alone["steps"], rel=0.3)
+    assert abs(often["remeshing"]) < 0.3 * often["steps"]
 
 
 def test_an_impact_is_wrong_in_its_own_steps() -> None:

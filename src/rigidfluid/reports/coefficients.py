@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary_samples import sample_times, sampled_inflows
-from rigidfluid.reports.periods import frequency, late
+from rigidfluid.reports.periods import frequency, late, late_periods
 from rigidfluid.reports.results import Results
 
 _LEAST_LIFT = 1e-3
@@ -31,8 +31,11 @@ class Reference:
 
 @dataclass(frozen=True)
 class Figures:
-    """Of a body in the second half of the time: mean ``drag``, mean ``lift`` and half of its range (``swing``), and
-    the ``strouhal`` number f D/U, None where there is no period; ``by`` what it is measured, lift or path."""
+    """Of a body in the second half of the time, over whole periods if there are any.
+
+    Mean ``drag``, mean ``lift``, half of the lift's range (``swing``), and the ``strouhal`` number f D/U, None where
+    there is no period; ``by`` what it is measured, lift or path.
+    """
 
     drag: float
     lift: float
@@ -79,11 +82,12 @@ def figures(results: Results, by: Reference) -> Iterator[Figures]:
     """Of each body."""
     found, time = coefficients(results, by)[1:], results.time[1:]
     across = results.vectors("")[1:] @ by.axes[1]
-    chosen = late(time)
+    scale = np.abs(found[late(time), :, 0]).mean(axis=0)
     for i, width in enumerate(diameters(results)):
-        drag, lift = (float(_mean(time[chosen], found[chosen, i, k])) for k in (0, 1))
-        by_lift = frequency(time, found[:, i, 1], _LEAST_LIFT * abs(drag))
+        by_lift = frequency(time, found[:, i, 1], _LEAST_LIFT * scale[i])
         rate = by_lift or frequency(time, across[:, i], _LEAST_WAY * width)
+        chosen = late(time) if rate is None else late_periods(time, rate)
+        drag, lift = (_mean(time[chosen], found[chosen, i, k]) for k in (0, 1))
         strouhal = None if rate is None else rate * width / by.speed
         swing = 0.5 * float(np.ptp(found[chosen, i, 1]))
         yield Figures(drag, lift, swing, strouhal, "path" if by_lift is None else "lift")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.reports.results import Results
@@ -16,6 +17,7 @@ def contact_plot(results: Results) -> Figure:
     figure, (count, force, gap) = time_panels(3)
     count.step(results.time, results.contact_counts, where="post", color=BLUE)
     count.set_ylabel("contacts")
+    count.yaxis.set_major_locator(MaxNLocator(integer=True))
     values, label = _largest_force(results)
     force.plot(results.time, values, color=BLUE)
     force.set_ylabel(label)

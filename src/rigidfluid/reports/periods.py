@@ -18,6 +18,12 @@ def late(time: FloatArray) -> FloatArray:
     return np.asarray(time >= 0.5 * (time[0] + time[-1]))
 
 
+def late_periods(time: FloatArray, frequency: float) -> FloatArray:
+    """Whether a time (s,) is in the whole periods that the second half of the time ends with."""
+    count = np.floor(0.5 * (time[-1] - time[0]) * frequency)
+    return np.asarray(time >= time[-1] - count / frequency)
+
+
 def frequency(time: FloatArray, values: FloatArray, least: float) -> float | None:
     """Of a steady swing in the second half of the time, from when the values rise through their mean [1/time].
 

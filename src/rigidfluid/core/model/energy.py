@@ -52,8 +52,9 @@ class Ledger:
     step explains so much at most, since the fluid's own solutions see some of it.
     The residual has five parts. ``residual_mesh``: what leaked through faces. The rest of each step's is in
     ``residual_start``, ``residual_remeshing`` or ``residual_contacts`` where a `Cause` is named for it, and else in
-    ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step. ``initial`` was stored at
-    the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
+    ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step, and ``smooth_rate`` is
+    how fast the residual grew in the latest step without a cause [energy/time].
+    ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
     """
 
     kinetic: float
@@ -71,6 +72,7 @@ class Ledger:
     residual_contacts: float = 0.0
     residual_mesh: float = 0.0
     in_impact: bool = False
+    smooth_rate: float = 0.0
     power: Power | None = Power()
 
     @property
@@ -125,15 +127,21 @@ class Ledger:
             power=power,
         )
 
-    def attributed(self, before: Ledger, cause: Cause | None) -> Ledger:
-        """This ledger with the growth of the residual since ``before``, beyond what leaked, put to the ``cause``."""
-        now = replace(self, in_impact=cause is Cause.CONTACTS)
-        if cause is None:
-            return now
+    def attributed(self, before: Ledger, step: float, cause: Cause | None) -> Ledger:
+        """This ledger with the growth of the residual in a ``step`` since ``before``, beyond what leaked, put to the
+        ``cause``; to re-meshing, as far as more grew, or otherwise, than in as much time of smooth motion before it."""
         grown = self.residual - before.residual - (self.residual_mesh - before.residual_mesh)
-        part: Any = {cause.value: getattr(self, cause.value) + grown}
-        return replace(now, **part)
+        if cause is None:
+            return replace(self, in_impact=False, smooth_rate=grown / step)
+        smooth = _common(grown, step * before.smooth_rate) if cause is Cause.REMESHING else 0.0
+        part: Any = {cause.value: getattr(self, cause.value) + grown - smooth}
+        return replace(self, in_impact=cause is Cause.CONTACTS, **part)
 
     def after_transfer(self, loss: float) -> Ledger:
         """The ledger after a transfer that lost this much kinetic energy."""
         return replace(self, kinetic=self.kinetic - loss, transfer_loss=self.transfer_loss + loss)
+
+
+def _common(a: float, b: float) -> float:
+    """The smaller of both where they have the same sign, else zero."""
+    return min(a, b, key=abs) if a * b > 0.0 else 0.0

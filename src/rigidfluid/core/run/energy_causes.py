@@ -18,7 +18,8 @@ def with_cause(system: System, clock: Clock, state: State, candidate: State) -> 
     Without one of the causes below it is the error of the time scheme in smooth motion: on a mesh that stays the same,
     convection, pressure and viscosity neither make nor take energy that the ledger does not know of.
     """
-    ledger = candidate.ledger.attributed(state.ledger, _cause(system, clock, state, candidate))
+    step = clock.time(candidate.tick) - clock.time(state.tick)
+    ledger = candidate.ledger.attributed(state.ledger, step, _cause(system, clock, state, candidate))
     return replace(candidate, ledger=ledger)
 
 
