@@ -12,6 +12,8 @@ from page_tools.inputs import Inputs, merged, sources
 from rigidfluid.core.run.run import Progress
 
 RECORD, PROGRESS = "made.json", "progress.csv"
+SOLVERS = ("src/", "plugins/")
+"""Where those sources are that results follow from once their scene is given."""
 COLUMNS = ("time", "step", "wall_time", "cpu_seconds")
 
 
@@ -19,7 +21,8 @@ def read_record(folder: Path) -> Inputs:
     """What results were made from; of those that were made without these tools, that nothing is known."""
     if not (folder / RECORD).exists():
         return {f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"}
-    return json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    known: Inputs = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    return {name: one for name, one in known.items() if name.startswith(SOLVERS)}
 
 
 class Recorder:

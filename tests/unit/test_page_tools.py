@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmark_scripts import benchmark
 from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
@@ -181,6 +183,20 @@ def test_a_changed_byte_makes_a_page_stale(tmp_path: Path, monkeypatch: pytest.M
     assert dict(stale(tmp_path, tmp_path)) == {}
     source.write_text("a = 2\n")
     assert dict(stale(tmp_path, tmp_path)) == {"page": "1 of 1 inputs have changed: src.py"}
+
+
+def test_a_page_that_a_benchmark_writes_has_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with benchmark("written_page") as script:
+        monkeypatch.setattr(script, "DOCS", tmp_path)
+        monkeypatch.setattr(page, "INPUTS", tmp_path)
+        monkeypatch.setattr(page.write_inputs, "__defaults__", (tmp_path / "inputs",))
+        (tmp_path / "validation").mkdir()
+        script.write_page(tmp_path / "elsewhere.md", "Text.")
+        assert not (tmp_path / "inputs").exists()
+        script.write_page(tmp_path / "validation" / "speed.md", "Text.")
+    known = json.loads((tmp_path / "inputs" / "speed.json").read_text())
+    assert {"src/rigidfluid/core/run/stepper.py", "benchmarks/written_page.py"} <= known.keys()
+    assert changed(known) == []
 
 
 def test_a_page_shows_its_figures_and_which_runs_are_older(tmp_path: Path) -> None:
