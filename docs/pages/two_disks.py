@@ -50,7 +50,7 @@ def pair(run: Run) -> Pair:
 def page(work: Work) -> Page:
     """Ways, gap and force of the pair, pictures of the vorticity, what is left of them at the end."""
     pairs = {name: pair(work.run(name, SCENE, overrides)) for name, (_, overrides) in RUNS.items()}
-    rest = pair(work.run("rest", SCENE, [f"time.end={REST}"]))
+    rest = pair(work.run("rest", SCENE, [*RUNS["coarse"][1], f"time.end={REST}"]))
     study = STUDY.measure(work)
     figures = {
         "": over_time(pairs),
@@ -157,6 +157,7 @@ def at_rest(one: Pair) -> str:
     return f"""\
 ## On the floor
 
-The same scene with `time.end = {REST:g}`. Energy created: {created:.1e} of that put in, lost: {lost:.1e}.
+The scene with {RUNS["coarse"][0]} and `time.end = {REST:g}`. Energy created: {created:.1e} of that put in,
+lost: {lost:.1e}.
 
 {table(head, rows)}"""
