@@ -19,7 +19,7 @@ from rigidfluid.reports.style import BODY
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:
     """Vorticity in a part of the domain, ``height`` high, about the bodies; colours go up to ``scale``."""
     series = dict(read_pvd(run.folder / "fields.pvd"))
-    figure = Figure(figsize=(8.0, 5.2), dpi=120, layout="constrained")
+    figure = Figure(figsize=(8.0, 4.2), dpi=120, layout="constrained")
     for axes, moment in zip(figure.subplots(1, len(moments)), moments, strict=True):
         time = min(series, key=lambda at: abs(at - moment))
         triangles, values = _vorticity(series[time])

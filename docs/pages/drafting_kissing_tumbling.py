@@ -104,7 +104,7 @@ def over_time(pairs: dict[str, Pair]) -> Figure:
         show(axes, curves)
     gaps.legend(fontsize=7)
     heights.legend(fontsize=7)
-    heights.set(xlabel="time [s]", ylabel="height [cm]", title="blue: trailing disk, red: leading disk")
+    heights.set(xlabel="time [s]", ylabel="height [cm]", title="blue: trailing disk, orange: leading disk")
     velocities.set(xlabel="time [s]", ylabel="vertical velocity [cm/s]")
     gaps.set(xlabel="time [s]", ylabel="gap between the disks [cm]")
     tilts.set(xlabel="time [s]", ylabel="line of centres from the vertical [degree]")
