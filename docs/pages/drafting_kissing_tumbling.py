@@ -143,7 +143,7 @@ def off_curves(one: Pair, column: str, curves: Iterable[np.ndarray], since: floa
 
 def story(one: Pair) -> str:
     """What is seen, and whether it is what was published."""
-    worst = max(off_heights(one, 0.0, PAIR_KISSES))
+    worst, own = (max(off_heights(one, 0.0, kiss)) for kiss in (PAIR_KISSES, one.kiss))
     beside, closest = abs(np.subtract(*one.at(one.time[-1], "x"))), float(one.gap.min())
     reynolds = one.run.summary["reynolds"]
     when = "earlier" if one.kiss > PAIR_KISSES else "later"
@@ -151,8 +151,8 @@ def story(one: Pair) -> str:
     return f"""\
 The trailing disk drafts in the wake of the leading one, and comes within the range of the law at {one.kiss:.4f} s; the
 published pair kisses at {PAIR_KISSES:g} s, {abs(one.kiss / PAIR_KISSES - 1):.0%} {when}. Until then the heights are
-{verdict} {ALLOWED:.0%} of the box, {worst:.2%} at most. The highest Reynolds number is {reynolds:.0f} with the density
-of the fluid. Afterwards the pair {"tumbles" if one.tilt[-1] > 45 else "begins to tumble"}: at {one.time[-1]:g} s its
+{verdict} {ALLOWED:.0%} of the box, {worst:.2%} at most; until its own kissing, {own:.2%}. The highest
+Reynolds number is {reynolds:.0f} with the density of the fluid. Afterwards the pair {"tumbles" if one.tilt[-1] > 45 else "begins to tumble"}: at {one.time[-1]:g} s its
 line of centres is {one.tilt[-1]:.0f}° from the vertical, and the disks are {beside:.3f} cm beside each other. The
 smallest gap is {closest:.5f} cm, {"no overlap" if closest > 0 else "an OVERLAP"}.
 
@@ -179,8 +179,8 @@ def before_kissing(pairs: dict[str, Pair]) -> str:
 {table(head, rows)}
 
 The published points were read from a figure. Their velocities, integrated from release to kissing, give ways that
-differ from those of their own heights by {integrated[0]:.2%} and {integrated[1]:.2%} of the box: so far the published
-curves agree with each other."""
+differ from those of their own heights by {integrated[0]:.2%} (trailing) and {integrated[1]:.2%} (leading) of the
+box: so far the published curves agree with each other."""
 
 
 def drop(velocity: np.ndarray, height: np.ndarray) -> float:
@@ -258,5 +258,5 @@ the pair tumbles."""
 ABOUT = """\
 `scenes/drafting_kissing_tumbling.toml`: two disks, one above the other, are released from rest, after Glowinski, Pan,
 Hesla, Joseph and Périaux, J. Comput. Phys. 169 (2001) 363. They computed with repulsion of a short range on grids of
-h = 1/96 to 1/144 cm. Here the range is .015 cm, about two of their cells; ε is such that the law takes up the expected
-impact, and impacts lose energy, since the published disks stay together."""
+h = 1/96 to 1/144 cm. Here the range is .015 cm, about two of their cells; the spring takes up the expected impact, and
+its dashpot loses energy (`restitution = 0.1`), since the published disks stay together."""
