@@ -147,13 +147,14 @@ def story(one: Pair) -> str:
     beside, closest = abs(np.subtract(*one.at(one.time[-1], "x"))), float(one.gap.min())
     reynolds = one.run.summary["reynolds"]
     when = "earlier" if one.kiss > PAIR_KISSES else "later"
+    tumbles = "tumbles" if one.tilt[-1] > 45 else "begins to tumble"
     verdict = "within" if worst <= ALLOWED else "NOT within"
     return f"""\
 The trailing disk drafts in the wake of the leading one, and comes within the range of the law at {one.kiss:.4f} s; the
 published pair kisses at {PAIR_KISSES:g} s, {abs(one.kiss / PAIR_KISSES - 1):.0%} {when}. Until then the heights are
-{verdict} {ALLOWED:.0%} of the box, {worst:.2%} at most; until its own kissing, {own:.2%}. The highest
-Reynolds number is {reynolds:.0f} with the density of the fluid. Afterwards the pair {"tumbles" if one.tilt[-1] > 45 else "begins to tumble"}: at {one.time[-1]:g} s its
-line of centres is {one.tilt[-1]:.0f}° from the vertical, and the disks are {beside:.3f} cm beside each other. The
+{verdict} {ALLOWED:.0%} of the box, {worst:.2%} at most; until its own kissing, {own:.2%}. The highest Reynolds number
+is {reynolds:.0f} with the density of the fluid. Afterwards the pair {tumbles}: at {one.time[-1]:g} s its line of
+centres is {one.tilt[-1]:.0f}° from the vertical, and the disks are {beside:.3f} cm beside each other. The
 smallest gap is {closest:.5f} cm, {"no overlap" if closest > 0 else "an OVERLAP"}.
 
 ![Vorticity](drafting_kissing_tumbling_moments.png)"""
