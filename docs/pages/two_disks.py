@@ -15,7 +15,7 @@ SCENE, END, REST = "two_disks.toml", 5.0, 10.0
 RUNS = {
     "coarse": ("size_body 0.02, step 0.002", ["mesh.size_body=0.02", "time.step=0.002"]),
     "shipped": ("size_body 0.01, step 0.001", []),
-    "fine": ("size_body 0.005, step 0.001", ["mesh.size_body=0.005"]),
+    "fine": ("size_body 0.005, step 0.002", ["mesh.size_body=0.005", "time.step=0.002"]),
 }
 """By folder: the heading, and what differs from the scene as shipped."""
 
