@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from page_tools.inputs import Inputs, merged, sources
+from page_tools.places import GENERATORS, ROOT
 from rigidfluid.core.run.run import Progress
 
 RECORD, PROGRESS = "made.json", "progress.csv"
@@ -39,8 +40,12 @@ class Recorder:
         return bool(self._mine)
 
     def note(self) -> None:
-        """Note what is loaded now. A file that was loaded before may have been edited since, and counts as it was."""
-        self._mine = sources() | self._mine
+        """Note what is loaded now, but no page: results follow from their scene or study, whoever asks for them.
+
+        A file that was loaded before may have been edited since, and counts as it was.
+        """
+        pages = f"{GENERATORS.relative_to(ROOT)}/"
+        self._mine = {name: value for name, value in sources().items() if not name.startswith(pages)} | self._mine
         self._path.write_text(json.dumps(merged(self._before, self._mine), indent=0) + "\n", encoding="utf-8")
 
 
