@@ -103,7 +103,7 @@ def leaky(step: float, size: float) -> History:
     tables = throat(SLIPPERY, end=3.0, step=step).to_dict()
     still = {"type": "sphere", "radius": 0.05, "density": 1.5, "position": [-2.8, 1.4], "fixed": True}
     tables["body"], tables["contact"] = [still], {}
-    tables["mesh"] |= {"size": size, "size_body": 0.6, "order": 1}
+    tables["mesh"] |= {"size": size, "size_body": min(0.6, size), "order": 1}
     return rigidfluid.run(rigidfluid.scene_from_dict(tables))
 
 
