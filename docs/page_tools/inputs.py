@@ -38,6 +38,12 @@ def sources() -> Inputs:
     return hashes(path for path in map(Path, filter(None, files)) if _computes(path))
 
 
+def all_sources() -> Inputs:
+    """Of rigidfluid and the benchmarks, whatever is loaded, all that may compute."""
+    places = (ROOT / "src", ROOT / "benchmarks")
+    return hashes(path for place in places for path in place.rglob("*.py") if _computes(path))
+
+
 def hashes(paths: Iterable[Path]) -> Inputs:
     """The hash of each file of the repository."""
     return {str(path.relative_to(ROOT)): file_hash(path) for path in sorted(set(paths))}

@@ -9,9 +9,12 @@ from pathlib import Path
 from typing import TextIO
 
 from page_tools.inputs import Inputs, merged, sources
+from page_tools.places import GENERATORS, ROOT
 from rigidfluid.core.run.run import Progress
 
 RECORD, PROGRESS = "made.json", "progress.csv"
+SOLVERS = ("src/", "plugins/")
+"""Where those sources are that results follow from once their scene is given."""
 COLUMNS = ("time", "step", "wall_time", "cpu_seconds")
 
 
@@ -19,7 +22,8 @@ def read_record(folder: Path) -> Inputs:
     """What results were made from; of those that were made without these tools, that nothing is known."""
     if not (folder / RECORD).exists():
         return {f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"}
-    return json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    known: Inputs = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    return {name: one for name, one in known.items() if name.startswith(SOLVERS)}
 
 
 class Recorder:
@@ -36,8 +40,12 @@ class Recorder:
         return bool(self._mine)
 
     def note(self) -> None:
-        """Note what is loaded now. A file that was loaded before may have been edited since, and counts as it was."""
-        self._mine = sources() | self._mine
+        """Note what is loaded now, but no page: results follow from their scene or study, whoever asks for them.
+
+        A file that was loaded before may have been edited since, and counts as it was.
+        """
+        pages = f"{GENERATORS.relative_to(ROOT)}/"
+        self._mine = {name: value for name, value in sources().items() if not name.startswith(pages)} | self._mine
         self._path.write_text(json.dumps(merged(self._before, self._mine), indent=0) + "\n", encoding="utf-8")
 
 

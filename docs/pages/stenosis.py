@@ -58,14 +58,18 @@ def page(work: Work) -> Page:
 
 @dataclass(frozen=True)
 class Passage:
-    """The disks in the order in which they pass the throat; times [ms] of the first 3d before it and of both in it, how
-    far the second goes back, and the lead of the lower one at 4 ms [d]."""
+    """The disks in the ``order`` in which they pass the throat; times [ms] of the first 3d before it and of both in it.
+
+    Lengths [d]: how far the second goes back, the lead of the lower one at 4 ms, and how far past the throat the first
+    is at the end.
+    """
 
     order: tuple[str, str]
     near: float
     through: tuple[float, float]
     back: float
     lead: float
+    gone: float
 
     @property
     def between(self) -> float:
@@ -86,6 +90,7 @@ def passage(run: Run) -> Passage:
         through=(passes[first], passes[second]),
         back=float((np.maximum.accumulate(x) - x).max()),
         lead=float(at_4_ms["lower"] - at_4_ms["upper"]),
+        gone=float(ways[first]["x"][-1]),
     )
 
 
@@ -100,12 +105,15 @@ def judged(found: dict[str, Passage]) -> dict[str, object]:
         "as_published": "So it is here." if shipped.order == PUBLISHED else "It is not so here.",
         "stays": "stays" if len({found[name].order for name in halved}) == 1 else "does not stay",
         "leads": ", ".join(
-            f"{found[name].lead:.1e} d with {STENOSIS[name][0]}" for name in ("coarse", "step4", "fine")
+            f"{found[name].lead:.1e} d with edges of {STENOSIS[name][0].split(',')[0]}"
+            for name in ("coarse", "step4", "fine")
         ),
         "mirrored": found["mirrored"].lead,
         "asymmetry": abs(found["mirrored"].lead + found["step4"].lead),
         "decides": "decides" if found["mirrored"].order == found["step4"].order[::-1] else "does not decide",
         "strong": found["strong"],
+        "through": shipped.through[1],
+        "gone": shipped.gone,
         "strong_over_shipped": found["strong"].back / shipped.back,
     }
     for name, series in (("mesh", list(meshes)), ("step", list(steps))):
@@ -203,6 +211,7 @@ disk passes first, and the upper one stops, goes back and follows (Van Landeghem
 * **The law.** The force joins centres: at most d·range²/ε = 7.65 dyn/cm between the disks and 10.2 at walls, and 1.2
   dyn/cm at a gap of .23d. The form that joins contact points gives .40 and .53 at most and nothing at contact.
 * **The pressure.** The paper's "541 Pa" is 5410 dyn/cm². The disks then pass within {strong.through[1]:.2f} ms, and the
-  second goes back {strong_over_shipped:.0%} as far. With 541 dyn/cm² they pass within the paper's .01 s as in its
-  pictures: that is what the scene has.
-* **To the outlet.** Nothing repels a disk there. The scene ends before the first comes to it."""
+  second goes back {strong_over_shipped:.0%} as far. The scene has 541 dyn/cm², with which they pass within
+  {through:.1f} ms; in the paper's pictures it takes .01 s.
+* **To the outlet.** Nothing repels a disk there. At the end of the scene the first one is {gone:.1f} d past the
+  throat."""

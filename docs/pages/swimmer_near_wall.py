@@ -132,7 +132,7 @@ is at 144, before any gap is below .24.
 
 The swimmer comes to the wall, and is turned on its way. With the range as printed {first}, and the least gap is
 {first_gap:.1f} times that range. With the range .24 {second}, and the least gap is {second_gap:.2f} times the range.
-The swimmer is parallel to the wall again {moments}. {overlap}
+It is parallel to the wall again: {moments}. {overlap}
 
 The mesh is coarse (cells of .6 on the balls), and the path depends on when it is made anew.
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import csv
+import json
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmark_scripts import benchmark
 from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
 from page_tools.inputs import SEVERAL, changed, hashes, merged, sources
 from page_tools.kept_run import keep_run
-from page_tools.record import CostTable
+from page_tools.record import CostTable, read_record
 from page_tools.stale import stale
 
 import rigidfluid
@@ -136,6 +139,15 @@ def test_inputs_are_what_computes_and_the_files_that_were_read(tmp_path: Path) -
     assert work.outdated == {}
 
 
+def test_a_page_is_no_input_of_its_runs(tmp_path: Path) -> None:
+    """Its text may be edited, and its runs are no older for that."""
+    import_module("pages.detectors")
+    work = Work("page", runs=tmp_path)
+    run = work.run("run", "dry_bounce.toml", [f"time.end={END}"])
+    assert "docs/pages/detectors.py" in work.inputs
+    assert "docs/pages/detectors.py" not in read_record(run.folder)
+
+
 def test_a_study_is_kept_with_its_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = tmp_path / "bounce.toml"
     study.write_text(
@@ -181,6 +193,20 @@ def test_a_changed_byte_makes_a_page_stale(tmp_path: Path, monkeypatch: pytest.M
     assert dict(stale(tmp_path, tmp_path)) == {}
     source.write_text("a = 2\n")
     assert dict(stale(tmp_path, tmp_path)) == {"page": "1 of 1 inputs have changed: src.py"}
+
+
+def test_a_page_that_a_benchmark_writes_has_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with benchmark("written_page") as script:
+        monkeypatch.setattr(script, "DOCS", tmp_path)
+        monkeypatch.setattr(page, "INPUTS", tmp_path)
+        monkeypatch.setattr(page.write_inputs, "__defaults__", (tmp_path / "inputs",))
+        (tmp_path / "validation").mkdir()
+        script.write_page(tmp_path / "elsewhere.md", "Text.")
+        assert not (tmp_path / "inputs").exists()
+        script.write_page(tmp_path / "validation" / "speed.md", "Text.")
+    known = json.loads((tmp_path / "inputs" / "speed.json").read_text())
+    assert {"src/rigidfluid/core/run/stepper.py", "benchmarks/written_page.py"} <= known.keys()
+    assert changed(known) == []
 
 
 def test_a_page_shows_its_figures_and_which_runs_are_older(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
+from inspect import signature
 from pathlib import Path
 
 import pytest
@@ -35,6 +37,11 @@ def test_every_page_says_what_makes_it(name: str) -> None:
         script = re.search(r"`python (benchmarks/\w+\.py)|`(rigidfluid bench)|^python (benchmarks/\w+\.py)", page, re.M)
         assert script
         assert all((ROOT / path).exists() for path in script.groups() if path and path.endswith(".py"))
+
+
+@pytest.mark.parametrize("name", generators())
+def test_every_generator_makes_a_page(name: str) -> None:
+    assert list(signature(import_module(f"pages.{name}").page).parameters) == ["work"]
 
 
 def test_every_generator_has_a_page() -> None:
