@@ -15,6 +15,9 @@ import rigidfluid
 from page_tools.inputs import Inputs
 from page_tools.places import INPUTS, PAGES
 
+FEW = 6
+"""So many runs are named."""
+
 
 @dataclass(frozen=True)
 class Page:
@@ -70,7 +73,8 @@ def write_inputs(name: str, inputs: Inputs, folder: Path = INPUTS) -> None:
 def _about_older(outdated: Mapping[str, list[str]]) -> Iterable[str]:
     if outdated:
         changed = {file for files in outdated.values() for file in files}
-        yield f"Of its runs, {', '.join(outdated)} are older: {len(changed)} of their sources have changed since."
+        which = ", ".join(outdated) if len(outdated) <= FEW else f"{len(outdated)}"
+        yield f"Of its runs, {which} are older: {len(changed)} of their sources have changed since."
 
 
 def _save(figure: Figure | Path, path: Path) -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from adaptive_step import FALLING, STARTED, Case, Outcome, outcomes
+from adaptive_step import FALLING, STARTED, Case, Outcome, settings
 from matplotlib.figure import Figure
 from page_tools import Page, Work, table
 
-CASES = {"falling disk": FALLING, "flow started at once": STARTED}
+CASES = {"falling": ("falling disk", FALLING), "started": ("flow started at once", STARTED)}
+"""By the first word of their folders: the heading, and what is run."""
 
 Errors = dict[str, float]
 
@@ -22,22 +24,25 @@ class Outcomes:
     free: list[tuple[Outcome, Errors]]
 
     @classmethod
-    def of(cls, case: Case) -> Outcomes:
+    def of(cls, work: Work, name: str, case: Case) -> Outcomes:
         """All runs of a case, against its reference."""
-        reference, *runs = outcomes(case)
-        found = [(run, case.errors(run.history, reference.history)) for run in runs]
+        runs = [
+            (label, work.run(f"{name}_{label}".replace(" ", "_"), case.scene, changes))
+            for label, changes in settings(case)
+        ]
+        reference, *others = [Outcome(label, run.cpu_seconds, run.history) for label, run in runs]
+        found = [(run, case.errors(run.history, reference.history)) for run in others]
         return cls(found[: len(case.steps)], found[len(case.steps) :])
 
     def shares(self, name: str) -> str:
-        """Of the tolerances: CPU seconds over those that fixed steps need for the same error, interpolated."""
-        errors, seconds = (np.log([value(pair) for pair in self.fixed]) for value in (lambda p: p[1][name], _seconds))
-        rising = np.argsort(errors)
+        """Of the tolerances: CPU seconds over those that fixed steps need until the error is as small, interpolated."""
+        path = [(np.log(run.seconds), np.log(errors[name])) for run, errors in self.fixed]
         told = []
-        for run, found in self.free:
-            if errors.min() <= np.log(found[name]) <= errors.max():
-                needed = np.exp(np.interp(np.log(found[name]), errors[rising], seconds[rising]))
-                told.append(f"{run.seconds / needed:.2f} with {run.label.removeprefix('tolerance ')}")
-        return ", ".join(told) or "no tolerance has an error between those of fixed steps"
+        for run, errors in self.free:
+            needed = _reaches(path, np.log(errors[name]))
+            if needed is not None:
+                told.append(f"{run.seconds / np.exp(needed):.2f} with {run.label.removeprefix('tolerance ')}")
+        return ", ".join(told) or "none"
 
     @property
     def table(self) -> str:
@@ -46,15 +51,17 @@ class Outcomes:
         return table(head, (row(*pair) for pair in [*self.fixed, *self.free]))
 
 
-def _seconds(pair: tuple[Outcome, Errors]) -> float:
-    return pair[0].seconds
+def _reaches(path: list[tuple[float, float]], error: float) -> float | None:
+    """Where a path of (seconds, error) first comes down to an error; None if it does not, or begins below it."""
+    for (before, high), (after, low) in pairwise(path):
+        if high > error >= low:
+            return before + (after - before) * (high - error) / (high - low)
+    return None
 
 
 def page(work: Work) -> Page:
-    """Errors over CPU seconds, measured in one go, so that they can be compared."""
-    for case in CASES.values():
-        work.scene(case.scene)
-    found = {title: Outcomes.of(case) for title, case in CASES.items()}
+    """Errors over CPU seconds."""
+    found = {title: Outcomes.of(work, name, case) for name, (title, case) in CASES.items()}
     falling, started = found.values()
     height = "height, greatest [cm]"
     text = ABOUT.format(
@@ -112,8 +119,9 @@ scene with a step of .25 ms (falling disk) and 3.125 ms (flow started at once); 
 meshes included. Runs with a tolerance have a longest step of 32 ms and .4 s. How steps are chosen is in
 [numerics](../numerics.md#steps-by-a-tolerance).
 
-Shares below are CPU seconds with a tolerance over those that fixed steps need for the same error,
-interpolated between them: below 1 the tolerance is cheaper.
+Shares below are CPU seconds with a tolerance over those with which fixed steps first come down to the same error,
+interpolated between them: below 1 the tolerance is cheaper. A tolerance is left out where fixed steps do not come down
+to its error, or the longest is below it.
 
 **What to choose.** A tolerance where phases differ: a flow or a body that starts at once, a body that lands, comes
 to rest or starts late. .001 is a good first guess. Fixed steps where the motion changes little, where only

@@ -72,13 +72,13 @@ def order(errors: dict[float, float], longest: bool) -> float:
 def failures(results: Results, label: str) -> str:
     """The steps with which runs failed."""
     steps = set(results.study.tables.vary["time.step"]) - set(errors_by(results)[label])
-    return ", ".join(f"{step:g}" for step in sorted(steps, reverse=True)) or "none"
+    return f"steps of {', '.join(f'{step:g}' for step in sorted(steps, reverse=True))} s" if steps else "no step"
 
 
 ABOUT = """Three ways through contacts: one explicit substep a step (`contact.substeps = 1`), as many
 substeps as contacts need (the default), and one implicit step (`contact.stepping = "implicit"`). Runs that failed are
-in the tables and not in the plots: without a fluid one explicit substep failed with steps of {dry_failed} s, in a fluid
-with steps of {wet_failed} s. Seconds are of a machine that did other work as well.
+in the tables and not in the plots: without a fluid one explicit substep failed with {dry_failed}, in a fluid
+with {wet_failed}. Seconds are of a machine that did other work as well.
 
 **What to choose.** Substeps, unless there is a reason: with the longest step, {dry_long:g} s without a fluid and
 {wet_long:g} s in one, their error is {dry_substeps:.1e} and {wet_sub:.1e}, that of the implicit step {dry_implicit:.1e}

@@ -28,10 +28,10 @@ END = 0.004
 
 
 def scene(end: float = END, **contact: float) -> Scene:
-    """Two disks without a fluid, with outputs after each quarter."""
+    """Two disks without a fluid, with an output half way."""
     tables = rigidfluid.load_scene(SCENES / "dry_bounce.toml", [f"time.end={end}", "time.step=5e-4"]).to_dict()
     tables["contact"] |= contact
-    tables["output"]["every"] = end / 4
+    tables["output"]["every"] = end / 2
     return rigidfluid.scene_from_dict(tables)
 
 
