@@ -226,7 +226,8 @@ With the lossy law the pair {stays}: its gap stays below {largest:.3f} cm. With 
 (`contact.restitution = 1`) it {bounces}, up to {bounce:.3f} cm. Until kissing the run with the coarse mesh and step is
 up to {before[0]:.4f} cm from the shipped one, that with the long step alone {before[1]:.4f} cm: two meshes and two
 steps {agree} within {AGREEMENT:.1%} of the box. Until the end they are {until_end[0]:.3f} cm and {until_end[1]:.3f} cm
-from it, and the two elastic runs {bounced:.3f} cm from each other; to that distance the time after kissing is reproducible."""
+from it, and the two elastic runs {bounced:.3f} cm from each other; to that distance the time after kissing is
+reproducible."""
 
 
 def about_offsets(offsets: dict[float, Pair]) -> str:
