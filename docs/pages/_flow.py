@@ -19,7 +19,8 @@ from rigidfluid.reports.style import BODY
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:
     """Vorticity in a part of the domain, ``height`` high, about the bodies; colours go up to ``scale``."""
     series = dict(read_pvd(run.folder / "fields.pvd"))
-    figure = Figure(figsize=(8.0, 5.2), dpi=120, layout="constrained")
+    panel = 8.0 / len(moments)
+    figure = Figure(figsize=(8.0, panel * height / _width(run) + 1.3), dpi=120, layout="constrained")
     for axes, moment in zip(figure.subplots(1, len(moments)), moments, strict=True):
         time = min(series, key=lambda at: abs(at - moment))
         triangles, values = _vorticity(series[time])
@@ -41,6 +42,11 @@ def _vorticity(path: Path) -> tuple[Triangulation, np.ndarray]:
     sides, jumps = corners[:, 1:] - corners[:, :1], velocity[:, 1:] - velocity[:, :1]
     gradient = np.linalg.solve(sides, jumps)  # [cell, derivative by, of]
     return triangles, gradient[:, 0, 1] - gradient[:, 1, 0]
+
+
+def _width(run: Run) -> float:
+    domain = run.summary["scene"]["domain"]
+    return float(domain["upper"][0] - domain["lower"][0])
 
 
 def _mean_height(run: Run, time: float) -> float:

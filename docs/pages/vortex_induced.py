@@ -85,5 +85,5 @@ vortex method in an unbounded fluid; the figures are taken from works that quote
 k* = 19.8. Where vortices and cylinder swing together (lock-in) it is not with the frequency at which a fixed cylinder
 sheds. The cylinder swings {swings}.
 
-Energy that is created comes from coarse cells far downstream, from when vortices are there; a second `[[mesh.refine]]`
-there is the remedy."""
+Energy that is created comes from coarse cells far downstream, from when vortices are there; a second
+`[[mesh.refine]]` there is the remedy."""

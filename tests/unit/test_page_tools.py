@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,9 @@ from benchmark_scripts import benchmark
 from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
-from page_tools.inputs import SEVERAL, changed, hashes, merged, sources
+from page_tools.inputs import LOADED, SEVERAL, changed, hashes, merged, sources
 from page_tools.kept_run import keep_run
-from page_tools.record import CostTable
+from page_tools.record import CostTable, read_record
 from page_tools.stale import stale
 
 import rigidfluid
@@ -121,6 +122,20 @@ def test_a_run_that_was_made_elsewhere_is_used_and_said_to_be_of_unknown_sources
     assert "out/validation/page/run" in changed(work.inputs)
 
 
+def test_a_run_of_unknown_sources_stays_one_when_it_goes_on(tmp_path: Path) -> None:
+    stop_at(tmp_path / "page" / "run", 0.65 * END)
+    (tmp_path / "page" / "run" / "made.json").unlink()
+    work = Work("page", runs=tmp_path)
+    work.run("run", scene())
+    assert work.outdated == {"run": ["out/validation/page/run"]}
+
+
+def test_a_file_that_is_edited_while_a_page_is_made_counts_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "src/rigidfluid/core/run/stepper.py"
+    monkeypatch.setitem(LOADED, name, "as it was")
+    assert changed(sources()) == [name]
+
+
 def test_inputs_are_what_computes_and_the_files_that_were_read(tmp_path: Path) -> None:
     work = Work("page", runs=tmp_path)
     work.run("run", "dry_bounce.toml", [f"time.end={END}"])
@@ -136,6 +151,15 @@ def test_inputs_are_what_computes_and_the_files_that_were_read(tmp_path: Path) -
     assert not [name for name in work.inputs if "reports" in name or "page_tools" in name or "/unit/" in name]
     assert changed(work.inputs) == []
     assert work.outdated == {}
+
+
+def test_a_page_is_no_input_of_its_runs(tmp_path: Path) -> None:
+    """Its text may be edited, and its runs are no older for that."""
+    import_module("pages.detectors")
+    work = Work("page", runs=tmp_path)
+    run = work.run("run", "dry_bounce.toml", [f"time.end={END}"])
+    assert "docs/pages/detectors.py" in work.inputs
+    assert "docs/pages/detectors.py" not in read_record(run.folder)
 
 
 def test_a_study_is_kept_with_its_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

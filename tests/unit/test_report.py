@@ -21,6 +21,7 @@ from rigidfluid.reports import report
 PNG = b"\x89PNG\r\n"
 FIELD_PICTURES = {"speed_field.png", "mesh.png", "smallest_gap.png"}
 CURVES = {"position", "speed", "gap", "force", "energy"}
+OF_A_FALL = CURVES | {"coefficients", "step"}
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def copy(fall: Path, tmp_path: Path) -> Path:
 
 def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
     names = {path.name for path in written}
-    assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in CURVES | {"step"} for kind in ("png", "svg")} | {
+    assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in OF_A_FALL for kind in ("png", "svg")} | {
         "report.html"
     }
     assert all(path.stat().st_size > 0 for path in written)
@@ -57,7 +58,7 @@ def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
 def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
     page = written[-1].read_text(encoding="utf-8")
     summary = json.loads((fall / "summary.json").read_text())
-    assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | CURVES | {"step"})
+    assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | OF_A_FALL)
     assert 'src="' not in page.replace('src="data:', "")
     for figure in (summary["reynolds"], summary["smallest_gap"], summary["energy"]["dissipation"]):
         assert f"{figure:.5g}" in page
