@@ -66,13 +66,13 @@ class Measured:
         rows = [
             (
                 f"`{key} = {value}`" if value else key,
-                f"{self.figures[key, value]:.5f}",
+                f"{self.figures[key, value]:.6f}",
                 f"{self.error((key, value)):.1e}",
                 *_cost(run),
             )
             for (key, value), run in self.runs.items()
         ]
-        rows.append(("finest", f"{self.reference:.5f}", "", *_cost(self.finest)))
+        rows.append(("finest", f"{self.reference:.6f}", "", *_cost(self.finest)))
         head = ("setting", self.study.name, "error", "unknowns", "steps", "new meshes", "CPU [s]")
         finest = ", ".join(f"`{override}`" for override in self.study.finest)
         return f"""\

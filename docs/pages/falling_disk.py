@@ -56,9 +56,9 @@ STUDY = OneKnob(
 PROGRAMS = """\
 ## Beside other programs
 
-The same figure, the largest error of the three passing times, against CPU seconds: this program, an NGSolve script for
-this one scene, and OpenFOAM with overset meshes. The settings, what the others leave out, and when each was measured
-are on [a page of its own](work_precision.md), made by `python benchmarks/work_precision.py`.
+The largest error of the three passing times, over the last of them, against CPU seconds: this program, an NGSolve
+script for this one scene, and OpenFOAM with overset meshes. The settings, what the others leave out, and when each was
+measured are on [a page of its own](work_precision.md), made by `python benchmarks/work_precision.py`.
 
 ![Error against CPU seconds](work_precision.png)"""
 

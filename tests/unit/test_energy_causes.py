@@ -98,20 +98,22 @@ def test_a_body_that_rests_on_a_wall_is_no_impact() -> None:
     assert np.ptp(history.energy["residual_steps"][late]) > 0.0
 
 
-def leaky(step: float, size_body: float = 0.6) -> History:
+def leaky(step: float, size: float) -> History:
     """Flow through a throat whose curved walls let it slip, past a small disk in a corner."""
     tables = throat(SLIPPERY, end=3.0, step=step).to_dict()
     still = {"type": "sphere", "radius": 0.05, "density": 1.5, "position": [-2.8, 1.4], "fixed": True}
     tables["body"], tables["contact"] = [still], {}
-    tables["mesh"] |= {"size": 0.8, "size_body": size_body, "order": 1}
+    tables["mesh"] |= {"size": size, "size_body": min(0.6, size), "order": 1}
     return rigidfluid.run(rigidfluid.scene_from_dict(tables))
 
 
 def test_coarse_curved_slip_walls_leak_by_the_mesh_alone() -> None:
-    coarse, fine = shares(leaky(0.04)), shares(leaky(0.02))
+    coarse, fine, fine_mesh = (shares(leaky(step, size)) for step, size in ((0.04, 0.8), (0.02, 0.8), (0.04, 0.12)))
     assert abs(coarse["mesh"]) > 1e-5
     assert fine["mesh"] == pytest.approx(coarse["mesh"], rel=0.02)
     assert abs(fine["steps"]) < 0.4 * abs(coarse["steps"])
+    assert abs(fine_mesh["mesh"]) < 0.2 * abs(coarse["mesh"])
+    assert fine_mesh["steps"] == pytest.approx(coarse["steps"], rel=0.3)
 
 
 def gust(step: float) -> Scene:

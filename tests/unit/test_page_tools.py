@@ -93,6 +93,15 @@ def test_a_stopped_run_of_another_scene_is_replaced(tmp_path: Path) -> None:
     assert rows(tmp_path / "run")[0]["time"] == pytest.approx(5e-4)
 
 
+def test_a_stopped_run_whose_checkpoint_cannot_be_read_is_replaced(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stop_at(tmp_path / "run", 0.65 * END)
+    (tmp_path / "run" / "state.h5").write_bytes(b"of another format")
+    assert keep_run(scene(), tmp_path / "run").summary["status"] == "complete"
+    assert "its checkpoint cannot be read" in capsys.readouterr().out
+
+
 def test_fresh_runs_anew_what_is_complete(tmp_path: Path) -> None:
     keep_run(scene(), tmp_path / "run")
     before = (tmp_path / "run" / "summary.json").stat().st_mtime_ns

@@ -92,6 +92,17 @@ def test_run_without_a_fluid(tmp_path: Path) -> None:
     assert "no fluid" in written[-1].read_text(encoding="utf-8")
 
 
+def test_a_page_warns_of_energy_as_the_command_does(tmp_path: Path) -> None:
+    coarse = ["contact.substeps=1", "time.end=0.03", "time.step=3e-4"]
+    history = rigidfluid.run(rigidfluid.load_scene(SCENES / "dry_bounce.toml", coarse), tmp_path)
+    report(tmp_path)
+    page = unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
+    warnings = history.summary["energy"]["warnings"]
+    assert warnings
+    for warning in warnings:
+        assert f"Serious warning: {warning['text']}. {warning['remedy']}" in page
+
+
 def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:
     places = [(x, y) for x in np.linspace(0.1, 0.9, 5) for y in np.linspace(0.1, 0.9, 5)]
     body = [{"type": "sphere", "radius": 0.05, "density": 1.0, "position": list(map(float, place))} for place in places]
