@@ -25,7 +25,9 @@ SEVERAL = "several"
 
 
 def sources() -> Inputs:
-    """The modules of this repository that are loaded now and may compute.
+    """The modules of this repository that are loaded and may compute.
+
+    A file that has been edited since it was loaded counts as it was when it was first asked for.
 
     Raises
     ------
@@ -35,7 +37,13 @@ def sources() -> Inputs:
     if not Path(rigidfluid.__file__).is_relative_to(ROOT / "src"):
         raise SystemExit(f"rigidfluid is loaded from {rigidfluid.__file__}; put {ROOT / 'src'} on PYTHONPATH")
     files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
-    return hashes(path for path in map(Path, filter(None, files)) if _computes(path))
+    loaded = {path for path in map(Path, filter(None, files)) if _computes(path)}
+    LOADED.update(hashes(path for path in loaded if str(path.relative_to(ROOT)) not in LOADED))
+    return dict(LOADED)
+
+
+LOADED: Inputs = {}
+"""What has been asked for of this process."""
 
 
 def all_sources() -> Inputs:

@@ -17,7 +17,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.writer import CHECKPOINT
 from rigidfluid.core.run.run import Progress
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import StepError
+from rigidfluid.errors import OutputError, StepError
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,7 @@ _SAID = {
     "complete": "kept",
     "stopped": "goes on",
     "another": "runs anew, since what is there is of another scene",
+    "unreadable": "runs anew, since it was stopped and its checkpoint cannot be read",
     "nothing": "runs",
     "fresh": "runs anew",
 }
@@ -89,7 +90,10 @@ def _found(scene: Scene, folder: Path) -> str:
             return "complete" if told["scene"] == scene.to_dict() else "another"
     if not (folder / CHECKPOINT).exists():
         return "another" if summary.exists() else "nothing"
-    kept = json.loads(read_checkpoint(folder / CHECKPOINT, ALONE).scene)
+    try:
+        kept = json.loads(read_checkpoint(folder / CHECKPOINT, ALONE).scene)
+    except OutputError:
+        return "unreadable"
     return "stopped" if kept == scene.to_dict() else "another"
 
 

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import TextIO
 
 from page_tools.inputs import Inputs, merged, sources
-from page_tools.places import GENERATORS, ROOT
 from rigidfluid.core.run.run import Progress
 
 RECORD, PROGRESS = "made.json", "progress.csv"
-SOLVERS = ("src/", "plugins/")
-"""Where those sources are that results follow from once their scene is given."""
+SOLVERS = ("src/", "plugins/", "out/")
+"""Where those inputs are that results follow from once their scene is given: sources, and runs without a record."""
 COLUMNS = ("time", "step", "wall_time", "cpu_seconds")
 
 
@@ -22,8 +21,11 @@ def read_record(folder: Path) -> Inputs:
     """What results were made from; of those that were made without these tools, that nothing is known."""
     if not (folder / RECORD).exists():
         return {f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"}
-    known: Inputs = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-    return {name: one for name, one in known.items() if name.startswith(SOLVERS)}
+    return _of_solvers(json.loads((folder / RECORD).read_text(encoding="utf-8")))
+
+
+def _of_solvers(inputs: Inputs) -> Inputs:
+    return {name: known for name, known in inputs.items() if name.startswith(SOLVERS)}
 
 
 class Recorder:
@@ -32,21 +34,13 @@ class Recorder:
     def __init__(self, folder: Path, resumed: bool) -> None:
         self._path = folder / RECORD
         self._before = read_record(folder) if resumed else {}
-        self._mine: Inputs = {}
-
-    @property
-    def began(self) -> bool:
-        """Whether anything was noted."""
-        return bool(self._mine)
+        self.began = False
 
     def note(self) -> None:
-        """Note what is loaded now, but no page: results follow from their scene or study, whoever asks for them.
-
-        A file that was loaded before may have been edited since, and counts as it was.
-        """
-        pages = f"{GENERATORS.relative_to(ROOT)}/"
-        self._mine = {name: value for name, value in sources().items() if not name.startswith(pages)} | self._mine
-        self._path.write_text(json.dumps(merged(self._before, self._mine), indent=0) + "\n", encoding="utf-8")
+        """Note what is loaded now, but no page: results follow from their scene or study, whoever asks for them."""
+        self.began = True
+        known = merged(self._before, _of_solvers(sources()))
+        self._path.write_text(json.dumps(known, indent=0) + "\n", encoding="utf-8")
 
 
 class CostTable:

@@ -33,7 +33,7 @@ class Work:
         self.folder, self._fresh = runs / name, fresh
         self._files: set[Path] = set()
         self._kept: dict[str, Inputs] = {}
-        self._loaded = sources()
+        sources()  # as they are now, if they are edited while it goes on
 
     def run(self, label: str, scene: str | Scene, overrides: Iterable[str] = (), *, may_stop: bool = False) -> Run:
         """A scene, run in out/validation/NAME/LABEL, or taken from there.
@@ -87,7 +87,7 @@ class Work:
     @property
     def inputs(self) -> Inputs:
         """All that the page is made from: files, what is loaded now, and what was when its runs were made."""
-        found = sources() | self._loaded | hashes(self._files)
+        found = sources() | hashes(self._files)
         for kept in self._kept.values():
             found = merged(found, kept)
         return found

@@ -13,7 +13,7 @@ from benchmark_scripts import benchmark
 from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
-from page_tools.inputs import SEVERAL, changed, hashes, merged, sources
+from page_tools.inputs import LOADED, SEVERAL, changed, hashes, merged, sources
 from page_tools.kept_run import keep_run
 from page_tools.record import CostTable, read_record
 from page_tools.stale import stale
@@ -93,6 +93,15 @@ def test_a_stopped_run_of_another_scene_is_replaced(tmp_path: Path) -> None:
     assert rows(tmp_path / "run")[0]["time"] == pytest.approx(5e-4)
 
 
+def test_a_stopped_run_whose_checkpoint_cannot_be_read_is_replaced(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stop_at(tmp_path / "run", 0.65 * END)
+    (tmp_path / "run" / "state.h5").write_bytes(b"of another format")
+    assert keep_run(scene(), tmp_path / "run").summary["status"] == "complete"
+    assert "its checkpoint cannot be read" in capsys.readouterr().out
+
+
 def test_fresh_runs_anew_what_is_complete(tmp_path: Path) -> None:
     keep_run(scene(), tmp_path / "run")
     before = (tmp_path / "run" / "summary.json").stat().st_mtime_ns
@@ -120,6 +129,20 @@ def test_a_run_that_was_made_elsewhere_is_used_and_said_to_be_of_unknown_sources
     assert run.cpu_seconds == run.summary["cpu_time"]
     assert work.outdated == {"run": ["out/validation/page/run"]}
     assert "out/validation/page/run" in changed(work.inputs)
+
+
+def test_a_run_of_unknown_sources_stays_one_when_it_goes_on(tmp_path: Path) -> None:
+    stop_at(tmp_path / "page" / "run", 0.65 * END)
+    (tmp_path / "page" / "run" / "made.json").unlink()
+    work = Work("page", runs=tmp_path)
+    work.run("run", scene())
+    assert work.outdated == {"run": ["out/validation/page/run"]}
+
+
+def test_a_file_that_is_edited_while_a_page_is_made_counts_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "src/rigidfluid/core/run/stepper.py"
+    monkeypatch.setitem(LOADED, name, "as it was")
+    assert changed(sources()) == [name]
 
 
 def test_inputs_are_what_computes_and_the_files_that_were_read(tmp_path: Path) -> None:
