@@ -65,7 +65,7 @@ def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     shapes, slopes, weight = _tabulated(facet_points.shape[2])
     tangents = [slope @ facet_points for slope in slopes]
-    area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(*tangents)
+    area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(tangents[0], tangents[1])
     return shapes, np.asarray(weight[:, None] * area)
 
 
