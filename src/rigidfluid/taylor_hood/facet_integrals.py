@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
         Where the nodes of each facet are [length].
     """
     shapes, slopes, weight = _tabulated(facet_points.shape[2])
-    tangents = [slope @ facet_points for slope in slopes]
+    tangents: list[Any] = [slope @ facet_points for slope in slopes]
     area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(*tangents)
     return shapes, np.asarray(weight[:, None] * area)
 
