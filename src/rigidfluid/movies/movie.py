@@ -82,7 +82,7 @@ def movie(folder: Path, out: Path | None = None, look: Look | None = None, progr
     SceneError, PluginError
         Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
     """
-    look, results = look or Look(), read_results(Path(folder))
+    look, results = look or Look(), read_results(Path(folder), motion_only=True)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
     shot, frames = shot_of(results, look.follow, look.window), _frames(results)
     scale = _scale(frames, shot, look)
