@@ -127,16 +127,16 @@ def figures_of(pairs: dict[str, Pair]) -> str:
 
 
 def reproducible(pairs: dict[str, Pair]) -> str:
-    """How far apart the runs are before and after tumbling."""
-    fine = pairs["fine"]
-    before = {name: fine.off(one, fine.kiss) for name, one in pairs.items() if name != "fine"}
-    after = {name: fine.off(one, END) for name, one in pairs.items() if name != "fine"}
-    worst = max(after.values())
-    verdict = "no more than" if worst < 2 * fine.radius else "more than"
-    told = "; ".join(f"{RUNS[name][0]}: {before[name]:.4f} cm and {after[name]:.3f} cm" for name in before)
+    """How far the runs are from the finest, before and after tumbling."""
+    *others, last = pairs
+    finest = pairs[last]
+    before = {name: finest.off(pairs[name], finest.kiss) for name in others}
+    after = {name: finest.off(pairs[name], END) for name in others}
+    verdict = "no more than" if max(after.values()) < 2 * finest.radius else "more than"
+    told = "; ".join(f"{RUNS[name][0]}: {before[name]:.4f} cm and {after[name]:.3f} cm" for name in others)
     return f"""\
-Largest distance of a disk from where it is in the fine run, until kissing and until the end: {told}. At
-the end the runs are {verdict} a diameter ({2 * fine.radius:g} cm) apart, though tumbling grows from .001 cm."""
+Largest distance of a disk from where it is in the last run, until kissing and until the end: {told}. At the end the
+runs are {verdict} a diameter ({2 * finest.radius:g} cm) apart, though tumbling grows from .001 cm."""
 
 
 def at_rest(one: Pair) -> str:

@@ -75,8 +75,8 @@ class Face:
         shapes, area = area_at_points(node_points[self.facet_nodes])
         if self.condition.normal is not None:
             area = np.linalg.norm(area, axis=2, keepdims=True) * self.condition.normal
-        u, c = (np.einsum("qi,fid->fqd", shapes, field[self.facet_nodes]) for field in (velocity, carrier))
-        return 0.5 * float(np.einsum("fqd,fqd,fqe,fqe->", u, u, c, area))
+        u, c = (shapes @ field[self.facet_nodes] for field in (velocity, carrier))
+        return 0.5 * float(np.sum(np.sum(u * u, axis=2) * np.sum(c * area, axis=2)))
 
     def in_and_out(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
         """What flows in, and what flows out (negative), (2,) [length^d/time]; the sum of both, and 0, if it is curved.

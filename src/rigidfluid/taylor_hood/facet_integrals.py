@@ -63,11 +63,10 @@ def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
     facet_points : (F, 3 | 6, d) array
         Where the nodes of each facet are [length].
     """
-    d = facet_points.shape[2]
-    at, weight = _rule(d)
-    tangents = [np.einsum("qi,fid->fqd", slope, facet_points) for slope in _slopes(at)]
-    area = _turned(tangents[0]) if d == 2 else np.cross(*tangents)
-    return _shapes(at), np.asarray(weight[:, None] * area)
+    shapes, slopes, weight = _tabulated(facet_points.shape[2])
+    tangents = [slope @ facet_points for slope in slopes]
+    area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(tangents[0], tangents[1])
+    return shapes, np.asarray(weight[:, None] * area)
 
 
 def into_fluid(facets: IntArray, cells: IntArray, points: FloatArray) -> IntArray:
@@ -127,6 +126,13 @@ def _rule(dimension: int) -> tuple[FloatArray, FloatArray]:
     u, v = np.array(list(product(root, root))).T
     share = np.outer(weight * (1.0 - root), weight).ravel()
     return np.column_stack([(1.0 - u) * (1.0 - v), u, v * (1.0 - u)]), share
+
+
+@cache
+def _tabulated(dimension: int) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+    """φⱼ and its slopes at the points of Gauss' rule, and the weights."""
+    at, weight = _rule(dimension)
+    return _shapes(at), _slopes(at), weight
 
 
 @cache

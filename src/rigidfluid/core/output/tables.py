@@ -79,6 +79,12 @@ def read_rows(path: Path) -> list[Row]:
         return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
 
 
+def read_header(path: Path) -> list[str]:
+    """The columns' names."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return next(csv.reader(file), [])
+
+
 def read_columns(path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:
     """Columns of a table on disk as arrays, with no more of it held meanwhile; raises ValueError as read_rows does."""
     with path.open(newline="", encoding="utf-8") as file:
