@@ -148,12 +148,14 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
     axes = figure.add_subplot(xlabel=f"{results.axes[shot.axes[0]]} [length]")
     axes.set_ylabel(f"{results.axes[shot.axes[1]]} [length]")
     axes.grid(visible=False)
-    axes.locator_params(nbins=5)
+    axes.locator_params(axis="x", nbins=1 if size[1] > 4.0 * size[0] else 4)
+    axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
     image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
     if results.series:
         unit = {"speed": "length/time", "vorticity": "1/time", "pressure": "force/area"}[look.show]
         colours = ScalarMappable(Normalize(scale.lowest, scale.highest), scale.map)
-        figure.colorbar(colours, ax=axes, label=f"{look.show} [{unit}]", shrink=0.8, extend="max")
+        extend = "both" if scale.lowest < 0.0 else "max"
+        figure.colorbar(colours, ax=axes, label=f"{look.show} [{unit}]", shrink=0.8, extend=extend)
     return figure, axes, image
 
 
