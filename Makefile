@@ -5,7 +5,7 @@ BIN := .venv/bin
 
 PLUGINS := $(wildcard plugins/*)
 
-.PHONY: run test test-plugins test-dolfinx install lint validate bench clean
+.PHONY: run test test-plugins test-dolfinx install lint validate stale bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -26,6 +26,9 @@ test-dolfinx:
 validate: .venv/.installed-test
 	$(BIN)/pytest -m validation
 	$(BIN)/python docs/make_validation.py
+
+stale: .venv/.installed
+	$(BIN)/python docs/make_validation.py --stale
 
 lint: .venv/.installed-dev
 	$(BIN)/ruff check

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from disk_under_way import MESHES, OUTPUT_EVERY, falling
 from stages import STAGES, measured
+from written_page import write_page
 
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.errors import RigidfluidError
@@ -211,7 +212,7 @@ def main() -> None:
         arguments.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     if arguments.page:
         command = " ".join(["python benchmarks/backends.py", *sys.argv[1:]])
-        arguments.page.write_text(page(found, command), encoding="utf-8")
+        write_page(arguments.page, page(found, command))
         plot(found, arguments.page.with_suffix(".png"))
 
 

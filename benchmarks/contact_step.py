@@ -22,6 +22,7 @@ sys.path.append(str(ROOT / "tests" / "support"))
 
 import fluid_contacts  # noqa: E402
 import numpy as np  # noqa: E402
+from written_page import write_page  # noqa: E402
 
 from rigidfluid.core.run.process import one_openblas_thread  # noqa: E402
 from rigidfluid.core.run.simulation import Simulation  # noqa: E402
@@ -132,7 +133,7 @@ def main() -> None:
             print(*line, sep=" | ", flush=True)
     table = "\n".join("| " + " | ".join(line) + " |" for line in lines)
     if page is not None:
-        page.write_text(PAGE.format(date=datetime.date.today(), table=table), encoding="utf-8")
+        write_page(page, PAGE.format(date=datetime.date.today(), table=table))
 
 
 PAGE = """# Steps with contacts

@@ -15,6 +15,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from written_page import write_page
+
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import load_scene
@@ -125,7 +127,7 @@ def main() -> None:
     text += f"\n\nMean iterations differ by a factor of {max(means) / min(means):.2f} between all cases. Memory at its"
     text += f" highest, of all processes: {memory / 2**30:.1f} GiB.\n"
     if speaks and arguments.page:
-        arguments.page.write_text(text, encoding="utf-8")
+        write_page(arguments.page, text)
 
 
 if __name__ == "__main__":

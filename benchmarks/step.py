@@ -22,6 +22,7 @@ from disk_under_way import MESHES, falling
 from ngsolve_step import RENEWED_EVERY, WAYS, Frame, time_ngsolve
 from stages import measured
 from threadpoolctl import threadpool_limits
+from written_page import write_page
 
 from rigidfluid.core.run.simulation import Simulation
 
@@ -132,7 +133,7 @@ def main() -> None:
         rows.append(compare(thousands, arguments.steps))
         show(rows[-1])
     if arguments.page:
-        arguments.page.write_text(page(rows), encoding="utf-8")
+        write_page(arguments.page, page(rows))
     if arguments.json:
         arguments.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
 

@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
+from written_page import write_page
 
 FOLDER = Path(__file__).parent
 SCENE = FOLDER.parent / "scenes" / "falling_disk.toml"
@@ -168,7 +169,7 @@ def main() -> None:
     if arguments.page:
         picture = arguments.page.with_suffix(".png")
         plot([*rows, *stored()], picture)
-        arguments.page.write_text(page([*rows, *stored()], picture.name), encoding="utf-8")
+        write_page(arguments.page, page([*rows, *stored()], picture.name))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -404,33 +404,24 @@ def _print_end(history: History, folder: Path) -> None:
             f"The latest failure, {summary['latest_failed_remesh']}",
             "yellow",
         )
-    _print_energy(history)
+    _print_energy(summary["energy"])
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 
 
-def _print_energy(history: History) -> None:
-    """What came from nowhere and what vanished, and the likely causes where it is much."""
-    from rigidfluid.core.output.energy_account import (
-        NOTICEABLE,
-        contacts_pushed,
-        energy_account,
-        energy_warnings,
-        per_cent,
-    )
+def _print_energy(energy: Mapping[str, Any]) -> None:
+    """What came from nowhere, what vanished and what is missing at the end; where it is much, the causes."""
+    from rigidfluid.core.output.energy_account import per_cent
 
-    energy = history.energy
-    account = energy_account(energy)
-    friction = f", friction of impacts {per_cent(account.path_friction)} at most" if account.path_friction else ""
+    put_in, friction = energy["put_in"], ""
+    if energy["path_friction"] and put_in:
+        friction = f", friction of impacts {per_cent(energy['path_friction'] / put_in)} at most"
     _print(
-        f"energy: {per_cent(account.created)} created, {per_cent(account.lost)} lost{friction}, "
-        f"of {_figure(account.put_in)} put in"
+        f"energy: {per_cent(energy['created'])} created, {per_cent(energy['lost'])} lost{friction}, "
+        f"{per_cent(energy['unaccounted'])} unaccounted for at the end, of {_figure(put_in)} put in"
     )
-    if max(account.created, account.lost) < NOTICEABLE:
-        return  # the table of bodies is large, and needed for a cause alone
-    forces = history.table("bodies", [f"cf{axis}" for axis in "xyz"[: history.dimension]])
-    for warning in energy_warnings(energy, contacts_pushed(forces, len(energy["time"]))):
-        grade, style = ("serious warning", "red") if warning.serious else ("warning", "yellow")
-        _print(f"{grade}: {warning.text}. {warning.remedy}", style)
+    for warning in energy["warnings"]:
+        grade, style = ("serious warning", "red") if warning["serious"] else ("warning", "yellow")
+        _print(f"{grade}: {warning['text']}. {warning['remedy']}", style)
 
 
 def _print_features(report: Report) -> None:

@@ -3,6 +3,8 @@ import pytest
 from touching import unstacked
 
 from rigidfluid.core.contact.repulsion import Repulsion
+from rigidfluid.core.contact.restitution import FilmLoss, Restitution
+from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.forces.barrier import BarrierLaw
@@ -31,6 +33,17 @@ class TestRepulsions(ForceLawContract):
     @pytest.fixture(params=EPSILONS.values(), ids=EPSILONS)
     def law(self, part: type[Repulsion], request: pytest.FixtureRequest) -> ForceLaw:
         return part(part.Options(**request.param), RANGE, LOADS)
+
+
+class TestRestitution(ForceLawContract):
+    @pytest.fixture(params=[CentreLaw, ContactLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
+    def repulsion(self, request: pytest.FixtureRequest) -> ForceLaw:
+        return request.param(request.param.Options(epsilon=5e-6), RANGE)
+
+    @pytest.fixture(params=["of its own", "by the Stokes number"])
+    def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
+        film = Film(0.1, np.array([0.7, 0.4]), LOADS)
+        return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film))
 
 
 class TestSpringDashpot(ForceLawContract):

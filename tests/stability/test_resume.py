@@ -63,9 +63,13 @@ def test_killed_twice_and_resumed_twice(uninterrupted, tmp_path):
     assert contents(out) == expected
 
 
-def test_a_run_taken_up_between_the_impacts_of_a_disk_in_a_fluid(tmp_path):
+LOSSY = ["contact.restitution=0.6", "contact.restitution_stokes=10.0"]
+
+
+@pytest.mark.parametrize("contact", [[], LOSSY], ids=["elastic", "with losses"])
+def test_a_run_taken_up_between_the_impacts_of_a_disk_in_a_fluid(tmp_path, contact):
     """Outputs every two steps, so that some lie within contacts: the model of the bodies near them goes on."""
-    settings = ["output.every=0.002", "time.step=0.001"]
+    settings = ["output.every=0.002", "time.step=0.001", *contact]
     whole, first = (
         load_scene(SCENES / "bounce_in_fluid.toml", [*settings, f"time.end={end}"]) for end in (0.016, 0.006)
     )

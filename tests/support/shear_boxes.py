@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.api import Scene, Simulation, scene_from_dict
+from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.core.output.history import History
 
 SCENE = Path(__file__).parents[2] / "scenes" / "dumbbell_in_shear.toml"
 _MOMENT, _INERTIA = 1e-4, 1e-8
@@ -54,19 +55,12 @@ def without_box(halves: tuple[float, float], values: tuple[float, float]) -> flo
     return float((weights @ [-values[0], values[1]]) / (weights[1] - weights[0]))
 
 
-def angles(given: Scene) -> np.ndarray:
+def angles(history: History) -> np.ndarray:
     """Time and angle from the flow, unbroken, after each step, (steps, 2)."""
-    it, rows = Simulation(given), []
-
-    def look(now: Simulation) -> None:
-        axis = now.bodies["dumbbell.right"].position - now.bodies["dumbbell.left"].position
-        rows.append([now.time, np.arctan2(axis[1], axis[0])])
-
-    it.observe(look)
-    it.go()
-    found = np.array(rows)
-    found[:, 1] = np.unwrap(found[:, 1])
-    return found
+    bodies = history.bodies
+    left, right = (bodies["body"] == f"dumbbell.{side}" for side in ("left", "right"))
+    angle = np.arctan2(*(bodies[name][right] - bodies[name][left] for name in ("y", "x")))
+    return np.column_stack([bodies["time"][left], np.unwrap(angle)])[1:]
 
 
 def time_of(angle: float, turned: np.ndarray) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,8 @@ import numpy as np
 
 import rigidfluid
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.history import History
+from rigidfluid.core.scene.scene import Scene
 
 SCENE = Path(__file__).parents[2] / "scenes" / "swimmer_3d.toml"
 BACK = 'mechanism.0.order=["right in", "left in", "right out", "left out"]'
@@ -36,17 +37,20 @@ class Swim:
         return float(self.strokes.sum())
 
 
-def swim(half: float = 20.0, far: str = "wall", stroke: float = 4.0, overrides: Iterable[str] = ()) -> Swim:
+def swim_scene(half: float = 20.0, far: str = "wall", stroke: float = 4.0, overrides: Iterable[str] = ()) -> Scene:
     """One cycle in a cube of side 2 ``half`` whose faces are of type ``far``; each stroke takes a unit of time."""
-    start = time.process_time()
     motion = [f"mechanism.0.amplitude={stroke}", f"mechanism.0.speed={stroke}"]
-    history = rigidfluid.run(rigidfluid.load_scene(SCENE, [*_cube(half, far), *motion, *overrides]))
+    return rigidfluid.load_scene(SCENE, [*_cube(half, far), *motion, *overrides])
+
+
+def swim_of(history: History) -> Swim:
+    """What is measured of a run of a `swim_scene`."""
     bodies, summary = history.bodies, history.summary
     middle = bodies["body"] == "swimmer.middle"
     ends = np.isclose(bodies["time"][middle] % 1.0, 0.0)
-    across = np.hypot(bodies["y"][middle][-1], bodies["z"][middle][-1])
-    seconds = time.process_time() - start
-    return Swim(np.diff(bodies["x"][middle][ends]), float(across), summary["unknowns"], summary["steps"], seconds)
+    across = float(np.hypot(bodies["y"][middle][-1], bodies["z"][middle][-1]))
+    cost = summary["unknowns"], summary["steps"], summary["cpu_time"]
+    return Swim(np.diff(bodies["x"][middle][ends]), across, *cost)
 
 
 def drag(places: Sequence[float], half: float, far: str = "wall", overrides: Iterable[str] = ()) -> float:

@@ -567,3 +567,25 @@ def test_a_polygon_is_told_by_its_facets_volume_and_centre() -> None:
     expected = {"facets": 6, "volume": 0.05, "centre_x": (0.04 * 3.2 + 0.01 * 3.05) / 0.05, "centre_y": 1.07}
     assert answer.found == pytest.approx(expected)
     assert found("shape", BALL) == []
+
+
+def test_a_law_without_losses_is_told_what_balls_in_liquids_do():
+    thrown = BALL | {"velocity": [0.0, -1.0]}
+    contact = {"impact_speed": 2.0}
+    finding = only("rebound", thrown, contact=contact, **WET, **MESH)
+    stokes = (3.0 + 1.0) * 2.0 * RADIUS * 2.0 / (9.0 * 0.01)
+    assert finding.grade == "note"
+    assert finding.found["stokes_number"] == pytest.approx(stokes)
+    assert finding.found["rebound"] == pytest.approx(np.exp(-35.0 / stokes))
+    assert "contact.restitution" in finding.text
+
+
+def test_slow_impacts_in_a_liquid_do_not_come_back():
+    finding = only("rebound", contact={"impact_speed": 0.1}, **WET, **MESH)
+    assert finding.found["rebound"] == 0.0
+    assert "do not come back" in finding.text
+
+
+@pytest.mark.parametrize("contact", [{"restitution": 0.8}, {"restitution_stokes": 35.0}])
+def test_a_law_with_losses_is_told_nothing(contact):
+    assert not found("rebound", contact=contact | {"impact_speed": 0.1}, **WET, **MESH)

@@ -18,7 +18,6 @@ import rigidfluid.core.run.run
 from rigidfluid import __version__
 from rigidfluid.cli import app
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import columns
 
 SCENE = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
 Install = Callable[..., Path]
@@ -200,22 +199,15 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "failed_remeshes": 2,
         "latest_failed_remesh": "at time 0.3: mesh: found nothing",
     }
-    history = at_rest()
-    history.summary = figures | {"files": [tmp_path / "bodies.csv"]}
+    history = History(2)
+    shares = dict.fromkeys(("created", "lost", "unaccounted", "path_friction", "put_in"), 0.0)
+    history.summary = figures | {"files": [tmp_path / "bodies.csv"], "energy": shares | {"warnings": []}}
     monkeypatch.setattr(rigidfluid.core.run.run, "run", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
     assert "rest position: (1, 2)" in text
     assert "2 times; the one before served on. The latest failure, at time 0.3: mesh: found nothing" in text
-    assert "energy: 0 % created, 0 % lost, of 0 put in" in text
-
-
-def at_rest() -> History:
-    """The only state of a run in which nothing ever moves."""
-    history = History(2)
-    width = {name: len(names) for name, names in columns(2).items()}
-    history.extend({"bodies": [(0.0,) * width["bodies"]], "energy": [(0.0,) * width["energy"]]})
-    return history
+    assert "energy: 0 % created, 0 % lost, 0 % unaccounted for at the end, of 0 put in" in text
 
 
 COARSE = ("--set", "contact.substeps=1", "--set", "time.end=0.03")
@@ -240,10 +232,13 @@ def test_a_run_warns_of_energy_from_nowhere(
     assert result.exit_code == 0, result.stderr
     line = next(line for line in result.stdout.splitlines() if "came from nowhere" in line)
     assert line.startswith(colour + start)
-    assert "probably at impacts" in line
+    assert " % at impacts, for which time.step is too long" in line
+    assert "too long for the motion" not in line, "all else is exact without a fluid"
     assert "Shorten time.step" in line
     energy = json.loads((tmp_path / "summary.json").read_text())["energy"]
     assert f"energy: {100 * energy['created']:.2g} % created, {100 * energy['lost']:.2g} % lost" in result.stdout
+    assert f"{100 * energy['unaccounted']:.2g} % unaccounted for at the end" in result.stdout
+    assert all(warning["text"] in result.stdout for warning in energy["warnings"])
 
 
 def test_a_run_that_stops_tells_of_its_energy_too(tmp_path: Path) -> None:

@@ -184,6 +184,7 @@ REFUSED = {
     "prescribed": ({"prescribed": {"velocity": [0.1, 0.0]}}, {}, "body.0.prescribed"),
     "part": ({"part_of": "swimmer"}, {}, "body.0.part_of"),
     "lubrication": ({}, {"law": "lubrication", "range": 0.02, "viscosity": 1.0, "cutoff": 0.001}, "contact.law"),
+    "restitution": ({}, {"law": "normal", "range": 0.02, "epsilon": 1e-6, "restitution": 0.5}, "contact.restitution"),
 }
 
 

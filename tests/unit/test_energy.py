@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotate, rotation_matrices
-from rigidfluid.core.model.energy import Ledger, Power, Work
+from rigidfluid.core.model.energy import Cause, Ledger, Power, Work
 from rigidfluid.core.model.types import Pose, Twist
 
 
@@ -29,6 +29,31 @@ def test_dissipation_of_velocities_that_change_linearly_is_exact(start, end):
     before = Ledger(0.0, 0.0, 0.0, power=Power(dissipation=friction * start**2))
     exact = friction * step * (start**2 + start * end + end**2) / 3.0
     assert before.after(step, power, Work(), 0.0, 0.0).dissipation == pytest.approx(exact)
+
+
+def grown(ledger: Ledger, by: float, cause: Cause | None, leak: float = 0.0) -> Ledger:
+    """A step of one tenth later; energy has vanished, some of it through faces."""
+    after = ledger.after(0.1, Power(leak=leak), Work(), ledger.kinetic - by, 0.0)
+    return after.attributed(ledger, 0.1, cause)
+
+
+def test_the_residual_is_put_to_its_causes() -> None:
+    ledger = grown(Ledger(1.0, 0.0, 1.0), 0.01, Cause.START)
+    ledger = grown(ledger, 0.02, None)
+    ledger = grown(ledger, 0.04, Cause.CONTACTS)
+    assert ledger.in_impact
+    ledger = grown(ledger, 0.07, None, leak=1.0)
+    parts = ledger.residual_start, ledger.residual_contacts, ledger.residual_mesh, ledger.residual_steps
+    assert parts == pytest.approx((0.01, 0.04, 0.05, 0.04))
+    assert not ledger.in_impact
+    assert ledger.residual == pytest.approx(0.14)
+
+
+@pytest.mark.parametrize(("by", "blamed"), [(0.05, 0.03), (0.01, 0.0), (-0.03, -0.03)])
+def test_new_meshes_are_blamed_for_what_smooth_motion_does_not_explain(by: float, blamed: float) -> None:
+    ledger = grown(grown(Ledger(1.0, 0.0, 1.0), 0.02, None), by, Cause.REMESHING)
+    assert ledger.residual_remeshing == pytest.approx(blamed)
+    assert ledger.residual_steps == pytest.approx(0.02 + by - blamed)
 
 
 def test_a_turned_body_has_the_same_energy():

@@ -100,3 +100,18 @@ def test_no_free_velocity_takes_fluid_through_a_curved_slip_face(dimension: int)
     np.add.at(flux, ball.facet_nodes, ball.area_vectors(numbering.node_points(mesh.geometry)))
     through = np.bincount(which, flux.ravel()[rows] * values, len(free))
     assert np.abs(through).max() < 1e-12 * np.linalg.norm(flux, axis=1).max()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_energy_that_a_quadratic_flow_carries_through_a_face_is_exact(dimension: int) -> None:
+    """u = (1 + y², x, 0) through the faces x = 0 and x = 1 of the unit box."""
+    mesh, d = box(dimension, 2), dimension
+    faces = [BoundaryCondition(i, str(i), "pressure", np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
+    numbering = Numbering.of(mesh)
+    surfaces = Surfaces(numbering, mesh, faces, 0)
+    points = numbering.node_points(mesh.geometry)
+    velocity = np.zeros_like(points)
+    velocity[:, 0], velocity[:, 1] = 1.0 + points[:, 1] ** 2, points[:, 0]
+    passed = [face.energy_inflow(points, velocity, velocity) for face in surfaces.faces[:2]]
+    cubic, plain = 1.0 + 3.0 / 3.0 + 3.0 / 5.0 + 1.0 / 7.0, 1.0 + 1.0 / 3.0
+    np.testing.assert_allclose(passed, [0.5 * cubic, -0.5 * (cubic + plain)], rtol=1e-13)

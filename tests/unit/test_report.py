@@ -23,6 +23,7 @@ FIELD_PICTURES = {
     f"{name}.png" for name in ("speed_field", "streamlines", "vorticity", "whole_mesh", "mesh", "smallest_gap")
 }
 CURVES = {"position", "speed", "gap", "force", "energy"}
+OF_A_FALL = CURVES | {"coefficients", "step"}
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +50,7 @@ def copy(fall: Path, tmp_path: Path) -> Path:
 
 def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
     names = {path.name for path in written}
-    assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in CURVES | {"step"} for kind in ("png", "svg")} | {
+    assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in OF_A_FALL for kind in ("png", "svg")} | {
         "report.html"
     }
     assert all(path.stat().st_size > 0 for path in written)
@@ -59,7 +60,7 @@ def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
 def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
     page = written[-1].read_text(encoding="utf-8")
     summary = json.loads((fall / "summary.json").read_text())
-    assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | CURVES | {"step"})
+    assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | OF_A_FALL)
     assert 'src="' not in page.replace('src="data:', "")
     for figure in (summary["reynolds"], summary["smallest_gap"], summary["energy"]["dissipation"]):
         assert f"{figure:.5g}" in page
@@ -91,6 +92,17 @@ def test_run_without_a_fluid(tmp_path: Path) -> None:
     written = report(tmp_path)
     assert not FIELD_PICTURES & {path.name for path in written}
     assert "no fluid" in written[-1].read_text(encoding="utf-8")
+
+
+def test_a_page_warns_of_energy_as_the_command_does(tmp_path: Path) -> None:
+    coarse = ["contact.substeps=1", "time.end=0.03", "time.step=3e-4"]
+    history = rigidfluid.run(rigidfluid.load_scene(SCENES / "dry_bounce.toml", coarse), tmp_path)
+    report(tmp_path)
+    page = unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
+    warnings = history.summary["energy"]["warnings"]
+    assert warnings
+    for warning in warnings:
+        assert f"Serious warning: {warning['text']}. {warning['remedy']}" in page
 
 
 def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:

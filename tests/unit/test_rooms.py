@@ -19,7 +19,7 @@ BELOW = {
     "output": "model",
     "mesh": "mechanics model",
     "contact": "joints mechanics model",
-    "setup": "joints mechanics scene model",
+    "setup": "contact joints mechanics scene model",
     "run": "setup mesh contact output joints mechanics scene model",
 }
 

@@ -15,6 +15,7 @@ from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.error_estimate import UNSEEN
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.step_controller import GROWS, StepController
+from rigidfluid.core.run.summary import summarise
 from rigidfluid.errors import StepRejected
 
 TOLERANCE = 1e-3
@@ -78,9 +79,10 @@ def test_what_is_not_known_or_cannot_be_shorter_is_accepted(run, controller):
 
 def test_a_falling_disk_starts_with_short_steps_and_goes_on_with_long_ones(run):
     sizes, errors = run.history.steps["size"], run.history.steps["error"]
-    np.testing.assert_allclose(np.diff(run.history.energy["time"])[UNSEEN:], sizes)
-    assert errors.max() <= TOLERANCE
-    assert sizes[0] <= 0.001
+    np.testing.assert_allclose(np.diff(run.history.energy["time"]), sizes)
+    assert np.isinf(errors[:UNSEEN]).all()
+    assert errors[UNSEEN:].max() <= TOLERANCE
+    assert sizes[UNSEEN] <= 0.001
     assert sizes[-1] >= 0.008
     assert run.counts.rejected + np.count_nonzero(np.diff(sizes)) < 12
 
@@ -97,12 +99,16 @@ def test_a_fourth_of_the_tolerance_makes_less_than_half_of_the_error():
     assert loose < 4e-3 * abs(exact)
 
 
-def test_without_a_tolerance_nothing_is_estimated():
+def test_without_a_tolerance_steps_are_told_and_no_error_is_estimated():
     simulation = Simulation(falling_disk(**SCENE, time={"step": 0.008, "end": 0.032}))
     simulation.go()
     assert simulation.state.estimate is None
     assert simulation.state.count == 4
-    assert len(simulation.history.steps["time"]) == 0
+    steps = simulation.history.steps
+    np.testing.assert_array_equal(steps["size"], np.full(4, 0.008))
+    assert np.isinf(steps["error"]).all()
+    assert set(steps["unknowns"]) == {summarise(simulation, "complete")["unknowns"]}
+    np.testing.assert_array_equal(steps["remeshes"], np.zeros(4))
 
 
 def test_a_body_that_is_moved_at_once_starts_again_with_short_steps(run):

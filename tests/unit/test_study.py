@@ -142,6 +142,19 @@ def test_a_row_for_each_combination(write: Write, tmp_path: Path) -> None:
     assert "on the Pareto front" in result.stdout
 
 
+@pytest.mark.parametrize(("seconds", "name"), [("wall", "wall_time"), ("cpu", "cpu_time")])
+def test_seconds_are_by_the_clock_that_is_asked_for(
+    seconds: str, name: str, write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write('group = "body.0.density"', f'zip = true\nseconds = "{seconds}"', "0.001, 0.0005]", "0.001]")
+    subject = SceneSubject(study := load_study(path))
+    history = rigidfluid.run(scene_from_dict(subject._tables(study.settings()[0])))
+    assert history.summary["cpu_time"] > 0.0
+    history.summary |= {"wall_time": 7.0, "cpu_time": 5.0}
+    monkeypatch.setattr("rigidfluid.evaluation.studies.scene_subject.run", lambda *_, **__: history)
+    assert subject.run(study.settings()[0], lambda _: None).seconds == history.summary[name]
+
+
 def test_lists_side_by_side(write: Write) -> None:
     path = write('group = "body.0.density"', "zip = true", "0.001, 0.0005]", "0.001]")
     expected = [{"time.step": 0.002, "body.0.density": 1.0}, {"time.step": 0.001, "body.0.density": 2.0}]
@@ -323,6 +336,7 @@ def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
         ("at = 0.004", 'at = 0.004, key = "time"', ("error.figure", "a key path of summary.json, or")),
         ("reference = 0.5", 'reference = "best"', ("error.reference", "'best'", "a valid number", "finest")),
         ("reference = 0.5", "reference = 0\nrelative = true", ("error.reference", "Set relative = false")),
+        ('group = "body.0.density"', 'seconds = "cup"', ("study.seconds", "'cup'", "'wall' or 'cpu'")),
         ("reference = 0.5", "", ("error.reference", "nothing", "Add the key 'reference'")),
         ("[vary]", "[vary", ("bounce.toml", "invalid TOML", "Mend the file")),
     ],

@@ -208,6 +208,7 @@ def test_a_detector_that_refuses_the_shapes_fails_alone(tmp_path: Path) -> None:
         (FIELD, 'kernel = "distance-field"', "", ("study", "neither scene nor kernel", "one of scene and kernel")),
         (FIELD, "kernel =", 'scene = "a.toml"\nkernel =', ("study", "scene and kernel", "one of scene and kernel")),
         (FIELD, "[vary]", '[error]\nfigure = "time"\nreference = 0\n[vary]', ("error", "a kernel has its own")),
+        (FIELD, "kernel =", 'seconds = "cpu"\nkernel =', ("study.seconds", "'wall' with study.kernel")),
         (DETECTOR, '["sphere", "narrow_band"]', '["narow_band"]', ("detector", "Did you mean 'narrow_band'?")),
         (DETECTOR, "narrow_band.accuracy", "narrow_band.acuracy", ("acuracy", "Did you mean 'accuracy'?")),
         (DETECTOR, '"narrow_band"]', "]", ("size", "a knob that no run reads")),

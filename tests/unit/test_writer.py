@@ -14,6 +14,7 @@ from falling import falling_disk
 import rigidfluid
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.output.checkpoint import read_checkpoint
+from rigidfluid.core.output.history import History
 from rigidfluid.core.output.tables import Table, read_rows
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import MeshError, OutputError
@@ -137,7 +138,7 @@ def test_a_checkpoint_of_another_version_is_refused(scene, tmp_path):
     rigidfluid.run(scene, tmp_path)
     with h5py.File(tmp_path / "state.h5", "a") as file:
         del file.attrs["format"]
-    with pytest.raises(OutputError, match=r"state.h5: found a checkpoint of format 1; allowed is format 3"):
+    with pytest.raises(OutputError, match=r"state.h5: found a checkpoint of format 1; allowed is format 5"):
         rigidfluid.run(scene, tmp_path, resume=True)
 
 
@@ -225,3 +226,10 @@ def test_a_scene_whose_first_step_fails_leaves_earlier_output_untouched(scene, t
 def test_running_again_gives_the_same(scene, tmp_path):
     first = rigidfluid.run(scene, tmp_path).records
     assert rigidfluid.run(scene, tmp_path).records == first
+
+
+def test_a_table_of_an_earlier_version_has_the_columns_that_it_knew(tmp_path):
+    (tmp_path / "energy.csv").write_text("time,step,kinetic\n0.0,0,1.5\n")
+    energy = History(2, folder=tmp_path).energy
+    assert list(energy) == ["time", "step", "kinetic"]
+    assert energy["kinetic"].tolist() == [1.5]

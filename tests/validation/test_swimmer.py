@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from swimmer_2d import ADVANCE, SWIMS, two_cycles
+from swimmer_2d import ADVANCE, SWIMS, scene
+
+import rigidfluid
 
 pytestmark = pytest.mark.validation
 
 
 def second_cycle(label: str) -> tuple[np.ndarray, dict[str, Any]]:
     """Displacement, and the summary."""
-    summary = two_cycles(SWIMS[label]).summary
+    summary = rigidfluid.run(scene(SWIMS[label])).summary
     return np.array(summary["cycles"]["swimmer"]["displacement"][1]), summary
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from spheres_in_box import BACK, SCENE, swim
+from spheres_in_box import BACK, SCENE, swim_of, swim_scene
 from spheres_on_a_line import cycle, drag, velocities
 
 import rigidfluid
@@ -40,7 +40,7 @@ def test_a_stroke_begins_with_the_exact_velocity():
 @pytest.mark.validation
 def test_a_cycle_moves_it_as_far_as_without_walls():
     """Without a new start at each corner of the strokes it would go 1.9 % too far."""
-    found = swim()
+    found = swim_of(rigidfluid.run(swim_scene()))
     exact = cycle(ARM, STROKE)
     assert found.displacement == pytest.approx(exact.sum(), rel=0.01)
     assert found.strokes == pytest.approx(exact, rel=0.005)
@@ -49,4 +49,5 @@ def test_a_cycle_moves_it_as_far_as_without_walls():
 
 @pytest.mark.validation
 def test_strokes_in_reverse_swim_back():
-    assert swim(overrides=[BACK]).displacement == pytest.approx(-cycle(ARM, STROKE).sum(), rel=0.01)
+    back = swim_of(rigidfluid.run(swim_scene(overrides=[BACK])))
+    assert back.displacement == pytest.approx(-cycle(ARM, STROKE).sum(), rel=0.01)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import at_least, at_most
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.contact.restitution import without_restitution
 
 
 def stronger(met: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
@@ -32,7 +33,7 @@ def stronger(met: DesignContacts, share: float) -> tuple[Mapping[str, float], st
     if len(repelling) > 1:
         fields = " and ".join(interaction.field for interaction in repelling)
         return enough, f"Make the laws of {fields} {at_least(1.0 / share)} times as strong, or widen their ranges."
-    law, field = repelling[0].law, repelling[0].field
+    law, field = without_restitution(repelling[0].law), repelling[0].field
     if not isinstance(law, Repulsion):
         return enough, f"Make the law {at_least(1.0 / share)} times as strong, or widen its range."
     given = law.options.epsilon_wall if met.at_walls and law.options.epsilon_wall else law.options.epsilon

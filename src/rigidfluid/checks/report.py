@@ -17,6 +17,7 @@ from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.joints import of_joints
 from rigidfluid.checks.mechanisms import of_mechanisms
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
+from rigidfluid.checks.rebound import in_a_film
 from rigidfluid.checks.resolution import in_the_gap
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
 from rigidfluid.checks.shapes import of_facets
@@ -118,6 +119,7 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
             yield from in_the_gap(met, mesh)
         if mesh is not None and system.backend.problem is not None:
             yield from in_the_fluid(met, system.backend.problem, scene.time.step)
+            yield from in_a_film(met, system.backend.problem)
     for interaction in system.interactions:
         yield from at_the_start(system, interaction, start)
         yield from chain(between_walls(system, interaction), beside_sizes(system, interaction, mesh))

@@ -13,7 +13,28 @@ from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
 from rigidfluid.reports.plane import distance_grid
 from rigidfluid.reports.results import Results
-from rigidfluid.reports.style import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, VERMILLION, new_figure, time_panels
+from rigidfluid.reports.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PALETTE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+    time_panels,
+)
+
+_PARTS = {
+    "residual_steps": "in smooth motion",
+    "residual_contacts": "at impacts",
+    "residual_remeshing": "by re-meshing",
+    "residual_mesh": "through slip faces",
+    "residual_start": "in first steps",
+}
+_VISIBLE = 0.05
+"""Parts of the residual that are nowhere larger than this part of its greatest value are not drawn."""
 
 
 def position_plot(results: Results) -> Figure:
@@ -112,11 +133,10 @@ def energy_plot(results: Results) -> Figure:
     axes.set_ylabel("energy [energy]")
     account = energy_account(energy)
     scale = 100.0 / (account.put_in or 1.0)
-    below.plot(energy["time"], scale * energy["residual"], color=VERMILLION, label="residual")
-    friction = scale * energy["path_friction"]
-    below.plot(energy["time"], friction, color=BLACK, linestyle=":", label="path friction")
+    _draw_residual(below, {name: scale * values for name, values in energy.items() if name != "time"}, energy["time"])
     below.set_ylabel("not accounted for\n[% of what was put in]")
-    below.set_title(f"created {per_cent(account.created)}, lost {per_cent(account.lost)}", fontsize=9)
+    told = f"created {per_cent(account.created)}, lost {per_cent(account.lost)}"
+    below.set_title(f"{told}, {per_cent(account.unaccounted)} unaccounted for at the end", fontsize=9)
     add_legend(figure)
     return figure
 
@@ -161,6 +181,16 @@ def _draw_paths(axes: Axes, results: Results, position: FloatArray) -> None:
     axes.set_xlabel("x [length]")
     axes.set_ylabel("y [length]")
     axes.set_title("path (ring: start, dot: end)")
+
+
+def _draw_residual(axes: Axes, shares: dict[str, FloatArray], time: FloatArray) -> None:
+    """The residual, the parts of it that can be seen beside it, and what friction of impacts explains."""
+    axes.plot(time, shares["residual"], color=VERMILLION, label="residual")
+    for (name, words), colour in zip(_PARTS.items(), (BLUE, PURPLE, GREEN, ORANGE, SKY), strict=True):
+        if np.abs(shares[name]).max() > _VISIBLE * np.abs(shares["residual"]).max():
+            axes.plot(time, shares[name], color=colour, linewidth=1.0, label=words)
+    if shares["path_friction"].any():
+        axes.plot(time, shares["path_friction"], color=BLACK, linestyle=":", label="path friction")
 
 
 def _draw_weight(left: Axes, right: Axes, results: Results, k: int) -> None:

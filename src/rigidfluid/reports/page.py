@@ -9,6 +9,7 @@ from typing import Any
 
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.scene.scene_text import scene_text
+from rigidfluid.reports.coefficients import Figures
 from rigidfluid.reports.html import document, grid, picture, table
 
 _MOST_BODIES = 8
@@ -21,6 +22,11 @@ _ENERGIES = {
     "kinetic": "kinetic, at the end",
     "contact": "stored in contacts, at the end",
     "residual": "not accounted for",
+    "residual_steps": "of it by steps of smooth motion",
+    "residual_contacts": "of it at impacts",
+    "residual_remeshing": "of it in steps after new meshes",
+    "residual_mesh": "of it through curved slip faces",
+    "residual_start": "of it in first steps",
     "path_friction": "of it at most friction of impacts between the fluid's solutions",
     "put_in": "put in: stored at the start, and the most that was supplied",
 }
@@ -31,7 +37,12 @@ _SHARES = {
 }
 
 
-def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes: Iterable[str]) -> str:
+def page(
+    summary: Mapping[str, Any],
+    pictures: Sequence[tuple[Path, str]],
+    notes: Iterable[str],
+    coefficients: Sequence[tuple[str, Figures]],
+) -> str:
     """The page.
 
     Parameters
@@ -42,6 +53,8 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
         PNG files and their captions.
     notes : iterable of str
         What the page leaves out, and why.
+    coefficients : sequence of (str, Figures)
+        Bodies' names, and drag and lift of each.
 
     Returns
     -------
@@ -51,9 +64,10 @@ def page(summary: Mapping[str, Any], pictures: Sequence[tuple[Path, str]], notes
     scene = escape(scene_text(summary["scene"]))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
-        *(f'<p class="note">{escape(note)}</p>' for note in notes),
+        *(f'<p class="note">{escape(note)}</p>' for note in (*_warnings(summary["energy"]), *notes)),
         table(_figures(summary)),
         *_cycles(summary.get("cycles", {})),
+        *_coefficients(coefficients),
         *(picture(path, caption) for path, caption in pictures),
         "<h2>Energy balance</h2>",
         table(_energy(summary["energy"])),
@@ -92,6 +106,29 @@ def _cycles(mechanisms: Mapping[str, Any]) -> Iterator[str]:
         spins = ("about x [rad]", "about y [rad]", "about z [rad]") if three else ("turned [rad]",)
         rows = enumerate(zip(moved, turned, strict=True), start=1)
         yield grid((*head, *spins), [(number, *place, *(turn if three else (turn,))) for number, (place, turn) in rows])
+
+
+def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:
+    """A table of the first bodies; more have it in the plot."""
+    if not bodies:
+        return
+    yield "<h2>Drag and lift</h2>"
+    yield "<p>Of the second half of the time, by the reference of the plot of coefficients.</p>"
+    head = ("body", "mean drag", "mean lift", "half of the lift's range", "Strouhal number", "by its")
+    rows = []
+    for name, found in bodies[:_MOST_BODIES]:
+        period = ("no period", "") if found.strouhal is None else (found.strouhal, found.by)
+        rows.append((name, found.drag, found.lift, found.swing, *period))
+    yield grid(head, rows)
+    if len(bodies) > _MOST_BODIES:
+        yield f"<p>And of {len(bodies) - _MOST_BODIES} more bodies, in the plot.</p>"
+
+
+def _warnings(energy: Mapping[str, Any]) -> Iterator[str]:
+    """As the command line tells them."""
+    for warning in energy["warnings"]:
+        grade = "Serious warning" if warning["serious"] else "Warning"
+        yield f"{grade}: {warning['text']}. {warning['remedy']}"
 
 
 def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:

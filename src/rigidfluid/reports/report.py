@@ -10,6 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rigidfluid.core.output.writer import writing
+from rigidfluid.reports.coefficient_plot import coefficient_caption, coefficient_plot
+from rigidfluid.reports.coefficients import Figures, figures, reference
+from rigidfluid.reports.contact_plot import contact_plot
 from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, joint_plot, position_plot, speed_plot, step_plot
 from rigidfluid.reports.mechanisms import mechanism_plot
 from rigidfluid.reports.page import page
@@ -24,6 +27,7 @@ from rigidfluid.reports.pictures import (
     whole_mesh_picture,
 )
 from rigidfluid.reports.results import Results, read_results
+from rigidfluid.reports.rotation_plot import rotation_plot, torque_plot, turning
 from rigidfluid.reports.style import STYLE, save
 
 FOLDER, PAGE = "report", "report.html"
@@ -59,7 +63,7 @@ def report(out: Path) -> list[Path]:
             paths = save(figure, out / FOLDER, name, kinds)
             written += paths
             shown.append((paths[0], caption))
-        (out / PAGE).write_text(page(results.summary, shown, _notes(results)), encoding="utf-8")
+        (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
     return [*written, out / PAGE]
 
 
@@ -83,12 +87,27 @@ def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, .
     yield "speed", "How fast the bodies are.", speed_plot(results), both
     if np.isfinite(results.bodies["gap"]).any():
         yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both
+    if turning(results).any():
+        yield "rotation", "How bodies turn.", rotation_plot(results), both
+        yield "torque", "Torques about the bodies' centres.", torque_plot(results), both
     yield "force", "What the fluid and what contacts do to each body.", force_plot(results), both
+    by = reference(results)
+    if by is not None:
+        caption = coefficient_caption(by, results.system.dimension)
+        yield "coefficients", caption, coefficient_plot(results, by), both
+    if results.contact_counts.any():
+        yield "contacts", "Contacts: how many, the largest force, the least gap.", contact_plot(results), both
     if results.joints:
         yield "joints", "How far hinges have turned, and what acts in joints.", joint_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.scene.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _figures(results: Results) -> list[tuple[str, Figures]]:
+    """The coefficients of each body, where there are any."""
+    by = reference(results)
+    return [] if by is None else list(zip(results.names, figures(results, by), strict=True))
 
 
 def _has_pictures(results: Results) -> bool:

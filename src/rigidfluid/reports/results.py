@@ -42,6 +42,7 @@ class Results:
     ``summary`` as in summary.json, ``scene`` and ``system`` as the run built them; ``time`` (s,) [time]; ``bodies`` by
     column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times
     and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms).
+    ``contact_counts`` (s,): how many contacts there are within the range of the laws.
     """
 
     summary: dict[str, Any]
@@ -53,6 +54,7 @@ class Results:
     series: tuple[tuple[float, Path], ...]
     joints: dict[str, FloatArray] = field(default_factory=dict)
     wholes: dict[str, FloatArray] = field(default_factory=dict)
+    contact_counts: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -113,6 +115,7 @@ def read_results(folder: Path) -> Results:
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
         wholes={name: values[:, count:] for name, values in by_state.items()},
+        contact_counts=_contact_counts(folder, scene.dimension, by_state["step"][:, 0]),
     )
 
 
@@ -139,13 +142,20 @@ def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
     return {key: values.astype(np.float64) for key, values in history.table(name).items() if KINDS.get(key) is not str}
 
 
+def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArray:
+    """How many rows the table of contacts has for each of the ``steps`` (s,), which rise."""
+    path, names = folder / "contacts.csv", columns(dimension)["contacts"]
+    met = [row[names.index("step")] for row in _rows(path, names, may_be_empty=True)]
+    return np.bincount(np.searchsorted(steps, np.array(met, dtype=float)), minlength=len(steps)).astype(float)
+
+
 def _joint_names(system: System) -> tuple[str, ...]:
     if system.linkage is None:
         return ()
     return tuple(one.name for one in system.linkage.readings(system.pose, system.twist, 0.0, None))
 
 
-def _rows(path: Path, names: Sequence[str]) -> list[Row]:
+def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False) -> list[Row]:
     try:
         with path.open(newline="", encoding="utf-8") as file:
             header = next(csv.reader(file), [])
@@ -161,7 +171,7 @@ def _rows(path: Path, names: Sequence[str]) -> list[Row]:
     if tuple(header) != tuple(names):
         raise _unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
     torn = next((number for number, row in enumerate(rows, start=2) if len(row) != len(names)), None)
-    if torn is not None or not rows:
+    if torn is not None or not (rows or may_be_empty):
         raise _unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
     return rows
 

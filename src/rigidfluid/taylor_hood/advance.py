@@ -10,7 +10,7 @@ from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, m
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
-from rigidfluid.taylor_hood.boundary import face_power, pressure_load
+from rigidfluid.taylor_hood.boundary import face_leak, face_power, pressure_load
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
 from rigidfluid.taylor_hood.links import solve_linked
@@ -76,6 +76,7 @@ def advance(
             surfaces, problem.inert_density, at, velocity, mesh_velocity, on_faces, solution.reaction
         ),
         link_force=link_force,
+        leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
     )
 
 

@@ -9,7 +9,13 @@ import numpy as np
 
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray, IntArray, Mesh
-from rigidfluid.taylor_hood.facet_integrals import area_vectors, facet_weights, into_fluid, normals_at_nodes
+from rigidfluid.taylor_hood.facet_integrals import (
+    area_at_points,
+    area_vectors,
+    facet_weights,
+    into_fluid,
+    normals_at_nodes,
+)
 from rigidfluid.taylor_hood.numbering import Numbering
 
 
@@ -60,6 +66,17 @@ class Face:
         ``node_points``, ``velocity`` (nodes, d) [length, length/time].
         """
         return np.asarray(np.einsum("fid,fid->fi", self.area_vectors(node_points), velocity[self.facet_nodes]))
+
+    def energy_inflow(self, node_points: FloatArray, velocity: FloatArray, carrier: FloatArray) -> float:
+        """∫ ½|u|² c·n, exactly what convection by c carries in through a flat face [length^(d+2)/time³].
+
+        ``node_points``, ``velocity`` u and ``carrier`` c (nodes, d) [length, length/time].
+        """
+        shapes, area = area_at_points(node_points[self.facet_nodes])
+        if self.condition.normal is not None:
+            area = np.linalg.norm(area, axis=2, keepdims=True) * self.condition.normal
+        u, c = (shapes @ field[self.facet_nodes] for field in (velocity, carrier))
+        return 0.5 * float(np.sum(np.sum(u * u, axis=2) * np.sum(c * area, axis=2)))
 
     def in_and_out(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
         """What flows in, and what flows out (negative), (2,) [length^d/time]; the sum of both, and 0, if it is curved.

@@ -17,7 +17,7 @@ from rigidfluid.taylor_hood.numbering import facet_edges
 _WEIGHTS = {2: np.array([1.0, 1.0, 4.0]) / 6.0, 3: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 3.0}
 
 _POINTS = 4
-"""Of Gauss' rule in each direction: more than ∫ φᵢ n of a curved triangle takes."""
+"""Of Gauss' rule in each direction: exact for ∫ φᵢ n of a curved triangle, and for three velocities on a flat one."""
 
 
 def facet_weights(points: FloatArray, facets: IntArray) -> FloatArray:
@@ -53,6 +53,20 @@ def normals_at_nodes(facet_points: FloatArray) -> FloatArray:
     tangents = [np.einsum("ij,fjd->fid", slope, facet_points) for slope in _slopes(_node_coordinates(d))]
     normal = _turned(tangents[0]) if d == 2 else np.cross(*tangents)
     return np.asarray(normal / np.linalg.norm(normal, axis=2, keepdims=True))
+
+
+def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gauss' rule on each facet: the nodes' functions at its points, (q, 3 | 6), and n dA there, (F, q, d).
+
+    Parameters
+    ----------
+    facet_points : (F, 3 | 6, d) array
+        Where the nodes of each facet are [length].
+    """
+    shapes, slopes, weight = _tabulated(facet_points.shape[2])
+    tangents = [slope @ facet_points for slope in slopes]
+    area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(tangents[0], tangents[1])
+    return shapes, np.asarray(weight[:, None] * area)
 
 
 def into_fluid(facets: IntArray, cells: IntArray, points: FloatArray) -> IntArray:
@@ -112,6 +126,13 @@ def _rule(dimension: int) -> tuple[FloatArray, FloatArray]:
     u, v = np.array(list(product(root, root))).T
     share = np.outer(weight * (1.0 - root), weight).ravel()
     return np.column_stack([(1.0 - u) * (1.0 - v), u, v * (1.0 - u)]), share
+
+
+@cache
+def _tabulated(dimension: int) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+    """φⱼ and its slopes at the points of Gauss' rule, and the weights."""
+    at, weight = _rule(dimension)
+    return _shapes(at), _slopes(at), weight
 
 
 @cache

@@ -374,6 +374,7 @@ def _resolve(
         _refuse_overlap(system, contacts)
         before, push = push, _contact_load(system, law, contacts, movement)
         movement.kick(push.wrench, 0.5 * part)
+        push = push._replace(loss=_loss(system, contacts, movement, push.damping))
         impulse = _added(_added(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
         dissipated += 0.5 * part * (before.loss + push.loss)
         actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
@@ -410,18 +411,20 @@ def _surfaces(system: System) -> Reach:
 
 
 class _ContactLoad(NamedTuple):
-    """What the contacts do at one moment: their ``wrench``, the power ``loss`` that their dampers take, and the power
-    ``actuator_work`` that drives of bodies and walls give."""
+    """What the contacts do at one moment: their ``wrench``, the forces of ``damping`` (m, d) in it, None without
+    dampers, the power ``loss`` that these take, and the power ``actuator_work`` that drives of bodies and walls give.
+    """
 
     wrench: Wrench
+    damping: FloatArray | None
     loss: float
     actuator_work: float
 
 
 def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _ContactLoad:
     if len(contacts) == 0:
-        return _ContactLoad(nothing(movement.pose), 0.0, 0.0)
-    force, loss = law.force(contacts), 0.0
+        return _ContactLoad(nothing(movement.pose), None, 0.0, 0.0)
+    force, damping, loss = law.force(contacts), None, 0.0
     if law.dissipative:
         motion = relative_motion(contacts, movement, system.wall_velocity)
         damping = law.damping(contacts, motion)
@@ -432,7 +435,14 @@ def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: B
         actuator_work = -float(power(wrench, _given_twist(system, movement))[driven].sum())
     if system.wall_velocity is not None:
         actuator_work += float(np.sum(force * system.wall_velocity(contacts.body_b, middle(contacts))))
-    return _ContactLoad(wrench, loss, actuator_work)
+    return _ContactLoad(wrench, damping, loss, actuator_work)
+
+
+def _loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: FloatArray | None) -> float:
+    """The power that dampers take half-way through their kick: the whole kick takes that times the substep."""
+    if damping is None:
+        return 0.0
+    return -float(np.sum(damping * relative_motion(contacts, movement, system.wall_velocity).velocity))
 
 
 def _driven(system: System) -> BoolArray:

@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.contact.representative_contacts import free, pair_contacts, representatives, wall_contacts
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
+from rigidfluid.core.contact.restitution import without_restitution
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
@@ -34,7 +35,7 @@ def chosen_strengths(system: System) -> list[dict[str, Any]]:
 
 
 def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]]:
-    law = interaction.law
+    law = without_restitution(interaction.law)
     if not isinstance(law, Repulsion) or law.loads is None:
         return
     between, at_walls = law.options.epsilon, law.options.epsilon_wall

@@ -26,6 +26,9 @@ FADED = 8.0
 
 _HALVINGS = 30
 
+_SPEEDS = 1.0, 2.0**-80
+"""At which dampers are asked for their coefficient: some are steepest at rest; a power of two costs no digit."""
+
 
 class Reach(NamedTuple):
     """How far the surface of each body reaches from its centre of mass, ``arms`` (n,) [length], and how easily it gives
@@ -235,9 +238,10 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     """The greatest stiffness and damping coefficient (m,) between the deepest gap and the range."""
     damping = np.zeros(len(contacts))
     if law.dissipative:
-        unit = replace(motion, velocity=contacts.normal)
         for there in on_the_way(law, contacts, deepest):
-            damping = np.maximum(damping, -np.sum(law.damping(there, unit) * contacts.normal, axis=1))
+            for speed in _SPEEDS:
+                resisting = law.damping(there, replace(motion, velocity=speed * contacts.normal))
+                damping = np.maximum(damping, -np.sum(resisting * contacts.normal, axis=1) / speed)
     return greatest_stiffness(law, contacts, deepest), damping
 
 

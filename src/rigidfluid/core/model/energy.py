@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+
+class Cause(StrEnum):
+    """What was special about a step: entries of the ledger that its part of the residual is added to."""
+
+    START = "residual_start"
+    REMESHING = "residual_remeshing"
+    CONTACTS = "residual_contacts"
 
 
 @dataclass(frozen=True, slots=True)
 class Power:
     """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
-    viscous dissipation, also ``dissipation_midway`` through the step that led there, and of what the dampers of joints
-    take."""
+    viscous dissipation, also ``dissipation_midway`` through the step that led there, of what the dampers of joints
+    take, and of what convection takes through faces that let nothing pass."""
 
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
     dissipation_midway: float = 0.0
     damping: float = 0.0
+    leak: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +50,10 @@ class Ledger:
     ``dissipation``, ``contact_loss`` (by dampers of contacts and joints), ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
     step explains so much at most, since the fluid's own solutions see some of it.
+    The residual has five parts. ``residual_mesh``: what leaked through faces. The rest of each step's is in
+    ``residual_start``, ``residual_remeshing`` or ``residual_contacts`` where a `Cause` is named for it, and else in
+    ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step, and ``smooth_rate`` is
+    how fast the residual grew in the latest step without a cause [energy/time].
     ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
     """
 
@@ -52,7 +67,19 @@ class Ledger:
     contact_loss: float = 0.0
     transfer_loss: float = 0.0
     path_friction: float = 0.0
+    residual_start: float = 0.0
+    residual_remeshing: float = 0.0
+    residual_contacts: float = 0.0
+    residual_mesh: float = 0.0
+    in_impact: bool = False
+    smooth_rate: float = 0.0
     power: Power | None = Power()
+
+    @property
+    def residual_steps(self) -> float:
+        """The part of all other steps: motion and flow are smooth there, and the error is that of the time scheme."""
+        special = self.residual_start + self.residual_remeshing + self.residual_contacts + self.residual_mesh
+        return self.residual - special
 
     @property
     def residual(self) -> float:
@@ -80,9 +107,9 @@ class Ledger:
         """
         before = self.power or power
 
-        def total(name: str) -> float:
+        def total(name: str, sum_before: float) -> float:
             mean: float = 0.5 * (getattr(before, name) + getattr(power, name))
-            return float(getattr(self, name)) + step * mean
+            return sum_before + step * mean
 
         damped = 0.5 * step * (before.damping + power.damping)
         dissipated = (before.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
@@ -91,14 +118,30 @@ class Ledger:
             kinetic=kinetic,
             contact=contact,
             gravity=self.gravity + work.gravity,
-            boundary=total("boundary"),
-            control=total("control") + work.control,
+            boundary=total("boundary", self.boundary),
+            control=total("control", self.control) + work.control,
             dissipation=self.dissipation + step * dissipated + work.drag_loss,
             contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
+            residual_mesh=total("leak", self.residual_mesh),
             power=power,
         )
+
+    def attributed(self, before: Ledger, step: float, cause: Cause | None) -> Ledger:
+        """This ledger with the growth of the residual in a ``step`` since ``before``, beyond what leaked, put to the
+        ``cause``; to re-meshing, as far as more grew, or otherwise, than in as much time of smooth motion before it."""
+        grown = self.residual - before.residual - (self.residual_mesh - before.residual_mesh)
+        if cause is None:
+            return replace(self, in_impact=False, smooth_rate=grown / step)
+        smooth = _common(grown, step * before.smooth_rate) if cause is Cause.REMESHING else 0.0
+        part: Any = {cause.value: getattr(self, cause.value) + grown - smooth}
+        return replace(self, in_impact=cause is Cause.CONTACTS, **part)
 
     def after_transfer(self, loss: float) -> Ledger:
         """The ledger after a transfer that lost this much kinetic energy."""
         return replace(self, kinetic=self.kinetic - loss, transfer_loss=self.transfer_loss + loss)
+
+
+def _common(a: float, b: float) -> float:
+    """The smaller of both where they have the same sign, else zero."""
+    return min(a, b, key=abs) if a * b > 0.0 else 0.0

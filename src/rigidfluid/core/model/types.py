@@ -300,6 +300,7 @@ class Advance:
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
     ``link_force`` (c,): of the step's links; None without any [force | force·length].
+    ``leak``: kinetic energy that convection takes through faces that let none pass, an error of the mesh [energy/time].
     """
 
     fluid: FluidState
@@ -310,6 +311,7 @@ class Advance:
     dissipation_midway: float
     boundary_power: float
     link_force: FloatArray | None = None
+    leak: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,8 +22,8 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 3
-"""Of what is in a checkpoint, the backend's memory included; files of others are refused."""
+FORMAT = 5
+"""Of what is in a checkpoint, the backend's memory and the columns of tables included; files of others are refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,7 @@ class Checkpoint:
     failed_remeshes: int
     latest_failed_remesh: str | None
     elapsed: float
+    cpu_time: float
     extremes: Extremes
     ranks: int
 

@@ -1,32 +1,56 @@
-"""What the energy balance of a run says of it: energy that came from nowhere or vanished, and why it may have."""
+"""What the energy balance of a run says of it: energy that came from nowhere or vanished, and why it did."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.model.types import FloatArray
 
 Table = Mapping[str, NDArray[Any]]
 
 NOTICEABLE, SERIOUS = 0.01, 0.05
-"""From these shares on, energy created or lost is worth a warning and a serious one."""
+"""From these shares on, energy created, lost or unaccounted for is worth a warning and a serious one."""
 
-_HALF = 0.5
-"""A cause that may explain so much of what was created or lost is named."""
-_IMPACTS = ("at impacts, for which time.step is too long", "Shorten time.step: halve it and compare.")
-_TRANSFERS = (
-    "in re-meshing, which changed much energy by itself",
-    "Shorten time.step: halve it and compare; then mesh.size and mesh.size_body.",
+_TOLD = 0.1
+"""A cause of less than this part of what was created or lost is not told."""
+
+
+class _Cause(NamedTuple):
+    """A part of the residual: where its energy went, in words, and what helps."""
+
+    part: str
+    text: str
+    remedy: str
+
+
+_CAUSES = (
+    _Cause("residual_steps", "by a time.step too long for the motion", "Shorten time.step: halve it and compare."),
+    _Cause(
+        "residual_contacts", "at impacts, for which time.step is too long", "Shorten time.step: halve it and compare."
+    ),
+    _Cause(
+        "residual_remeshing",
+        "by re-meshing",
+        "Make cells finer by mesh.size_body and mesh.cells_per_gap, or new meshes rarer by mesh.remesh_every.",
+    ),
+    _Cause(
+        "residual_mesh",
+        "through curved slip faces, for which the mesh is too coarse",
+        "Make cells there finer: mesh.size, or a [[mesh.refine]] at those faces.",
+    ),
+    _Cause(
+        "residual_start",
+        "in first steps, of the run or after a jump of a stroke",
+        "Shorten time.step, or let what is prescribed begin slowly, by a ramp.",
+    ),
 )
-_STEPS = (
-    "because time.step is too long or the mesh too coarse for the motion",
-    "Shorten time.step: halve it and compare; then mesh.size and mesh.size_body.",
-)
+PARTS = tuple(cause.part for cause in _CAUSES)
+"""Columns whose sum is the residual."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +58,10 @@ class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces and
-    driven bodies had. ``created``: the lowest residual after the first step, less that step's own, its sign changed.
-    ``lost``: the highest, without what friction between the fluid's solutions explains. ``unaccounted``: the residual
-    at the end. ``path_friction``: that friction, until the end.
+    driven bodies had. What is wrong at a time is the residual and what re-meshing took. ``created``: the lowest that it
+    was after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction
+    between the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction,
+    until the end.
     """
 
     put_in: float
@@ -48,7 +73,8 @@ class EnergyAccount:
 
 @dataclass(frozen=True, slots=True)
 class EnergyWarning:
-    """Much energy was created or lost: how much and the likely cause in ``text``, and what helps in ``remedy``."""
+    """Much energy was created or lost: how much and by what causes in ``text``, and in ``remedy`` what helps against
+    the greatest."""
 
     serious: bool
     text: str
@@ -58,46 +84,44 @@ class EnergyWarning:
 def energy_account(energy: Table) -> EnergyAccount:
     """The account of a table of energies by column, (s,) each [energy], a row per state from the start on."""
     put_in = _put_in(energy)
-    friction = energy["path_friction"]
+    lost, friction = energy["residual"] + energy["transfer_loss"], energy["path_friction"]
 
     def share(value: float) -> float:
         return value / put_in if put_in > 0.0 else 0.0
 
     return EnergyAccount(
         put_in,
-        share(float(_excess(-energy["residual"]).max())),
-        share(float(_excess(energy["residual"] - friction).max())),
+        share(float(_excess(-lost).max())),
+        share(float(_excess(lost - friction).max())),
         share(float(energy["residual"][-1])),
         share(float(friction[-1])),
     )
 
 
-def energy_warnings(energy: Table, pushed: BoolArray) -> list[EnergyWarning]:
-    """Of energy created, then of energy lost, where they are noticeable.
+def energy_warnings(energy: Table) -> list[EnergyWarning]:
+    """Of energy created, of energy lost, and of energy unaccounted for at the end that is neither; where noticeable.
 
     Parameters
     ----------
     energy : mapping of str to (s,) array
         The table of energies by column [energy].
-    pushed : (s,) bool array
-        Whether contacts pushed any body in the step that led to each state.
     """
-    account = energy_account(energy)
-    found = (
-        (account.created, -energy["residual"], "came from nowhere"),
-        (account.lost, energy["residual"] - energy["path_friction"], "vanished"),
-    )
-    return [
-        _warning(share, what, *_cause(energy, _excess(excess), pushed))
-        for share, excess, what in found
-        if share >= NOTICEABLE
-    ]
-
-
-def contacts_pushed(bodies: Table, states: int) -> BoolArray:
-    """Whether contacts pushed any body in the step to each state (s,), from the table of bodies, n rows a state."""
-    forces = np.stack([bodies[name] for name in ("cfx", "cfy", "cfz") if name in bodies])
-    return np.asarray(forces.any(axis=0).reshape(states, -1).any(axis=1))
+    account, sums = energy_account(energy), _lost_by_cause(energy)
+    lost = energy["residual"] + energy["transfer_loss"]
+    friction = energy["path_friction"]
+    warnings = []
+    if account.created >= NOTICEABLE:
+        shares = _shares(sums, -1.0, int(_excess(-lost).argmax()), account.put_in)
+        warnings.append(_warning(account.created, "came from nowhere", shares))
+    if account.lost >= NOTICEABLE:
+        beyond = sums | {"residual_contacts": sums["residual_contacts"] - friction}
+        shares = _shares(beyond, 1.0, int(_excess(lost - friction).argmax()), account.put_in)
+        warnings.append(_warning(account.lost, "vanished", shares))
+    told = account.created if account.unaccounted < 0.0 else account.lost
+    if abs(account.unaccounted) >= NOTICEABLE > told:
+        at_end = {name: float(np.sign(account.unaccounted) * energy[name][-1]) / account.put_in for name in PARTS}
+        warnings.append(_warning(account.unaccounted, "is unaccounted for at the end", at_end))
+    return warnings
 
 
 def per_cent(share: float) -> str:
@@ -119,25 +143,22 @@ def _excess(balance: FloatArray) -> FloatArray:
     return excess
 
 
-def _cause(energy: Table, excess: FloatArray, pushed: BoolArray) -> tuple[str, str]:
-    """The likely cause of the largest excess (s,), and what helps.
-
-    An impact acts in its step and, by BDF2, in the next: both are steps with contacts.
-    """
-    worst = int(excess.argmax())
-    near = pushed | np.concatenate([[False], pushed[:-1]])
-    growth = np.maximum(np.diff(excess[: worst + 1]), 0.0)
-    if growth[near[1 : worst + 1]].sum() >= _HALF * growth.sum():
-        return _IMPACTS
-    if np.abs(np.diff(energy["transfer_loss"])).sum() >= _HALF * excess[worst]:
-        return _TRANSFERS
-    if energy["path_friction"][-1] >= _HALF * excess[worst]:
-        return _IMPACTS
-    return _STEPS
+def _lost_by_cause(energy: Table) -> dict[str, FloatArray]:
+    """The parts of the residual (s,); what a transfer took is re-meshing's."""
+    residual = {name: energy[name] for name in PARTS}
+    return residual | {"residual_remeshing": residual["residual_remeshing"] + energy["transfer_loss"]}
 
 
-def _warning(share: float, what: str, cause: str, remedy: str) -> EnergyWarning:
-    serious = share >= SERIOUS
+def _shares(sums: Mapping[str, FloatArray], sign: float, worst: int, put_in: float) -> dict[str, float]:
+    """``sign`` times what each sum (s,) has grown by from the first step to the ``worst`` state, over ``put_in``."""
+    return {name: sign * float(_excess(values)[worst]) / put_in for name, values in sums.items()}
+
+
+def _warning(share: float, what: str, shares: Mapping[str, float]) -> EnergyWarning:
+    serious = abs(share) >= SERIOUS
+    causes = sorted(_CAUSES, key=lambda cause: -shares[cause.part])
+    told = [cause for cause in causes if shares[cause.part] >= _TOLD * abs(share)]
+    reasons = ", ".join(f"{per_cent(shares[cause.part])} {cause.text}" for cause in told)
     consequence = "; do not rely on this run" if serious else ""
-    text = f"{per_cent(share)} of the energy put in {what}, probably {cause}{consequence}"
-    return EnergyWarning(serious, text, remedy)
+    text = f"{per_cent(share)} of the energy put in {what}: {reasons}{consequence}"
+    return EnergyWarning(serious, text, told[0].remedy)

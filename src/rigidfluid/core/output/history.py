@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.output.records import Records, Row, columns
-from rigidfluid.core.output.tables import read_columns, read_rows, table_path
+from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
 from rigidfluid.errors import OutputError
 
 
@@ -60,6 +60,8 @@ class History:
     def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
         """One table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
 
+        Of a folder that an earlier version has written, all columns are those that it knew.
+
         Raises
         ------
         OutputError
@@ -70,7 +72,8 @@ class History:
         if self._folder is not None:
             path = table_path(self._folder, name)
             with _reading(path):
-                return read_columns(path, wanted)
+                known = wanted if only is not None else [name for name in read_header(path) if name in wanted]
+                return read_columns(path, known or wanted)
         rows = self._rows.get(name, [])
         return {column: np.array([row[i] for row in rows]) for i, column in enumerate(names) if column in wanted}
 
@@ -96,7 +99,7 @@ class History:
 
     @property
     def steps(self) -> dict[str, NDArray[Any]]:
-        """The table of steps.csv: a row per accepted step whose error is estimated."""
+        """The table of steps.csv: a row per accepted step, with what it took."""
         return self.table("steps")
 
     @property

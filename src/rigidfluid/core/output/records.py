@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +19,7 @@ Records = dict[str, list[Row]]
 LEDGER_COLUMNS = (
     *("kinetic", "contact", "gravity", "boundary", "control"),
     *("dissipation", "contact_loss", "transfer_loss", "path_friction", "residual"),
+    *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
 
 
@@ -39,20 +42,27 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
         "joints": ("time", "step", "joint", "gap", "angle", "rate", *named("f"), *torque),
         "energy": ("time", "step", *LEDGER_COLUMNS),
-        "steps": ("time", "step", "size", "error"),
+        "steps": ("time", "step", "size", "error", "unknowns", "remeshes"),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
     }
 
 
-def records(system: System, probes: FloatArray, state: State, time: float) -> Records:
-    """The rows of one state; ``probes`` (p, d) are the points where the fluid is recorded."""
+class StepCost(NamedTuple):
+    """What the step to a state took: its ``size`` [time], and how many meshes have been made since the start."""
+
+    size: float
+    remeshes: int
+
+
+def records(system: System, probes: FloatArray, state: State, time: float, cost: StepCost | None) -> Records:
+    """The rows of one state; ``probes`` (p, d) are the points where the fluid is recorded, ``cost`` None at a start."""
     stamp = (time, state.count)
     return {
         "bodies": list(_body_rows(system, state, stamp)),
         "contacts": list(_contact_rows(system, state, stamp)),
         "joints": list(_joint_rows(system, state, stamp, time)),
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
-        "steps": list(_step_rows(state, stamp)),
+        "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
     }
 
@@ -107,9 +117,11 @@ def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterat
         yield (*stamp, one.name, one.gap, one.angle, one.rate, *one.force.tolist(), *one.torque.tolist())
 
 
-def _step_rows(state: State, stamp: Row) -> Iterator[Row]:
-    if state.past is not None and state.estimate is not None and not state.estimate.is_unknown:
-        yield (*stamp, state.past.step, state.estimate.error)
+def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
+    """The error is infinite where it is not known."""
+    unknowns = system.backend.unknowns(state.mesh, system.controlled_motions)
+    error = math.inf if state.estimate is None else state.estimate.error
+    return (*stamp, cost.size, error, unknowns, cost.remeshes)
 
 
 def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) -> Iterator[Row]:

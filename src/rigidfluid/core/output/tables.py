@@ -61,7 +61,7 @@ class Table:
 
 KINDS: Mapping[str, type[float | int | str]] = {
     **dict.fromkeys(("body", "a", "b", "joint"), str),
-    **dict.fromkeys(("step", "probe"), int),
+    **dict.fromkeys(("step", "probe", "unknowns", "remeshes"), int),
 }
 """What stands in a column; a number with a fraction where it is not named here."""
 
@@ -77,6 +77,12 @@ def read_rows(path: Path) -> list[Row]:
         reader = csv.reader(file)
         names = next(reader, [])
         return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
+
+
+def read_header(path: Path) -> list[str]:
+    """The columns' names."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return next(csv.reader(file), [])
 
 
 def read_columns(path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.time_scheme import extrapolation_weights, generalised_mass, path_error_weight
+from rigidfluid.core.mechanics.time_scheme import extrapolation_weights, path_error_weight
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import ErrorEstimate, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.run.masses import Masses
 
 UNSEEN = 3
 """Nothing is known of so many steps after a start. Before the last of them there are no three velocities of one smooth
@@ -46,7 +46,7 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     ErrorEstimate
         Unknown in the first steps.
     """
-    before, masses = state.estimate or _expected(system), _Masses(system, time, candidate)
+    before, masses = state.estimate or _expected(system), Masses(system, time, candidate)
     speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))
     after = replace(
         before,
@@ -68,30 +68,6 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     smooth_bodies = np.maximum(np.sqrt(bodies) - np.sqrt(contacts), 0.0) ** 2
     smooth = max(_ratio(masses.fastest(smooth_bodies), speed), _ratio(smooth_fluid, after.energy**0.5))
     return replace(after, error=weight * smooth, with_contacts=weight * whole)
-
-
-class _Masses:
-    """Kinetic energies of the free motions at a ``time``, where the ``state`` has them."""
-
-    def __init__(self, system: System, time: float, state: State) -> None:
-        self._free, mechanisms = ~system.controlled_motions, system.mechanisms
-        mass = system.mass if mechanisms is None else mechanisms.mass
-        inertia = system.inertia if mechanisms is None else mechanisms.inertia(time)
-        self._mass, self._matrix = mass[self._free], generalised_mass(mass, inertia, state.free_pose)[self._free]
-
-    def energies(self, twist: FloatArray) -> FloatArray:
-        """½ u·Mu of each of the ``twist`` (N, d+k) [energy]."""
-        free = twist[self._free]
-        return np.asarray(0.5 * np.einsum("ni,nij,nj->n", free, self._matrix, free))
-
-    def energies_by(self, impulse: FloatArray) -> FloatArray:
-        """Of what each ``impulse`` (N, d+k) makes of a motion at rest [energy]."""
-        free = impulse[self._free]
-        return np.asarray(0.5 * np.sum(free * np.linalg.solve(self._matrix, free[..., None])[..., 0], axis=1))
-
-    def fastest(self, energies: FloatArray) -> float:
-        """The greatest of the speeds √(2E/m) of these kinetic energies [length/time]."""
-        return float(np.sqrt(2.0 * energies / self._mass).max(initial=0.0))
 
 
 def _expected(system: System) -> ErrorEstimate:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 import re
@@ -135,6 +136,16 @@ def peak_memory() -> int | None:
     if sys.platform == "win32":
         return None
     return _of_this_program() or _of_this_process()
+
+
+def give_back_memory() -> None:
+    """Return what is free to the system, where the C library can.
+
+    Arrays and factors of meshes of ever other sizes leave holes in its heap, which would grow with each new mesh.
+    """
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None
+    if trim is not None:
+        trim(0)
 
 
 def _of_this_program() -> int | None:

@@ -21,7 +21,7 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import least_gaps_of_motions, records
+from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state, start_level
@@ -115,7 +115,7 @@ class Simulation:
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
-        self._start = time.perf_counter()
+        self._start, self._cpu_start = time.perf_counter(), time.process_time()
         self._writer: Writer | None = None
         self._observers: list[tuple[Schedule, Observer]] = []
         self.state: State
@@ -143,6 +143,11 @@ class Simulation:
     def elapsed(self) -> float:
         """Wall seconds of this run, those before a resumption included."""
         return self._elapsed_before + time.perf_counter() - self._start
+
+    @property
+    def cpu_time(self) -> float:
+        """CPU seconds of this process, of all its threads, those before a resumption included."""
+        return self._cpu_before + time.process_time() - self._cpu_start
 
     @property
     def time(self) -> float:
@@ -277,7 +282,7 @@ class Simulation:
             self._writer.close()
 
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before = 0.0
+        self._elapsed_before = self._cpu_before = 0.0
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = initial_state(
@@ -300,14 +305,17 @@ class Simulation:
         self.state = earlier.state
         self.system.backend.recall(earlier.memory, self.state.mesh)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
-        self._elapsed_before, self._times = earlier.elapsed, earlier.times
+        self._elapsed_before, self._cpu_before, self._times = earlier.elapsed, earlier.cpu_time, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
         self.observe(Simulation._output, self.scene.output.every)
 
     def _record(self) -> None:
-        now = records(self.system, self._probes, self.state, self.time)
+        level, cost = self.state.level, None
+        if self.state.count > 0 and level is not None:
+            cost = StepCost(self.clock.size(level), self.counts.remeshes)
+        now = records(self.system, self._probes, self.state, self.time, cost)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
@@ -335,6 +343,7 @@ class Simulation:
             seconds=self.watch.seconds,
             **asdict(self.counts),
             elapsed=self.elapsed,
+            cpu_time=self.cpu_time,
             extremes=self.extremes,
             ranks=self._ranks.size,
         )

@@ -17,8 +17,10 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.corners import begun_anew, level_to_corner
+from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
+from rigidfluid.core.run.process import give_back_memory
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
 from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
@@ -96,7 +98,7 @@ class Stepper:
                     raise stuck(self.system, state, rejection, time, shortest) from rejection
             else:
                 self.counts.unsettled += not agreed
-                return new
+                return with_cause(self.system, self._clock, state, new)
 
     def _judged(self, state: State, candidate: State) -> State:
         """The candidate with an estimate of its error, where that is tolerated."""
@@ -112,6 +114,8 @@ class Stepper:
         """The state on a new mesh, if a step to ``pose`` asks for one; it is as good where that is rejected."""
         with self._watch("mesh"):
             adapted = self._mesh_updater.remesh_if_needed(state, pose)
+            if adapted.mesh is not state.mesh:
+                give_back_memory()
         self.counts.remeshes += adapted.mesh is not state.mesh
         failed = adapted.remesh_failed
         if failed is not None and failed is not state.remesh_failed:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from dataclasses import asdict
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh
-from rigidfluid.core.output.energy_account import EnergyAccount, energy_account
+from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 from rigidfluid.core.run.cycles import cycles
 from rigidfluid.core.run.process import peak_memory
@@ -29,13 +30,13 @@ _PACKAGES = (
 )
 FIGURES = (
     *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
-    *("failed_remeshes", "wall_time", "wall_time_per_stage"),
+    *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ACCOUNT = ("put_in", "created", "lost", "unaccounted")
 ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
-"""Keys of its table ``energy``."""
+"""Keys of its table ``energy`` that hold numbers."""
 
 
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
@@ -57,13 +58,14 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "failed_remeshes": simulation.counts.failed_remeshes,
         "latest_failed_remesh": simulation.counts.latest_failed_remesh,
         "wall_time": simulation.elapsed,
+        "cpu_time": simulation.cpu_time,
         "wall_time_per_stage": simulation.watch.seconds,
         "peak_memory": _of_all(system.backend.ranks, peak_memory()),
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **_cycles(simulation),
-        "energy": energy_balance(state.ledger, energy_account(simulation.history.energy)),
+        "energy": energy_balance(state.ledger, simulation.history.energy),
         "auto_epsilon": chosen_strengths(system),
     }
 
@@ -107,10 +109,13 @@ def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[s
     }
 
 
-def energy_balance(ledger: Ledger, account: EnergyAccount) -> dict[str, float]:
-    """What is stored, what came in, what went out [energy], and what of it came from nowhere or vanished (shares)."""
+def energy_balance(ledger: Ledger, energy: Table) -> dict[str, Any]:
+    """What is stored, what came in, what went out [energy], what of it came from nowhere or vanished (shares), and the
+    ``warnings`` of that; by the ledger at the end and the table of ``energy`` over time."""
+    account = energy_account(energy)
     stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
-    return stored | {name: getattr(account, name) for name in ACCOUNT}
+    shares = {name: getattr(account, name) for name in ACCOUNT}
+    return stored | shares | {"warnings": [asdict(warning) for warning in energy_warnings(energy)]}
 
 
 def versions() -> dict[str, str]:

@@ -299,6 +299,20 @@ class JointTable(_Table):
     )
 
 
+_RESTITUTION = Field(
+    default=None,
+    gt=0,
+    le=1,
+    description="Speed after over speed before a dry head-on impact, 1 if not given [1]",
+)
+_RESTITUTION_STOKES = Field(
+    default=None,
+    gt=0,
+    description="β, with which the restitution is `restitution` · exp(-β/St), St the Stokes number of the impact; "
+    "balls in a liquid have 35 [1]",
+)
+
+
 class ContactTable(_OpenTable):
     """How contacts are found and stepped through, and a force law for all of them; `[[interaction]]` has more laws."""
 
@@ -310,6 +324,8 @@ class ContactTable(_OpenTable):
     smallest_gap: Positive | None = Field(
         default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
     )
+    restitution: float | None = _RESTITUTION
+    restitution_stokes: float | None = _RESTITUTION_STOKES
     impact_speed: float | None = Field(
         default=None,
         ge=0,
@@ -334,6 +350,8 @@ class InteractionTable(_OpenTable):
     smallest_gap: Positive | None = Field(
         default=None, description="Gap at which the expected impact is to end; range/4 if not given [length]"
     )
+    restitution: float | None = _RESTITUTION
+    restitution_stokes: float | None = _RESTITUTION_STOKES
     between: Literal["all", "walls", "pairs"] = Field(
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
@@ -89,7 +91,7 @@ def build_system(scene: Scene) -> System:
     speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh, given)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
     surfaces = (*(body.name for body in scene.body), *domain.names)
-    interactions = build_interactions(scene, parts, surfaces, loads)
+    interactions = build_interactions(scene, parts, surfaces, loads, _film(scene, parts, loads))
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
@@ -177,6 +179,12 @@ def _loads(
     together = stacked(own, weight, position, radius, parts.domain.size)
     stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
     return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
+
+
+def _film(scene: Scene, parts: Parts, loads: Loads) -> Film | None:
+    if scene.fluid.viscosity is None or not parts.backend.part.needs_mesh:
+        return None
+    return Film(scene.fluid.viscosity, np.array([equal_volume_radius(body) for body in parts.bodies]), loads)
 
 
 def _problem(

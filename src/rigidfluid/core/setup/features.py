@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.contact.restitution import Restitution, without_restitution
+
 if TYPE_CHECKING:
     from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
@@ -113,7 +115,11 @@ def _joints(system: System) -> Feature:
 
 
 def _law(system: System, interaction: Interaction) -> str:
-    text = f"law {interaction.law.name!r} below a gap of {interaction.law.range}"
+    law = interaction.law
+    text = f"law {without_restitution(law).name!r} below a gap of {law.range}"
+    if isinstance(law, Restitution):
+        text += f" with a restitution of {law.restitution:g}"
+        text += "" if law.loss is None else f" · exp(-{law.loss.decay:g}/St)"
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rigidfluid.core.contact.restitution import FilmLoss, Restitution
+from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Loads
@@ -29,6 +31,8 @@ class LawTable(NamedTuple):
     law: str
     range: float
     smallest_gap: float | None
+    restitution: float | None
+    restitution_stokes: float | None
     between: Between
     names: tuple[str, ...]
     options: Mapping[str, Any]
@@ -38,10 +42,12 @@ def law_tables(scene: Scene) -> tuple[LawTable, ...]:
     """All tables that name a law, `[contact]` first; its options are the detector's too."""
     contact, found = scene.contact, []
     if contact.law is not None and contact.range is not None:
-        found.append(LawTable("contact", contact.law, contact.range, contact.smallest_gap, "all", (), contact.options))
+        own = contact.smallest_gap, contact.restitution, contact.restitution_stokes
+        found.append(LawTable("contact", contact.law, contact.range, *own, "all", (), contact.options))
     for number, table in enumerate(scene.interaction):
         at, names = f"interaction.{number}", table.names or ()
-        found.append(LawTable(at, table.law, table.range, table.smallest_gap, table.between, names, table.options))
+        own = table.smallest_gap, table.restitution, table.restitution_stokes
+        found.append(LawTable(at, table.law, table.range, *own, table.between, names, table.options))
     return tuple(found)
 
 
@@ -67,7 +73,9 @@ def check_interactions(scene: Scene, domain: Domain) -> None:
         _check_names(scene, domain, table)
 
 
-def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads) -> tuple[Interaction, ...]:
+def build_interactions(
+    scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads, film: Film | None
+) -> tuple[Interaction, ...]:
     """The laws, each with the contacts that it acts in.
 
     Parameters
@@ -80,6 +88,8 @@ def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], load
         Names of the bodies, then of the faces.
     loads : Loads
         What contacts must hold; the smallest gap is each table's own.
+    film : Film or None
+        Of the fluid between the bodies, None without a fluid.
 
     Returns
     -------
@@ -94,7 +104,7 @@ def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], load
     return tuple(
         Interaction(
             field=table.at,
-            law=_law(table, selected, loads),
+            law=_law(table, selected, loads, film),
             between=table.between,
             surfaces=tuple(surfaces.index(name) for name in table.names),
             smallest_gap=table.smallest_gap,
@@ -103,14 +113,37 @@ def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], load
     )
 
 
-def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads) -> ForceLaw:
+def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads, film: Film | None) -> ForceLaw:
     own = replace(loads, smallest_gap=table.smallest_gap or SMALLEST_GAP * table.range)
     try:
-        return selected.part(selected.options, table.range, own)
+        law = selected.part(selected.options, table.range, own)
+        if table.restitution_stokes is None and (
+            table.restitution in (None, 1.0) or has_own_restitution(selected.part)
+        ):
+            return law
+        return Restitution(law, table.restitution or 1.0, _film_loss(table, selected.part, film))
     except SceneError as error:  # a law does not know its table
         subject = f"{table.at}.{error.subject.removeprefix('contact.')}"
         allowed = error.allowed.replace("contact.range", f"{table.at}.range")
         raise SceneError(subject, error.found, allowed, error.remedy) from None
+
+
+def has_own_restitution(law: type[ForceLaw]) -> bool:
+    """Whether the restitution is an option of the law itself."""
+    return "restitution" in law.Options.model_fields
+
+
+def _film_loss(table: LawTable, law: type[ForceLaw], film: Film | None) -> FilmLoss | None:
+    if table.restitution_stokes is None:
+        return None
+    given = f"{table.at}.restitution_stokes", table.restitution_stokes
+    if has_own_restitution(law):
+        allowed = f"a law whose restitution is not its own, as it is with {law.name!r}"
+        raise SceneError(*given, allowed, "Remove it, or choose another law.")
+    if film is None:
+        allowed = "a fluid with a viscosity, which the Stokes number of an impact is made of"
+        raise SceneError(*given, allowed, "Remove it, or choose a backend with a fluid.")
+    return FilmLoss(table.restitution_stokes, film)
 
 
 def _check_names(scene: Scene, domain: Domain, table: LawTable) -> None:

@@ -16,7 +16,7 @@ from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import read_table, unknown_key
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
-from rigidfluid.core.setup.interactions import LawTable, law_tables
+from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
@@ -244,7 +244,8 @@ def _law(table: LawTable, law: type[ForceLaw], scene: Scene, bodies: Sequence[Bo
         remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
         found = f"{law.name!r} with bodies that are no balls"
         raise SceneError(f"{table.at}.law", found, "a law for any shape", remedy)
-    return Selected(law, _options(law, table.options, table.at))
+    own = {"restitution": table.restitution} if has_own_restitution(law) and table.restitution is not None else {}
+    return Selected(law, _options(law, {**table.options, **own}, table.at))
 
 
 def _options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:

@@ -165,7 +165,8 @@ def _check_contact(scene: Scene) -> None:
         raise SceneError("contact.range", "nothing", "a length above 0 beside `law`", "Add the law's reach.")
     if law is None and range_ is not None:
         raise SceneError("contact.range", f"{range_} without a law", "`range` beside `law`", "Name the law: `law = …`.")
-    for key, read in (("smallest_gap", law), ("impact_speed", law or scene.interaction)):
+    own = dict.fromkeys(("smallest_gap", "restitution", "restitution_stokes"), law)
+    for key, read in {**own, "impact_speed": law or scene.interaction}.items():
         given = getattr(scene.contact, key)
         if not read and given is not None:
             remedy = "Name the law: `law = …`."

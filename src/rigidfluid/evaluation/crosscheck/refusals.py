@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.model.interactions import SumOfLaws
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
@@ -69,6 +70,9 @@ def refuse_foreign(scene: Scene, system: System) -> None:
             "one law for all contacts: pair styles of LAMMPS that add up are another sum",
             "Leave one of them, for all contacts.",
         )
+    if isinstance(law, Restitution):
+        allowed = "1: tables of LAMMPS hold no damper, and none of its contacts has this one"
+        raise CrosscheckError("contact.restitution", law.restitution, allowed, "Leave it out.")
     if law is not None and (law.dissipative or not law.conservative) and not isinstance(law, SpringDashpotLaw):
         raise CrosscheckError(
             "contact.law",

@@ -51,6 +51,14 @@ class StudyTable(_Table):
         default=[], max_length=2, description="Key of [vary], or two; the plot has a line for each of their values"
     )
     zip: bool = Field(default=False, description="Take the lists of [vary] side by side, not every combination")
+    seconds: Literal["wall", "cpu"] = Field(
+        default="wall", description="By which clock a run of a scene is timed; cpu where other programs run too"
+    )
+
+    @property
+    def clock(self) -> str:
+        """What the seconds are."""
+        return "CPU time" if self.seconds == "cpu" else "wall time"
 
 
 class FigureTable(_Table):
@@ -188,6 +196,10 @@ def _check_subject(tables: StudyFile) -> None:
         raise SceneError("error", "nothing", "a table", "Add the table [error].")
     if kernel is not None and tables.error is not None:
         raise SceneError("error", "a table", "nothing with study.kernel", "Remove it: a kernel has its own reference.")
+    if kernel is not None and tables.study.seconds == "cpu":
+        raise SceneError(
+            "study.seconds", "'cpu'", "'wall' with study.kernel", "Remove it: calls are timed by themselves."
+        )
 
 
 def _check_group(tables: StudyFile) -> None:

@@ -1,4 +1,4 @@
-"""The plot of a study: error against wall time, both logarithmic."""
+"""The plot of a study: error against run time, both logarithmic."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def error_plot(results: Results) -> Figure:
     axes.xaxis.set_major_locator(LogLocator(subs=subdivisions))
     axes.set_xlim(*_limits(seconds))
     axes.set_ylim(*_limits(errors))
-    axes.set_xlabel("wall time [s]")
+    axes.set_xlabel(f"{results.study.tables.study.clock} [s]")
     axes.set_ylabel(error_label(results))
     axes.grid(which="minor", alpha=0.12)
     figure.legend(handles=shown, loc="outside right upper")

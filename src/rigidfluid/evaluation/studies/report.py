@@ -48,7 +48,7 @@ def write_report(results: Results, out: Path) -> list[Path]:
 
 def _page(results: Results, plots: list[Path]) -> str:
     study = results.study
-    caption = "Error against wall time. Rings: runs that no other run beats in both."
+    caption = f"Error against {study.tables.study.clock}. Rings: runs that no other run beats in both."
     parts = [
         *(f'<p class="note">{escape(note)}</p>' for note in _notes(results)),
         *(picture(path, caption) for path in plots),
@@ -81,10 +81,11 @@ def _notes(results: Results) -> Iterator[str]:
 
 
 def _meaning(results: Results) -> str:
+    clock = results.study.tables.study.clock
     reference = "not known" if results.reference is None else f"{results.reference:.8g}"
     return (
         f"Figure: {results.target.figure}. Reference: {reference}. "
-        f"Error: {error_label(results).replace(chr(10), ' ')}. Seconds are wall time of one run on this machine."
+        f"Error: {error_label(results).replace(chr(10), ' ')}. Seconds are {clock} of one run on this machine."
     )
 
 

@@ -37,6 +37,7 @@ class SceneSubject:
         assert study.tables.error is not None
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
+        self._clock = study.tables.study.seconds
         self._data = read_toml(study.scene)
         self._warm: set[str] = set()
         scenes, _ = tried(study.settings(), self._scene)
@@ -48,8 +49,8 @@ class SceneSubject:
         return settings
 
     def identity(self, settings: Settings) -> str:
-        """The scene's tables with these settings, and the figure."""
-        decisive = [self._tables(settings), self._figure.model_dump()]
+        """The scene's tables with these settings, the figure, and the clock."""
+        decisive = [self._tables(settings), self._figure.model_dump(), self._clock]
         return json.dumps(decisive, sort_keys=True, default=str)
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
@@ -59,7 +60,7 @@ class SceneSubject:
         history = run(scene, progress=lambda now: progress(now.time / now.end))
         summary = history.summary
         figure = read_figure(self._figure, history)
-        return Outcome(figure, summary["wall_time"], summary["unknowns"], summary["steps"])
+        return Outcome(figure, summary[f"{self._clock}_time"], summary["unknowns"], summary["steps"])
 
     def _tables(self, settings: Settings) -> dict[str, Any]:
         tables = deepcopy(self._data)

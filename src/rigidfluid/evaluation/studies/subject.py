@@ -14,7 +14,7 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one run gives: the ``figure``, wall ``seconds``, ``unknowns`` of a step and ``steps``."""
+    """What one run gives: the ``figure``, ``seconds`` by the study's clock, ``unknowns`` of a step and ``steps``."""
 
     figure: float
     seconds: float

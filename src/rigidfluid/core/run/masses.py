@@ -1,0 +1,34 @@
+"""Kinetic energies of free motions: with a velocity, or after an impulse."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.mechanics.time_scheme import generalised_mass
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray
+
+
+class Masses:
+    """Kinetic energies of the free motions at a ``time``, where the ``state`` has them."""
+
+    def __init__(self, system: System, time: float, state: State) -> None:
+        self._free, mechanisms = ~system.controlled_motions, system.mechanisms
+        mass = system.mass if mechanisms is None else mechanisms.mass
+        inertia = system.inertia if mechanisms is None else mechanisms.inertia(time)
+        self._mass, self._matrix = mass[self._free], generalised_mass(mass, inertia, state.free_pose)[self._free]
+
+    def energies(self, twist: FloatArray) -> FloatArray:
+        """½ u·Mu of each of the ``twist`` (N, d+k) [energy]."""
+        free = twist[self._free]
+        return np.asarray(0.5 * np.einsum("ni,nij,nj->n", free, self._matrix, free))
+
+    def energies_by(self, impulse: FloatArray) -> FloatArray:
+        """Of what each ``impulse`` (N, d+k) makes of a motion at rest [energy]."""
+        free = impulse[self._free]
+        return np.asarray(0.5 * np.sum(free * np.linalg.solve(self._matrix, free[..., None])[..., 0], axis=1))
+
+    def fastest(self, energies: FloatArray) -> float:
+        """The greatest of the speeds √(2E/m) of these kinetic energies [length/time]."""
+        return float(np.sqrt(2.0 * energies / self._mass).max(initial=0.0))

@@ -1,0 +1,106 @@
+"""Pages of docs/validation are whole, and the README says what they say."""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from inspect import signature
+from pathlib import Path
+
+import pytest
+from page_tools.places import INPUTS, PAGES, ROOT, generators
+from page_tools.quotes import disagreements, quotes, unmarked
+from page_tools.stale import recorded
+
+NAMES = sorted(path.stem for path in PAGES.glob("*.md"))
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+TABLE = """
+| case | step | speed | off |
+| --- | --- | --- | --- |
+| disk | 0.1 | 1.234 (+0.5%) | 2.1e-05 |
+| disk | 0.2 | 1.250 (+1.5%) | 4.0e-05 |
+"""
+
+
+def measured() -> list[str]:
+    """The cells of what is measured in the README's table of results."""
+    table = README.partition("| case | figure | measured |")[2].partition("\n\n")[0]
+    return [line.split("|")[3] for line in table.splitlines()[2:]]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_page_says_what_makes_it(name: str) -> None:
+    page = (PAGES / f"{name}.md").read_text(encoding="utf-8")
+    if name in generators():
+        assert f"python docs/make_validation.py {name}`" in page or f"docs/make_validation.py {name}`" in page
+    else:
+        script = re.search(r"`python (benchmarks/\w+\.py)|`(rigidfluid bench)|^python (benchmarks/\w+\.py)", page, re.M)
+        assert script
+        assert all((ROOT / path).exists() for path in script.groups() if path and path.endswith(".py"))
+
+
+@pytest.mark.parametrize("name", generators())
+def test_every_generator_makes_a_page(name: str) -> None:
+    assert list(signature(import_module(f"pages.{name}").page).parameters) == ["work"]
+
+
+def test_every_generator_has_a_page() -> None:
+    assert set(generators()) - set(NAMES) == set()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_shows_what_there_is(name: str) -> None:
+    links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", (PAGES / f"{name}.md").read_text(encoding="utf-8"))
+    assert [link for link in links if not (PAGES / link).exists()] == []
+
+
+def test_every_picture_is_shown() -> None:
+    shown = {link for name in NAMES for link in re.findall(r"\]\((\w+\.png)\)", (PAGES / f"{name}.md").read_text())}
+    assert {path.name for path in PAGES.glob("*.png")} - shown == set()
+
+
+def test_inputs_are_of_pages_and_are_files_that_are_there() -> None:
+    for name, inputs in recorded(INPUTS).items():
+        assert name in NAMES
+        files = [file for file in inputs if file.startswith(("docs/", "scenes/", "studies/"))]
+        assert files
+        assert [file for file in files if not (ROOT / file).is_file()] == [], f"remake docs/validation/{name}.md"
+
+
+def test_every_measured_figure_of_the_readme_names_its_page() -> None:
+    assert len(measured()) > 10
+    assert {cell: found for cell in measured() if (found := unmarked(cell))} == {}
+
+
+def test_the_readme_says_what_the_pages_say() -> None:
+    assert list(disagreements(README)) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("1.23<!-- page: disk, 0.1 → speed --> cm/s", False),
+        ("1.24<!-- page: disk, 0.1 → speed --> cm/s", True),
+        (".5 %<!-- page: disk, 0.1 → speed -->", False),
+        (".5<!-- page: disk, 0.1 → speed -->", True),
+        ("2.1·10⁻⁵<!-- page: disk, 0.1 → off -->", False),
+        ("2.2·10⁻⁵<!-- page: disk, 0.1 → off -->", True),
+        (".0021 %<!-- page: disk, 0.1 → off -->", False),
+        (".0021<!-- page: disk, 0.1 → off -->", True),
+        ("1.23<!-- page: disk → speed -->", True),
+        ("1.23<!-- page: disk, 0.1 → height -->", True),
+        ("1.23<!-- other: disk, 0.1 → speed -->", True),
+    ],
+)
+def test_a_figure_that_its_page_does_not_say_is_seen(tmp_path: Path, text: str, wrong: bool) -> None:
+    (tmp_path / "page.md").write_text(TABLE, encoding="utf-8")
+    assert bool(list(disagreements(text, tmp_path))) == wrong
+
+
+def test_a_mark_without_a_figure_is_refused() -> None:
+    with pytest.raises(ValueError, match="behind no number"):
+        quotes("speed<!-- page: disk → speed -->")
+
+
+def test_a_figure_without_a_mark_is_seen() -> None:
+    assert unmarked(".5<!-- a: b → c -->, .7 s") == [".7"]
