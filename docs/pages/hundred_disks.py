@@ -60,7 +60,7 @@ def page(work: Work) -> Page:
 
 
 TEXT = """Case 6 of arXiv:2402.19093 with the paper's law, box and step, `scenes/hundred_disks.toml`. [The run as a
-movie](hundred_disks.gif): `rigidfluid movie out/validation/hundred_disks/shipped`.
+movie](hundred_disks.gif): `rigidfluid movie out/validation/hundred_disks/shipped --show vorticity`.
 
 {figures}
 
