@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -71,6 +71,20 @@ RankCounts = Annotated[
     list[int] | None, typer.Option("--ranks", metavar="N", help="On how many processes; default 1 and 2.", min=1)
 ]
 MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
+
+MovieFile = Annotated[
+    Path | None, typer.Option("--out", metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4.")
+]
+Shown = Annotated[
+    Literal["speed", "vorticity", "pressure"], typer.Option("--show", help="Which quantity of the fluid.")
+]
+Follow = Annotated[str | None, typer.Option("--follow", metavar="BODY", help="A body that the picture goes with.")]
+View = Annotated[
+    tuple[float, float, float, float] | None,
+    typer.Option("--view", help="Left, lower, right, upper end of what is seen; from the body's centre with --follow."),
+]
+MovieSize = Annotated[int, typer.Option("--size", help="Points along the longer side.", min=50, max=4000)]
+FramesPerSecond = Annotated[int, typer.Option("--fps", help="Pictures a second.", min=1, max=100)]
 
 LAUNCH = Launch.of()
 """This process among those that share a run; the first one speaks for all."""
@@ -202,6 +216,25 @@ def report(folder: Folder) -> None:
 
         for path in make_report(folder):
             _print(f"wrote {path}")
+
+
+@app.command()
+def movie(
+    folder: Folder,
+    out: MovieFile = None,
+    show: Shown = "speed",
+    follow: Follow = None,
+    view: View = None,
+    size: MovieSize = 600,
+    fps: FramesPerSecond = 15,
+) -> None:
+    """Make a movie from the results in a folder."""
+    with _reported(), _movie_bar() as progress:
+        from rigidfluid.movies import Look
+        from rigidfluid.movies import movie as make_movie
+
+        path = make_movie(folder, out, Look(show, follow, view, size, fps), progress)
+    _print(f"wrote {path}")
 
 
 @bench.command()
@@ -363,6 +396,17 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
             bar.update(task, total=total, completed=done, now=text)
 
         yield show
+
+
+@contextmanager
+def _movie_bar() -> Iterator[Callable[[int, int], None]]:
+    """A bar over the pictures of a movie."""
+    from rich.progress import Progress as Bar
+
+    console = _console(stderr=True)
+    with Bar(console=console, disable=not console.is_terminal) as bar:
+        task = bar.add_task("movie", total=None)
+        yield lambda done, total: bar.update(task, total=total, completed=done)
 
 
 def _print_insertion(figures: InsertionFigures) -> None:

@@ -19,7 +19,9 @@ from rigidfluid.errors import OutputError
 from rigidfluid.reports import report
 
 PNG = b"\x89PNG\r\n"
-FIELD_PICTURES = {"speed_field.png", "mesh.png", "smallest_gap.png"}
+FIELD_PICTURES = {
+    f"{name}.png" for name in ("speed_field", "streamlines", "vorticity", "whole_mesh", "mesh", "smallest_gap")
+}
 CURVES = {"position", "speed", "gap", "force", "energy"}
 OF_A_FALL = CURVES | {"coefficients", "step"}
 

@@ -16,7 +16,8 @@ from rigidfluid.core.model.types import BoolArray, Fields, FloatArray, IntArray
 OUTLINE = 400
 """Points along the longer side of the grid in which a domain's outline is found."""
 
-_QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""The nodes of the four linear triangles that a quadratic one is cut into."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,13 @@ class Outline:
 
 def fine_triangles(fields: Fields) -> Triangulation:
     """Every quadratic triangle cut into four linear ones at its nodes."""
-    return Triangulation(fields.points[:, 0], fields.points[:, 1], fields.cells[:, _QUARTERS].reshape(-1, 3))
+    return Triangulation(fields.points[:, 0], fields.points[:, 1], fields.cells[:, QUARTERS].reshape(-1, 3))
+
+
+def cell_by_cell(fields: Fields) -> Triangulation:
+    """The four triangles of each cell, with nodes of its own: node b of cell m has number 6 m + b."""
+    x, y = fields.points[fields.cells].reshape(-1, 2).T
+    return Triangulation(x, y, np.arange(fields.cells.size).reshape(-1, 6)[:, QUARTERS].reshape(-1, 3))
 
 
 def corner_triangles(fields: Fields) -> Triangulation:

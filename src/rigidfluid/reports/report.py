@@ -16,7 +16,16 @@ from rigidfluid.reports.contact_plot import contact_plot
 from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, joint_plot, position_plot, speed_plot, step_plot
 from rigidfluid.reports.mechanisms import mechanism_plot
 from rigidfluid.reports.page import page
-from rigidfluid.reports.pictures import gap_picture, mesh_picture, moments, narrowest_moment, speed_picture
+from rigidfluid.reports.pictures import (
+    gap_picture,
+    mesh_picture,
+    moments,
+    narrowest_moment,
+    speed_picture,
+    streamline_picture,
+    vorticity_picture,
+    whole_mesh_picture,
+)
 from rigidfluid.reports.results import Results, read_results
 from rigidfluid.reports.rotation_plot import rotation_plot, torque_plot, turning
 from rigidfluid.reports.style import STYLE, save
@@ -64,6 +73,11 @@ def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, .
     if _has_pictures(results):
         shown = moments(results)
         yield "speed_field", "Speed of the fluid. Solids are grey.", speed_picture(shown), raster
+        caption = "Streamlines, seen by an observer at rest, over the speed."
+        yield "streamlines", caption, streamline_picture(shown), raster
+        caption = "Vorticity, positive where the fluid turns counter-clockwise."
+        yield "vorticity", caption, vorticity_picture(shown), raster
+        yield "whole_mesh", "The whole mesh at the last output time.", whole_mesh_picture(shown[-1]), raster
         yield "mesh", "Mesh about the body that came nearest to another surface.", mesh_picture(shown), raster
         caption = "The smallest gap among the output times."
         yield "smallest_gap", caption, gap_picture(narrowest_moment(results)), raster

@@ -76,13 +76,15 @@ class Results:
         return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)
 
 
-def read_results(folder: Path) -> Results:
+def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     """Read a run's folder.
 
     Parameters
     ----------
     folder : Path
         Where a run has written.
+    motion_only : bool
+        Whether to leave the tables of energies, joints and contacts alone.
 
     Returns
     -------
@@ -100,11 +102,12 @@ def read_results(folder: Path) -> Results:
     scene = scene_from_dict(summary["scene"])
     system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension)
-    energy = _table(folder, "energy", scene.dimension)
+    energy = {} if motion_only else _table(folder, "energy", scene.dimension)
     by_state = {name: _by_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
     count = len(system.bodies)
     links = len(_joint_names(system))
-    joints = _table(folder, "joints", scene.dimension) if links else {}
+    joints = _table(folder, "joints", scene.dimension) if links and not motion_only else {}
+    steps = by_state["step"][:, 0]
     return Results(
         summary=summary,
         scene=scene,
@@ -115,7 +118,7 @@ def read_results(folder: Path) -> Results:
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
         wholes={name: values[:, count:] for name, values in by_state.items()},
-        contact_counts=_contact_counts(folder, scene.dimension, by_state["step"][:, 0]),
+        contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, scene.dimension, steps),
     )
 
 

@@ -1,0 +1,197 @@
+"""From a run's folder to a movie."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.writer import writing
+from rigidfluid.errors import OutputError
+from rigidfluid.movies.picture import Quantity, Scale, draw_bodies, flow_image, ground
+from rigidfluid.movies.shot import Shot, Window, shot_of
+from rigidfluid.reports.results import Results, read_results
+from rigidfluid.reports.style import STYLE, new_figure
+
+_SAMPLED = 12
+"""Pictures from which the scale of the colours is taken."""
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a movie looks.
+
+    ``show``: which quantity of the fluid. ``follow``: a body that the picture goes with. ``window``: left, lower, right
+    and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's longer
+    side. ``rate``: pictures a second.
+    """
+
+    show: Quantity = "speed"
+    follow: str | None = None
+    window: Window | None = None
+    longer: int = 600
+    rate: int = 15
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """A state of the run, and the file of its fields, None without a fluid."""
+
+    state: int
+    path: Path | None
+
+
+def movie(folder: Path, out: Path | None = None, look: Look | None = None, progress: Progress | None = None) -> Path:
+    """Make a movie from the results in a folder: a picture for each output time.
+
+    In 3D it shows the plane of gravity and of the bodies' motion, through the first body or the one followed.
+
+    Parameters
+    ----------
+    folder : Path
+        Which a run has written, complete or not.
+    out : Path, optional
+        An .mp4 or .gif file; movie.mp4 in the folder if not given, movie.gif where nothing encodes MP4.
+    look : Look, optional
+        How it looks.
+    progress : callable, optional
+        Told how many pictures are done, of how many.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OutputError
+        Where results are missing or cannot be read, the file cannot be of this kind, or the disk refuses.
+    SceneError, PluginError
+        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    """
+    look, results = look or Look(), read_results(Path(folder), motion_only=True)
+    path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
+    shot, frames = shot_of(results, look.follow, look.window), _frames(results)
+    scale = _scale(frames, shot, look)
+    partial = path.with_name(f".{path.name}.part{path.suffix}")
+    with matplotlib.rc_context(STYLE | _encoder()), writing(path):
+        figure, axes, image = _stage(results, shot, look, scale)
+        try:
+            with writer.saving(figure, str(partial), dpi=100):
+                for number, frame in enumerate(frames, start=1):
+                    image.set_data(_picture(results, shot, frame, look, scale))
+                    _label(axes, shot, frame.state, float(results.time[frame.state]))
+                    writer.grab_frame()
+                    if progress is not None:
+                        progress(number, len(frames))
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+    return path
+
+
+def _frames(results: Results) -> list[_Frame]:
+    """The output times whose fields are there; without a fluid every so often by the same clock."""
+    if results.series:
+        found = [_Frame(_state(results, time), path) for time, path in results.series if path.exists()]
+    else:
+        times = np.arange(results.time[0], results.time[-1] + 1e-9, results.scene.output.every)
+        found = [_Frame(_state(results, time), None) for time in times]
+    if len(found) < 2:
+        raise OutputError(
+            "the run", f"{len(found)} output times", "two or more, for a movie", "Run on, or shorten output.every."
+        )
+    return found
+
+
+def _state(results: Results, time: float) -> int:
+    return int(np.argmin(np.abs(results.time - time)))
+
+
+def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
+    """One for the whole movie."""
+    chosen = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).round().astype(int))
+    images = [
+        flow_image(frame.path, look.show, shot.grid(frame.state, look.longer // 2))
+        for frame in (frames[i] for i in chosen)
+        if frame.path is not None
+    ]
+    return Scale.of(look.show, images)
+
+
+def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
+    grid = shot.grid(frame.state, look.longer)
+    flow = None if frame.path is None else flow_image(frame.path, look.show, grid)
+    picture = ground(results, grid) if flow is None else scale.colours(flow)
+    draw_bodies(picture, grid, results, frame.state)
+    return picture
+
+
+def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figure, Axes, AxesImage]:
+    """A figure with an empty picture, and the colours beside it where there is a fluid."""
+    size = shot.upper - shot.lower
+    width, height = look.longer / 100.0 * size / size.max()
+    figure = new_figure(max(width, 1.5) + (1.6 if results.series else 0.6), max(height, 1.0) + 0.8)
+    axes = figure.add_subplot(xlabel=f"{results.axes[shot.axes[0]]} [length]")
+    axes.set_ylabel(f"{results.axes[shot.axes[1]]} [length]")
+    axes.grid(visible=False)
+    axes.locator_params(axis="x", nbins=1 if size[1] > 4.0 * size[0] else 4)
+    axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
+    image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
+    if results.series:
+        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": "force/area"}[look.show]
+        colours = ScalarMappable(Normalize(scale.lowest, scale.highest), scale.map)
+        extend = "both" if scale.lowest < 0.0 else "max"
+        figure.colorbar(colours, ax=axes, label=f"{look.show} [{unit}]", shrink=0.8, extend=extend)
+    return figure, axes, image
+
+
+def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:
+    """The time, and where the picture is."""
+    place = (shot.shift[state] if shot.shift.any() else np.zeros_like(shot.shift[state]))[list(shot.axes)]
+    (left, low), (right, high) = shot.lower + place, shot.upper + place
+    axes.images[0].set_extent((float(left), float(right), float(low), float(high)))
+    axes.set_title(f"time {time:.4g}")
+
+
+def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMovieWriter]:
+    """Where to, and what writes it."""
+    encoder = _encoder_path()
+    path = out or folder / ("movie.mp4" if encoder else "movie.gif")
+    if path.suffix == ".gif":
+        return path, PillowWriter(fps=rate)
+    if path.suffix != ".mp4":
+        raise OutputError("--out", path.name, "a name that ends in .mp4 or .gif", "Choose one of both.")
+    if encoder is None:
+        remedy = "Install rigidfluid[movies], or ffmpeg, or write a .gif."
+        raise OutputError("--out", path.name, "a .gif, since nothing here encodes MP4", remedy)
+    even = "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"
+    return path, FFMpegWriter(fps=rate, codec="h264", extra_args=["-vf", even, "-pix_fmt", "yuv420p"])
+
+
+def _encoder() -> dict[str, str]:
+    """Matplotlib's settings for it."""
+    found = _encoder_path()
+    return {} if found is None else {"animation.ffmpeg_path": found}
+
+
+def _encoder_path() -> str | None:
+    """The program that the package imageio-ffmpeg brings, or an installed one."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError:
+        return shutil.which("ffmpeg")
+    return str(get_ffmpeg_exe())

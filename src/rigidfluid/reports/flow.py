@@ -1,0 +1,52 @@
+"""Quadratic fields within their cells: the basis, velocity gradients and the vorticity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import Fields, FloatArray
+
+EDGES = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
+"""Which corners each middle node is between, in VTK's order, by the number of corners."""
+
+
+def basis(coordinates: FloatArray) -> FloatArray:
+    """The quadratic basis (P, b), corners first, at barycentric ``coordinates`` (P, d+1)."""
+    first, second = np.transpose(EDGES[coordinates.shape[1]])
+    middles = 4.0 * coordinates[:, first] * coordinates[:, second]
+    return np.hstack([coordinates * (2.0 * coordinates - 1.0), middles])
+
+
+def velocity_gradients(fields: Fields) -> FloatArray:
+    """∂u_i/∂x_j at the b nodes of each of M cells, (M, b, d, d), index i before j [1/time].
+
+    Each cell is differentiated by itself, and its sides may be curved: u and x are both quadratic in the cell's own
+    coordinates. A node has one gradient for each cell around it.
+    """
+    slopes = _slopes(fields.points.shape[1])
+    of_points = np.einsum("mbi,nbk->mnik", fields.points[fields.cells], slopes)
+    of_velocity = np.einsum("mbi,nbk->mnik", fields.velocity[fields.cells], slopes)
+    transposed = np.linalg.solve(of_points.swapaxes(2, 3), of_velocity.swapaxes(2, 3))
+    return np.asarray(transposed.swapaxes(2, 3))
+
+
+def vorticity(fields: Fields, normal: FloatArray | None = None) -> FloatArray:
+    """ω = ∇ × u at the nodes of each cell, (M, b), in 3D its component along ``normal`` (3,) [1/time]."""
+    gradient = velocity_gradients(fields)
+    if normal is None:
+        return np.asarray(gradient[..., 1, 0] - gradient[..., 0, 1])
+    axes = ((2, 1), (0, 2), (1, 0))
+    return np.asarray(
+        sum(n * (gradient[..., i, j] - gradient[..., j, i]) for n, (i, j) in zip(normal, axes, strict=True))
+    )
+
+
+def _slopes(dimension: int) -> FloatArray:
+    """Derivatives (b, b, d) of the basis at the nodes: node, function, direction from the first corner to another."""
+    corners = np.eye(dimension + 1)
+    first, second = np.transpose(EDGES[dimension + 1])
+    nodes = np.vstack([corners, 0.5 * (corners[first] + corners[second])])
+    of_corners = (4.0 * nodes - 1.0)[:, :, None] * corners
+    of_middles = 4.0 * (nodes[:, first, None] * corners[second] + nodes[:, second, None] * corners[first])
+    along = np.concatenate([of_corners, of_middles], axis=1)
+    return np.asarray(along[..., 1:] - along[..., :1])
