@@ -20,7 +20,7 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-OF_THE_RUN = ("wall_time", "wall_time_per_stage", "peak_memory", "versions", "files")
+OF_THE_RUN = ("wall_time", "cpu_time", "wall_time_per_stage", "peak_memory", "versions", "files")
 
 
 def run(source: Path, scene: Path, out: Path, end: float, every: float, *more: str) -> None:

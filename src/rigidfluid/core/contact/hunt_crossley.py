@@ -97,13 +97,13 @@ def excess_by_speed(
         speed = slowest * np.exp(middle)
         harder = hardening_at(speed)
         now = np.maximum(harder.most * closing / speed, -harder.least)
-        enough = 2.0 * (speed / harder.most) ** 2 * (_loss(harder.most) - _loss(now)) >= stored
+        enough = 2.0 * (speed / harder.most) ** 2 * (_work(harder.most) - _work(now)) >= stored
         low, high = np.where(enough, low, middle), np.where(enough, middle, high)
     return np.asarray(now)
 
 
-def _loss(excess: FloatArray) -> FloatArray:
-    """G(y) = y - ln(1 + y)."""
+def _work(excess: FloatArray) -> FloatArray:
+    """G(y) = y - ln(1 + y) = ∫ y dy/(1 + y), the work of the law in units of m (v/x)²."""
     return np.asarray(excess - np.log1p(excess))
 
 

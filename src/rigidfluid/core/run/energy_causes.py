@@ -48,7 +48,7 @@ def _is_impact(system: System, clock: Clock, state: State, candidate: State) -> 
         return True
     if before.in_impact and abs(after.contact - before.contact) >= grown > 0.0:
         return True
-    return _energy_of_contacts(system, clock, state, candidate) >= grown > 0.0
+    return 0.0 < grown <= _energy_of_contacts(system, clock, state, candidate)
 
 
 def _energy_of_contacts(system: System, clock: Clock, state: State, candidate: State) -> float:
