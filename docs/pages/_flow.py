@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.tri import Triangulation
 from page_tools import Run
 
-from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.reports.plane import fine_triangles
-from rigidfluid.reports.style import BODY
+from rigidfluid.reports.flow import vorticity
+from rigidfluid.reports.plane import cell_by_cell
+from rigidfluid.reports.style import BODY, SIGNED_COLOURMAP
 
 
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:
@@ -23,8 +21,11 @@ def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale:
     figure = Figure(figsize=(8.0, panel * height / _width(run) + 1.3), dpi=120, layout="constrained")
     for axes, moment in zip(figure.subplots(1, len(moments)), moments, strict=True):
         time = min(series, key=lambda at: abs(at - moment))
-        triangles, values = _vorticity(series[time])
-        colours = axes.tripcolor(triangles, values, cmap="RdBu_r", vmin=-scale, vmax=scale, rasterized=True)
+        fields = read_vtu(series[time])
+        triangles, values = cell_by_cell(fields), vorticity(fields).ravel()
+        colours = axes.tripcolor(
+            triangles, values, shading="gouraud", cmap=SIGNED_COLOURMAP, vmin=-scale, vmax=scale, rasterized=True
+        )
         middle = _mean_height(run, time)
         axes.set(
             xlim=(triangles.x.min(), triangles.x.max()), ylim=(middle - height / 2, middle + height / 2),
@@ -32,16 +33,6 @@ def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale:
         )  # fmt: skip
     figure.colorbar(colours, ax=figure.axes, location="bottom", label="vorticity [1/s]", shrink=0.5, aspect=40)
     return figure
-
-
-def _vorticity(path: Path) -> tuple[Triangulation, np.ndarray]:
-    """Of each fourth of a cell, by the velocities at its corners."""
-    fields: Fields = read_vtu(path)
-    triangles = fine_triangles(fields)
-    corners, velocity = fields.points[triangles.triangles][:, :, :2], fields.velocity[triangles.triangles][:, :, :2]
-    sides, jumps = corners[:, 1:] - corners[:, :1], velocity[:, 1:] - velocity[:, :1]
-    gradient = np.linalg.solve(sides, jumps)  # [cell, derivative by, of]
-    return triangles, gradient[:, 0, 1] - gradient[:, 1, 0]
 
 
 def _width(run: Run) -> float:
