@@ -191,7 +191,8 @@ def damped(fall: Fall, coarse: Fall) -> str:
     return f"""\
 Where a wall may come within range in a step, at twice the speed of now, the step is walked in substeps of the contact;
 if they are more than eight, the fluid's force does not vary in it, and the step is of first order, whether the wall is
-reached or not. That is how the scheme is written; that it is the cause here has not been shown apart. The shipped step has about eight of them and the coarse one twice as many: {found}."""
+reached or not. That is how the scheme is written; that it is the cause here has not been shown apart.
+The shipped step has about eight of them and the coarse one twice as many: {found}."""
 
 
 def literature(fall: Fall) -> str:
