@@ -74,7 +74,10 @@ def assert_same_tables(folders, names, rtol):
     for name in names:
         expected, found = (table(folder / name) for folder in folders)
         for column, values in expected.items():
-            np.testing.assert_allclose(found[column], values, rtol=rtol, atol=1e-8, err_msg=f"{name} {column}")
+            atol = 1e-8
+            if column.startswith("residual"):  # small differences of energies, with the round-off of those
+                atol = max(atol, 1e-7 * expected["kinetic"].max())
+            np.testing.assert_allclose(found[column], values, rtol=rtol, atol=atol, err_msg=f"{name} {column}")
 
 
 @pytest.fixture(params=["gathered", "dolfinx"])
