@@ -17,7 +17,7 @@ from rich.text import Text
 
 from rigidfluid import __version__
 from rigidfluid.core.run.process import Launch, no_collection
-from rigidfluid.errors import RigidfluidError
+from rigidfluid.errors import RigidfluidError, SharedInterrupt
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -79,6 +79,13 @@ Shown = Annotated[
     Literal["speed", "vorticity", "pressure"], typer.Option("--show", help="Which quantity of the fluid.")
 ]
 Follow = Annotated[str | None, typer.Option("--follow", metavar="BODY", help="A body that the picture goes with.")]
+Looked = Annotated[
+    str | None, typer.Option("--follow", metavar="BODY", help="The body to look at; else the one that came nearest.")
+]
+Plane = Annotated[
+    Literal["motion", "xy", "xz", "yz"],
+    typer.Option("--plane", help="Which plane of a 3D run; motion: that of gravity and of the bodies' motion."),
+]
 View = Annotated[
     tuple[float, float, float, float] | None,
     typer.Option("--view", help="Left, lower, right, upper end of what is seen; from the body's centre with --follow."),
@@ -209,12 +216,12 @@ def plugins() -> None:
 
 
 @app.command()
-def report(folder: Folder) -> None:
+def report(folder: Folder, plane: Plane = "motion", follow: Looked = None) -> None:
     """Make plots and a page from the results in a folder."""
     with _reported():
         from rigidfluid.reports import report as make_report
 
-        for path in make_report(folder):
+        for path in make_report(folder, plane, follow):
             _print(f"wrote {path}")
 
 
@@ -224,6 +231,7 @@ def movie(
     out: MovieFile = None,
     show: Shown = "speed",
     follow: Follow = None,
+    plane: Plane = "motion",
     view: View = None,
     size: MovieSize = 600,
     fps: FramesPerSecond = 15,
@@ -233,7 +241,7 @@ def movie(
         from rigidfluid.movies import Look
         from rigidfluid.movies import movie as make_movie
 
-        path = make_movie(folder, out, Look(show, follow, view, size, fps), progress)
+        path = make_movie(folder, out, Look(show, follow, view, size, fps, plane), progress)
     _print(f"wrote {path}")
 
 
@@ -293,15 +301,19 @@ def schema() -> None:
 def _reported(on_interrupt: str = "") -> Iterator[None]:
     """Turn an expected error into one paragraph on stderr and an exit code.
 
-    Expected errors are those of all processes. An interrupt or another error may be of one, and then ends the others.
+    Expected errors are those of all processes, and so is a SharedInterrupt. Another interrupt or error may be of one,
+    and then ends the others.
     """
     try:
         yield
     except RigidfluidError as error:
         raise _refusal(error) from None
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         _complain(f"Interrupted. {on_interrupt}")
-        LAUNCH.end()
+        if isinstance(interrupt, SharedInterrupt):
+            LAUNCH.meet()
+        else:
+            LAUNCH.end()
         raise typer.Exit(INTERRUPTED) from None
     except Exception:
         _complain(f"A fault in rigidfluid or in a plug-in. {on_interrupt}")
@@ -449,7 +461,20 @@ def _print_end(history: History, folder: Path) -> None:
             "yellow",
         )
     _print_energy(summary["energy"])
+    if summary["unknowns"]:
+        _print(_of_stages(summary["wall_time_per_stage"], summary["wall_time"]))
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
+
+
+def _of_stages(seconds: Mapping[str, float], total: float) -> str:
+    """What meshes and linear systems took of a run."""
+    made, moved, carried, solved, answered = (
+        seconds.get(stage, 0.0) for stage in ("mesh", "move mesh", "transfer", "advance", "response")
+    )
+    meshes = (
+        f"meshes {made + moved + carried:.1f} s (made {made:.1f}, moved {moved:.1f}, fluid carried over {carried:.1f})"
+    )
+    return f"time: {total:.1f} s, of it {meshes}, solving {solved + answered:.1f} s"
 
 
 def _print_energy(energy: Mapping[str, Any]) -> None:

@@ -71,3 +71,7 @@ class StepError(RigidfluidError):
 
 class StepRejected(StepError):
     """One attempted step is not usable; the loop retries it shorter."""
+
+
+class SharedInterrupt(KeyboardInterrupt):
+    """Ctrl-C on one of several processes, raised on all of them at the same exchange."""

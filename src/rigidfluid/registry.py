@@ -131,17 +131,22 @@ class Registry:
         PluginError
             If there is no such part, or if a package that it needs is missing.
         """
-        subject = subject or kind.field
-        allowed = "one of " + ", ".join(self._available(kind))
+        part = self.find(kind, name, subject)
+        hint = missing_packages(part)
+        if hint:
+            found = f"{name!r}, which is not usable here"
+            raise PluginError(subject or kind.field, found, self._available(kind), hint)
+        return part
+
+    def find(self, kind: Kind[P], name: str, subject: str | None = None) -> type[P]:
+        """As `get`, but also where a package that the part needs is missing."""
         for entry in self.entries:
             if entry.kind is kind and entry.name == name:
-                if not entry.available:
-                    raise PluginError(subject, f"{name!r}, which is not usable here", allowed, entry.hint)
                 return cast(type[P], entry.part)
-        raise PluginError(subject, repr(name), allowed, self._remedy(kind, name))
+        raise PluginError(subject or kind.field, repr(name), self._available(kind), self._remedy(kind, name))
 
-    def _available(self, kind: Kind[Any]) -> list[str]:
-        return [entry.name for entry in self.entries if entry.kind is kind and entry.available]
+    def _available(self, kind: Kind[Any]) -> str:
+        return "one of " + ", ".join(entry.name for entry in self.entries if entry.kind is kind and entry.available)
 
     def _remedy(self, kind: Kind[Any], name: str) -> str:
         unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]

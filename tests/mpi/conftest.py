@@ -12,8 +12,8 @@ SUPPORT = Path(__file__).parents[1] / "support"
 
 
 @pytest.fixture
-def mpirun(tmp_path):
-    """Runs Python in so many processes, which must end by themselves."""
+def mpi(tmp_path):
+    """Starts Python in so many processes, which must end by themselves."""
     plugin = tmp_path / "plugin"
     install_gathered(plugin)
     paths = [plugin, SUPPORT, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
@@ -28,10 +28,27 @@ def mpirun(tmp_path):
         "COLUMNS": "200",
     }
 
-    def run(count, *arguments, **variables):
+    def start(count, *arguments, **variables):
         command = ["mpirun", "-n", str(count), sys.executable, "-W", "error", *map(str, arguments)]
-        return subprocess.run(
-            command, env=os.environ | more | variables, capture_output=True, text=True, timeout=120, check=False
+        return subprocess.Popen(
+            command, env=os.environ | more | variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
+
+    return start
+
+
+@pytest.fixture
+def mpirun(mpi):
+    """Runs Python in so many processes until they end."""
+
+    def run(count, *arguments, **variables):
+        process = mpi(count, *arguments, **variables)
+        try:
+            said, complaint = process.communicate(timeout=300)
+        except subprocess.TimeoutExpired:
+            process.terminate()  # killed, mpirun would leave its processes behind
+            process.communicate()
+            raise
+        return subprocess.CompletedProcess(process.args, process.returncode, said, complaint)
 
     return run

@@ -5,7 +5,10 @@ Where DOLFINx is installed its backend, which shares the work, makes the same ru
 
 import csv
 import json
+import os
 import shutil
+import signal
+import time
 from importlib.util import find_spec
 
 import numpy as np
@@ -116,11 +119,20 @@ def test_two_processes_see_the_impact_that_one_does(mpirun, tmp_path, backend):
     assert_same_tables(folders, ("bodies.csv", "energy.csv"), rtol=3e-6)
 
 
-def test_a_folder_of_two_processes_is_not_resumed_by_one(mpirun, tmp_path):
-    succeeded(mpirun(2, *fall(tmp_path, time__end=0.004)))
-    result = mpirun(1, *fall(tmp_path, "--resume"))
-    assert result.returncode != 0
-    assert "found a run of 2 processes; allowed is a run of 1" in result.stderr
+def test_a_run_goes_on_with_other_numbers_of_processes(mpirun, tmp_path, backend):
+    """From one to two, from two to three, and back to one: new meshes before and after."""
+    chosen = {"fluid__backend": f'"{backend}"', "fluid__tolerance": 1e-12}
+    succeeded(mpirun(1, *fall(tmp_path / "one", **chosen)))
+    succeeded(mpirun(1, *fall(tmp_path / "more", time__end=0.02, **chosen)))
+    for count, end in ((2, 0.032), (3, 0.044), (1, 0.056)):
+        succeeded(mpirun(count, *fall(tmp_path / "more", "--resume", **chosen | {"time__end": end})))
+    one, more = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("one", "more"))
+    assert more["ranks"] == 1
+    for figure in ("status", "cells", "unknowns", "steps", "remeshes", "rejected_steps"):
+        assert one[figure] == more[figure]
+    assert_same_tables([tmp_path / "one", tmp_path / "more"], ("bodies.csv", "energy.csv"), rtol=1e-7)
+    assert [path.name for path in (tmp_path / "more").glob("state*")] == ["state.h5"]
+    assert all(len(read_vtu(path).cells) for _, path in read_pvd(tmp_path / "more" / "fields.pvd"))
 
 
 def test_a_backend_of_one_process_is_refused_once(mpirun, tmp_path):
@@ -136,6 +148,23 @@ def test_one_process_that_fails_ends_all(mpirun, tmp_path):
     assert result.stderr.count("Traceback") == 1
     assert "ZeroDivisionError" in result.stderr
     assert not (tmp_path / "out" / "summary.json").exists()
+
+
+def test_ctrl_c_on_one_process_ends_all_with_a_summary(mpi, mpirun, tmp_path, backend):
+    """A real signal, to the process that the folder's lock names; a shell in the background may ignore it."""
+    chosen = {"fluid__backend": f'"{backend}"', "time__end": 0.1}
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    process = mpi(2, *fall(tmp_path, **chosen))
+    signal.signal(signal.SIGINT, before)
+    while not (tmp_path / "fields" / "000001.pvtu").exists() and process.poll() is None:
+        time.sleep(0.02)
+    os.kill(int((tmp_path / "run.lock").read_text()), signal.SIGINT)
+    _, complaint = process.communicate(timeout=300)
+    assert process.returncode != 0
+    assert complaint.count("Interrupted.") == 1
+    assert "Traceback" not in complaint
+    assert json.loads((tmp_path / "summary.json").read_text())["status"] == "interrupted"
+    succeeded(mpirun(2, *fall(tmp_path, "--resume", **chosen | {"time__end": 0.04})))
 
 
 def test_a_full_disk_of_one_process_is_reported_once(mpirun, tmp_path):

@@ -34,6 +34,7 @@ def install_gathered(folder):
 class Gathered(FluidBackend):
     name = "gathered"
     curved_cells = True
+    state_format = "slices"
     Options = ScikitFem.Options
 
     def __init__(self, options, problem):
@@ -94,6 +95,13 @@ class Gathered(FluidBackend):
 
     def forget(self):
         self._inner.forget()
+
+    def joined(self, states, parts, mesh):
+        return {name: np.concatenate([state[name] for state in states]) for name in states[0]}
+
+    def cut(self, fluid, mesh, parts):
+        slices = {name: np.array_split(values, len(parts)) for name, values in fluid.items()}
+        return [{name: slices[name][rank] for name in slices} for rank in range(len(parts))]
 
     def _on_root(self, work, mesh, fluid=None):
         """What the root makes of the whole: a state, of which each rank gets a slice, and the rest, for all."""

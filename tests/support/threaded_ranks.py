@@ -13,24 +13,24 @@ class ThreadedRanks(Ranks):
     def __init__(self, rank, board):
         self.rank, self.size, self._board = rank, len(board.items), board
 
-    def allgather(self, item):
+    def exchange(self, item):
         self._board.barrier.wait()
         self._board.items[self.rank] = pickle.dumps(item)
         self._board.barrier.wait()
         return [pickle.loads(each) for each in self._board.items]
 
     def gather(self, item):
-        items = self.allgather(item)
+        items = self.exchange(item)
         return items if self.is_root else None
 
     def bcast(self, item):
-        return self.allgather(item if self.is_root else None)[ROOT]
+        return self.exchange(item if self.is_root else None)[ROOT]
 
     def scatter(self, items):
-        return self.allgather(items)[ROOT][self.rank]
+        return self.exchange(items)[ROOT][self.rank]
 
     def alltoall(self, items):
-        return [theirs[self.rank] for theirs in self.allgather(items)]
+        return [theirs[self.rank] for theirs in self.exchange(items)]
 
     def abort(self):
         self._board.barrier.abort()

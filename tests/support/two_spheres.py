@@ -52,6 +52,27 @@ def rotation_in_strain(distance: float, order: int = 60) -> tuple[float, float]:
     return float(found[-1]), float(np.abs(matrix @ found - sides).max())
 
 
+def drag_across(gap: float, order: int = 60) -> float:
+    """Force over 6πμrV on each of two spheres that do not turn and move with V across the line of their centres, one to
+    each side: Y₁₁ᴬ - Y₁₂ᴬ of Jeffrey & Onishi, J. Fluid Mech. 139 (1984) 261, doi:10.1017/S0022112084000355.
+
+    Parameters
+    ----------
+    gap : float
+        Between the surfaces [radius].
+    order : int
+        Largest n; enough is some 12 over the square root of the gap.
+    """
+    cos = np.polynomial.legendre.leggauss(4 * order)[0]
+    sin = np.sqrt(1.0 - cos**2)
+    mirrored = np.array([-1.0, -1.0, 1.0])[:, None, None]
+    matrix = (lamb(sin, cos, order) + mirrored * lamb(sin, -(cos + 2.0 + gap), order)).reshape(3 * len(cos), -1)
+    scale = np.linalg.norm(matrix, axis=0)
+    sides = np.array([np.ones_like(cos), -np.ones_like(cos), np.zeros_like(cos)]).ravel()
+    found = np.linalg.lstsq(matrix / scale, sides, rcond=1e-15)[0] / scale
+    return float(abs(found[0]) * 4.0 * np.pi / (6.0 * np.pi))
+
+
 def lamb(rho: FloatArray, z: FloatArray, order: int) -> FloatArray:
     """Velocities about a sphere's centre, (3, points, 3·order): u_ρ, u_φ and u_z of all p, then all Φ, then all χ.
 

@@ -287,9 +287,11 @@ def test_open_faces_and_parts_of_one_body_do_not_start_within_range() -> None:
 
 
 def test_range_beside_body_and_cell() -> None:
-    body, cell = found("range", contact={"range": 0.15}, **WET, mesh={"size": 0.2, "size_body": 0.16})
+    coarse = {"size": 0.4, "size_body": 0.32, "refinements": 1}
+    body, cell = found("range", contact={"range": 0.15}, **WET, mesh=coarse)
     assert body.enough == {"range": RADIUS}
-    assert cell.enough == {"size_body": 0.15}
+    assert cell.enough == {"size_body": 0.3}
+    assert len(found("range", contact={"range": 0.15}, **WET, mesh=coarse | {"refinements": 2})) == 1
     assert not found("range", contact={"range": 0.05}, **WET, **MESH)
 
 
@@ -302,6 +304,17 @@ def test_nothing_keeps_bodies_apart(contact: dict[str, Any], more: dict[str, Any
     (finding,) = answers(without_epsilon(contact, **more), "law")
     assert finding.grade == grade
     assert "normal" in finding.remedy
+
+
+def test_a_film_that_the_mesh_resolves_as_well() -> None:
+    """h = .005, R = .1 at the floor: h²/R is .00025."""
+    film = {"law": "lubrication", "range": 0.02, "viscosity": 0.01, "cutoff": 1e-5}
+    more = {**WET, "mesh": {"size": 0.2, "size_body": 0.02, "refinements": 2}}
+    (finding,) = answers(without_epsilon(film, **more), "film")
+    assert finding.grade == "warning"
+    assert finding.enough == {"range": pytest.approx(0.00025)}
+    assert not answers(without_epsilon(film | {"range": 0.00025}, **more), "film")
+    assert not answers(without_epsilon({"law": "normal", "range": 0.02, "epsilon": "auto"}, **more), "film")
 
 
 def test_fixed_bodies_need_no_law() -> None:

@@ -33,6 +33,9 @@ TABLE = [
     ("hundred_disks", "centre", "body", "26", "0.0207"),
 ]
 
+PAPER = {"falling_ellipsoid": ["contact.epsilon=3e-6"]}
+"""What the paper has where a shipped scene has something else."""
+
 
 def checked(scene: str, tmp_path: Path, *assignments: str) -> tuple[int, dict[str, Any]]:
     """Exit code and report of the command."""
@@ -80,10 +83,11 @@ def test_the_disk_of_the_paper_needs_a_smaller_epsilon(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("scene", ["ellipse_in_channel", "falling_ellipsoid"])
 def test_ellipses_of_the_paper_rest_where_the_cubic_says(scene: str, tmp_path: Path) -> None:
-    loaded = load_scene(SCENES / f"{scene}.toml")
+    overrides = PAPER.get(scene, [])
+    loaded = load_scene(SCENES / f"{scene}.toml", overrides)
     law_range, epsilon = loaded.contact.range, loaded.contact.options["epsilon"]
     weight = np.linalg.norm(build_system(loaded).weight[0])
-    code, report = checked(scene, tmp_path)
+    code, report = checked(scene, tmp_path, *overrides)
     found = at_rest(report, "bottom")["found"]
     roots = np.roots([1.0, -2.0 * law_range, law_range**2, -epsilon * weight])  # gap (range - gap)² = ε W
     inside = roots.real[(np.abs(roots.imag) < 1e-12) & (roots.real < law_range)]

@@ -13,10 +13,11 @@ from mesh_tools import ball, ellipsoid, upright
 
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.curved_edges import SQUEEZED, CurvedCells, with_curved_edges
-from rigidfluid.core.mesh.distribution import _parts, whole
+from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.topology import orient
 from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.domains.box import Box, BoxOptions
@@ -34,8 +35,7 @@ def around_an_ellipsoid(request):
     d = request.param
     box = Box(BoxOptions(lower=(-1.0,) * d, upper=(1.0,) * d), d)
     body, pose = ellipsoid(*(0.5, 0.3, 0.3)[:d]), upright([0.1, 0.0, 0.0][:d])
-    size_body = 0.15 if d == 2 else 0.25
-    return body, pose, box, curved_mesh(body, pose, box, 0.4, size_body)
+    return body, pose, box, curved_mesh(body, pose, box, 0.4, 0.15)
 
 
 def test_all_edges_on_a_body_pass_through_its_surface(around_an_ellipsoid) -> None:
@@ -112,8 +112,8 @@ def test_a_cell_too_thin_to_bend_stays_straight() -> None:
     disk, pose = ball(1.0, 2), upright([0.0, 0.0])
     angle = 2.0 * np.pi * np.arange(6) / 6
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    top = 3.0 * ring
-    top[0] = 0.5 * (ring[0] + ring[1]) * 1.2  # the arc passes at 1.155 of the chord's middle
+    top = 1.25 * (ring + np.roll(ring, -1, axis=0))
+    top[0] *= 0.48  # the arc passes at 1.155 of the chord's middle
     inner, outer = np.arange(6), 6 + np.arange(6)
     cells = np.concatenate(
         [
@@ -122,11 +122,21 @@ def test_a_cell_too_thin_to_bend_stays_straight() -> None:
         ]
     )
     facets = np.concatenate([np.column_stack([c, np.roll(c, -1)]) for c in (inner, outer)])
-    mesh = Mesh(np.concatenate([ring, top]), cells, facets, np.repeat([0, 1], 6))
-    box = Box(BoxOptions(lower=(-3.0, -3.0), upper=(3.0, 3.0)), 2)
+    mesh = orient(Mesh(np.concatenate([ring, top]), cells, facets, np.repeat([0, 1], 6)))
+    box = Box(BoxOptions(lower=(-30.0, -30.0), upper=(30.0, 30.0)), 2)  # no gap
     curved = with_curved_edges(mesh, [disk], pose, box).curved
     assert curved is not None
     assert curved.vertices.tolist() == [[0, 5], [1, 2], [2, 3], [3, 4], [4, 5]]
+
+
+def test_edges_in_a_gap_stay_straight_before_it_halves() -> None:
+    """A cell over a coarse disk keeps .56 of its volume: enough alone, too little where a wall is above it."""
+    disk, pose = ball(1.0, 2), upright([0.0, 0.0])
+    points = np.array([[-0.5, 0.75**0.5], [0.5, 0.75**0.5], [0.0, 1.48]])
+    mesh = orient(Mesh(points, np.array([[0, 1, 2]]), np.array([[0, 1], [1, 2], [0, 2]]), np.array([0, 4, 4])))
+    for height, bent in ((9.0, True), (1.5, False)):
+        box = Box(BoxOptions(lower=(-9.0, -9.0), upper=(9.0, height)), 2)
+        assert (with_curved_edges(mesh, [disk], pose, box).curved is not None) == bent
 
 
 def test_edges_on_a_curved_wall_bend_outwards() -> None:
@@ -156,7 +166,7 @@ def test_points_are_found_in_curved_cells(around_an_ellipsoid) -> None:
 def test_parts_of_a_mesh_hold_the_curved_edges_of_their_cells(around_an_ellipsoid) -> None:
     *_, mesh = around_an_ellipsoid
     bent = set(map(tuple, mesh.curved.vertices.tolist()))
-    for part in _parts(mesh, 3):
+    for part in parts_of(mesh, partition(mesh, 3)):
         number = part.part.vertices
         pairs = np.sort(part.cells[:, list(combinations(range(part.cells.shape[1]), 2))].reshape(-1, 2), axis=1)
         expected = bent & set(map(tuple, number[pairs].tolist()))

@@ -1,6 +1,7 @@
 """The DOLFINx backend beside scikit-fem's: two engines, one scheme, the same answer."""
 
 import importlib.util
+import signal
 
 import numpy as np
 import pytest
@@ -70,6 +71,24 @@ def test_the_schur_complement_gives_what_factors_give(make, model):
     """The first steps are short: next to the inertia in their residual the pressure is small."""
     runs = [after(make(backend="dolfinx", model=model, tolerance=1e-13, solver=kind), 3) for kind in ("lu", "schur")]
     assert_same(*runs, 1e-7)
+
+
+@pytest.mark.parametrize("solver", ["lu", "schur"])
+def test_ctrl_c_within_petsc_is_ctrl_c(monkeypatch, solver):
+    """PETSc tells of an error of its own where what it calls fails."""
+    from rigidfluid.backends.dolfinx.krylov import _Operator
+
+    run, apply = after(two_dimensional(backend="dolfinx", solver=solver), 1), _Operator.mult
+
+    def pressed(operator, *arguments):
+        apply(operator, *arguments)
+        signal.raise_signal(signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # in a shell's background it is ignored
+    monkeypatch.setattr(_Operator, "mult", pressed)
+    with pytest.raises(KeyboardInterrupt):
+        run.step()
+    signal.signal(signal.SIGINT, before)
 
 
 def test_petscs_options_are_those_of_the_scene():

@@ -4,6 +4,7 @@ import gc
 import glob
 import importlib.util
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -130,12 +131,14 @@ def test_renewals_by_wasted_iterations_analyse_once_until_all_is_forgotten(phase
         spread[-1].data *= np.repeat(10.0 ** (power * RIGHT), np.diff(PATTERN.indptr))
     for each in spread:
         for _ in range(5):
-            solver.solve(each.__matmul__, lambda each=each: each, RIGHT, 1e-9, again=True)
+            solver.solve(
+                each.__matmul__, lambda each=each: SimpleNamespace(reduced=lambda: each), RIGHT, 1e-9, again=True
+            )
     assert phases.count(ANALYSE) == 1
     assert phases.count(FACTORISE) >= 4
     solver.forget()
     phases.clear()
-    solver.solve(each.__matmul__, lambda: each, RIGHT, 1e-9)
+    solver.solve(each.__matmul__, lambda: SimpleNamespace(reduced=lambda: each), RIGHT, 1e-9)
     assert phases == [ANALYSE, FACTORISE]
 
 

@@ -7,14 +7,17 @@ import pytest
 
 from rigidfluid.core.model.types import Fields, FloatArray
 from rigidfluid.reports.flow import EDGES, vorticity
+from rigidfluid.reports.moment import Moment
 from rigidfluid.reports.pictures import (
-    Moment,
+    pressure_picture,
     speed_picture,
     streamline_picture,
     vorticity_picture,
     whole_mesh_picture,
 )
 from rigidfluid.reports.raster import Grid, Sampling
+from rigidfluid.reports.section import Section
+from rigidfluid.reports.view_plane import ViewPlane
 
 SPIN = np.array([0.3, -0.7, 1.9])
 
@@ -85,16 +88,22 @@ def test_a_slice_through_a_tetrahedron_is_sampled_exactly() -> None:
     assert np.isnan(image[~inside]).all()
 
 
+def moment(fields: Fields) -> Moment:
+    """All of a plane field."""
+    section = Section.of(fields, ViewPlane.of_axes(0, 1, 2), np.zeros(2))
+    return Moment(time=0.0, section=section, centre=np.zeros(2), width=0.1, gap=0.1)
+
+
 def swirl(size: tuple[float, float]) -> Moment:
     fields = square(4, size)
     x, y = fields.points.T
-    return Moment(0.0, with_velocity(fields, np.stack([-y, x], axis=1)), np.zeros(2), 0.1)
+    return moment(with_velocity(fields, np.stack([-y, x], axis=1)))
 
 
 @pytest.mark.parametrize("size", [(1.0, 30.0), (30.0, 1.0), (1.0, 1.0)])
 def test_pictures_of_any_domain_fit_on_a_page(size: tuple[float, float]) -> None:
     shown = [swirl(size)] * 4
-    for figure in (speed_picture(shown), streamline_picture(shown), vorticity_picture(shown)):
+    for figure in (speed_picture(shown), streamline_picture(shown), vorticity_picture(shown), pressure_picture(shown)):
         assert np.all(np.array(figure.get_size_inches()) < 18.0)
     assert np.all(np.array(whole_mesh_picture(shown[0]).get_size_inches()) < 18.0)
 
@@ -110,5 +119,4 @@ def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
     np.testing.assert_allclose(
         radius[:, 0], radius[:, 1], atol=0.005
     )  # circles; lines are bent to parts of the picture
-    resting = Moment(0.0, square(4), np.zeros(2), 0.1)
-    assert lines(resting) == []
+    assert lines(moment(square(4))) == []

@@ -261,12 +261,13 @@ def test_parts_of_one_body_are_refused() -> None:
         scene_from_dict(tables(NORMAL | {"names": ["left_disk", "right_disk"]}, body=body))
 
 
-def test_a_law_for_balls_is_for_those_it_names() -> None:
-    ellipse = {"name": "ellipse", "type": "ellipsoid", "semi_axes": [0.05, 0.1], "density": 1.0, "position": [0.5, 0.8]}
-    body = [LEFT, RIGHT, ellipse]
+def test_a_law_for_smooth_bodies_is_for_those_it_names() -> None:
+    corners = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]
+    square = {"name": "square", "type": "polygon", "points": corners, "density": 1.0, "position": [0.5, 0.8]}
+    body = [LEFT, RIGHT, square]
     scene_from_dict(tables(FILM | {"names": ["left_disk", "right_disk"]}, body=body))
-    with pytest.raises(SceneError, match=r"interaction.0.law: found 'lubrication' with bodies that are no balls"):
-        scene_from_dict(tables(FILM | {"names": ["left_disk", "ellipse"]}, body=body))
+    with pytest.raises(SceneError, match=r"interaction.0.law: found 'lubrication' with bodies of unknown curvature"):
+        scene_from_dict(tables(FILM | {"names": ["left_disk", "square"]}, body=body))
 
 
 def test_forces_of_another_shape_name_the_table(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 import rigidfluid.core.run.run
 from rigidfluid import cli
 from rigidfluid.core.run.process import Launch, no_collection
-from rigidfluid.errors import OutputError
+from rigidfluid.errors import OutputError, SharedInterrupt
 
 OPEN_MPI = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"}
 
@@ -79,6 +79,7 @@ def test_the_first_process_speaks_for_all(monkeypatch, arguments):
     [
         (ZeroDivisionError("1/0"), True, "ZeroDivisionError: 1/0"),
         (KeyboardInterrupt(), True, ""),
+        (SharedInterrupt(), False, ""),
         (OutputError("out", "nothing", "a folder", "Make one."), False, ""),
     ],
 )

@@ -66,6 +66,6 @@ def test_cutoff_beyond_range_is_refused() -> None:
         law(0.1, cutoff=0.1)
 
 
-def test_shapes_that_are_no_balls_are_refused() -> None:
-    with pytest.raises(SceneError, match="lubrication law needs balls"):
+def test_a_gap_of_unknown_curvature_is_refused() -> None:
+    with pytest.raises(SceneError, match="surfaces 0 and 2, whose gap has no known curvature"):
         resistance(law(0.1), 0.02, np.nan, np.inf, 2)

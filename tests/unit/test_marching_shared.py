@@ -187,13 +187,13 @@ def test_where_nothing_is_near_nobody_is_asked(monkeypatch):
 
 def sent_by(monkeypatch):
     """What the ranks are going to hand each other."""
-    sent, allgather = [], ThreadedRanks.allgather
+    sent, exchange = [], ThreadedRanks.exchange
 
     def recorded(ranks, item):
         sent.append(item)
-        return allgather(ranks, item)
+        return exchange(ranks, item)
 
-    monkeypatch.setattr(ThreadedRanks, "allgather", recorded)
+    monkeypatch.setattr(ThreadedRanks, "exchange", recorded)
     return sent
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -18,6 +19,7 @@ from rigidfluid.core.setup.load import load_scene
 from rigidfluid.errors import OutputError
 from rigidfluid.movies import Look, movie
 from rigidfluid.movies.picture import Scale, draw_bodies, flow_image
+from rigidfluid.movies.projection import draw_projected
 from rigidfluid.movies.shot import shot_of
 from rigidfluid.reports.results import Results, read_results
 
@@ -111,15 +113,87 @@ def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:
     rigidfluid.run(load_scene(SCENES / "falling_sphere.toml", settings), tmp_path / "run")
     results = read_results(tmp_path / "run", motion_only=True)
     shot = shot_of(results, None, None)
-    assert shot.axes[1] == 1
+    assert shot.plane.up.tolist() == [0.0, 1.0, 0.0]
     grid = shot.grid(0, 60)
-    assert abs(grid.normal @ (results.vectors("")[0, 0] - grid.origin)) < 1e-12
+    assert abs(grid.plane.normal @ (results.vectors("")[0, 0] - grid.origin)) < 1e-12
     assert len(frames(movie(tmp_path / "run", tmp_path / "a.gif", Look(show="vorticity", longer=60)))) == 3
+
+
+@pytest.fixture(scope="module")
+def balls(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small ball before a large one, and an ellipsoid beside both, turned about the line of sight; no fluid."""
+    out = tmp_path_factory.mktemp("balls")
+    bodies = [
+        {"name": "before", "type": "sphere", "radius": 0.1, "position": [0.5, 0.5, 0.8]},
+        {"name": "behind", "type": "sphere", "radius": 0.3, "position": [0.5, 0.5, 0.35]},
+        {"name": "beside", "type": "ellipsoid", "semi_axes": [0.3, 0.1, 0.1], "position": [1.4, 0.5, 0.5]}
+        | {"orientation": [np.cos(0.4), 0.0, 0.0, np.sin(0.4)]},
+    ]
+    data = {
+        "scene": {"name": "balls", "dimension": 3},
+        "fluid": {"backend": "dry", "gravity": [0.0, -1.0, 0.0]},
+        "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 1.0, 1.0]},
+        "body": [{"density": 1.0} | body for body in bodies],
+        "time": {"end": 0.1, "step": 0.05},
+        "output": {"every": 0.05},
+    }
+    rigidfluid.run(rigidfluid.scene_from_dict(data), out)
+    return out
+
+
+def test_without_a_fluid_3d_shows_all_bodies_those_in_front_over_those_behind(balls: Path, tmp_path: Path) -> None:
+    results = read_results(balls, motion_only=True)
+    grid = shot_of(results, None, None).grid(0, 400)
+    picture = np.zeros((grid.rows, grid.columns, 3))
+    draw_projected(picture, grid, results, 0)
+    shown = (picture > 0.0).any(axis=2)
+    x = (grid.points() - grid.origin) @ grid.plane.right + grid.origin[0]
+    pixel = grid.right[0] * grid.up[1]
+    assert shown[x < 1.0].sum() * pixel == pytest.approx(np.pi * 0.3**2, rel=0.02)
+    own = grid.points()[shown & (x > 1.0)] - [1.4, 0.5, grid.origin[2]]
+    assert len(own) * pixel == pytest.approx(np.pi * 0.3 * 0.1, rel=0.03)
+    along = np.linalg.eigh(own.T @ own)[1][:, -1]
+    assert np.arctan(along[1] / along[0]) == pytest.approx(0.8, abs=0.01)
+    alone = np.zeros_like(picture)
+    draw_projected(
+        alone,
+        grid,
+        replace(
+            results,
+            bodies={k: v[:, :1] for k, v in results.bodies.items()},
+            system=replace(results.system, bodies=results.system.bodies[:1]),
+        ),
+        0,
+    )
+    before = (alone > 0.0).any(axis=2)
+    assert before.sum() * pixel == pytest.approx(np.pi * 0.1**2, rel=0.03)
+    np.testing.assert_array_equal(picture[before], alone[before])
+    assert len(frames(movie(balls, tmp_path / "a.gif", Look(longer=60)))) == 3
+
+
+def test_any_plane_can_be_asked_for_in_3d_alone(balls: Path, dry: Path) -> None:
+    results = read_results(balls, motion_only=True)
+    assert shot_of(results, None, None, "xz").plane.labels == ("x [length]", "z [length]")
+    with pytest.raises(OutputError, match="--plane: found xz; allowed is xy, since the run is in 2D"):
+        shot_of(read_results(dry, motion_only=True), None, None, "xz")
+
+
+def test_a_run_that_was_killed_gives_a_movie(wet: Path, tmp_path: Path) -> None:
+    killed = Path(shutil.copytree(wet, tmp_path / "killed"))
+    (killed / "summary.json").unlink()
+    table = killed / "bodies.csv"
+    table.write_bytes(table.read_bytes()[:-20])
+    assert len(read_results(killed, motion_only=True).time) == len(read_results(wet).time) - 1
+    assert len(frames(movie(killed, tmp_path / "a.gif", Look(longer=60)))) == 4
+    (killed / "state.h5").unlink()
+    with pytest.raises(OutputError, match=r"state\.h5"):
+        movie(killed)
 
 
 @pytest.mark.parametrize(
     ("arguments", "texts"),
     [
+        (["--plane", "zx"], ("--plane", "zx")),
         (["--follow", "nobody"], ("--follow", "nobody", "left_disk")),
         (["--out", "a.avi"], ("--out", "a.avi", ".mp4 or .gif")),
         (["--view", "1", "0", "0", "1"], ("--view", "in this order")),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from html import unescape
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +14,18 @@ import pytest
 from falling import SCENES, falling_disk
 
 import rigidfluid
+from rigidfluid import registry
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.vtu import read_pvd, read_vtu, write_vtu
-from rigidfluid.errors import OutputError
+from rigidfluid.errors import OutputError, PluginError
+from rigidfluid.movies import Look, movie
 from rigidfluid.reports import report
 
 PNG = b"\x89PNG\r\n"
 FIELD_PICTURES = {
-    f"{name}.png" for name in ("speed_field", "streamlines", "vorticity", "whole_mesh", "mesh", "smallest_gap")
+    f"{name}.png"
+    for name in ("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap")
 }
 CURVES = {"position", "speed", "gap", "force", "energy"}
 OF_A_FALL = CURVES | {"coefficients", "step"}
@@ -84,6 +89,20 @@ def test_the_scene_on_the_page_is_a_scene(fall: Path, written: list[Path]) -> No
     page = written[-1].read_text(encoding="utf-8")
     text = unescape(page.partition("<pre>")[2].partition("</pre>")[0])
     assert tomllib.loads(text) == json.loads((fall / "summary.json").read_text())["scene"]
+
+
+def test_a_backend_that_is_missing_here_has_its_report(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run on a cluster, looked at elsewhere."""
+    for package in ("dolfinx", "petsc4py", "mpi4py"):
+        monkeypatch.setitem(sys.modules, package, None)  # importing it fails
+    monkeypatch.setattr(registry, "find_spec", lambda name: None if name == "dolfinx" else find_spec(name))
+    summary = json.loads((copy / "summary.json").read_text())
+    summary["scene"]["fluid"] |= {"backend": "dolfinx", "solver": "schur", "petsc": {"pc_type": "lu"}}
+    (copy / "summary.json").write_text(json.dumps(summary))
+    with pytest.raises(PluginError, match=r"'dolfinx', which is not usable here; .* Package dolfinx is missing"):
+        rigidfluid.scene_from_dict(summary["scene"])
+    assert all(path.exists() for path in report(copy))
+    assert movie(copy, copy / "movie.gif", Look(longer=60)).exists()
 
 
 def test_run_without_a_fluid(tmp_path: Path) -> None:

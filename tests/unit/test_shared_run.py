@@ -1,5 +1,6 @@
 """A run that ranks share is that of one process, on all of them; and what goes wrong on one goes wrong on all."""
 
+import json
 from dataclasses import replace
 from threading import BrokenBarrierError
 
@@ -18,7 +19,7 @@ from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.output.writer import earlier_run
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.errors import MeshError, OutputError, SceneError, StepRejected
+from rigidfluid.errors import MeshError, OutputError, SceneError, SharedInterrupt, StepRejected
 from rigidfluid.reports import report
 
 FALL = {
@@ -71,6 +72,14 @@ def assert_same_tables(one, other):
     assert all(one.records[name] == other.records[name] for name in one.records)
 
 
+def assert_nearly_same_tables(one, other):
+    """But for sums of another order."""
+    for table in ("bodies", "probes", "energy"):
+        for name, column in other.table(table).items():
+            if column.dtype.kind == "f":
+                np.testing.assert_allclose(one.table(table)[name], column, rtol=1e-9, atol=1e-9, err_msg=name)
+
+
 @pytest.mark.parametrize("detector", ["sphere", "narrow_band"])
 def test_the_run_is_that_of_one_process(detector):
     """But for what bodies are found to answer to impulses, by factors of single precision."""
@@ -83,10 +92,7 @@ def test_the_run_is_that_of_one_process(detector):
             assert history.summary["ranks"] == count
             for figure in ("cells", "unknowns", "steps", "remeshes", "rejected_steps"):
                 assert history.summary[figure] == serial.summary[figure]
-            for table in ("bodies", "probes", "energy"):
-                for name, column in serial.table(table).items():
-                    if column.dtype.kind == "f":
-                        np.testing.assert_allclose(history.table(table)[name], column, rtol=1e-9, atol=1e-9)
+            assert_nearly_same_tables(history, serial)
 
 
 def test_steps_by_a_tolerance_are_those_of_one_process():
@@ -148,15 +154,40 @@ def test_a_report_is_made_of_a_shared_run(tmp_path, monkeypatch):
     assert all(path.exists() for path in report(tmp_path))
 
 
-def test_a_checkpoint_is_for_as_many_ranks_as_wrote_it(tmp_path):
+@pytest.mark.parametrize(("before", "after"), [(1, 2), (2, 1), (2, 3), (3, 2)])
+def test_another_number_of_ranks_goes_on_as_those_before(tmp_path, before, after):
+    """A new mesh is made before the checkpoint, and after it."""
+    expected, *_ = shared(before)
+    shared(before, tmp_path, end=0.04)
+    assert 0 < json.loads((tmp_path / "summary.json").read_text())["remeshes"] < expected.summary["remeshes"]
+    for history in shared(after, tmp_path, resume=True):
+        assert history.summary["ranks"] == after
+        assert history.summary["remeshes"] == expected.summary["remeshes"]
+        assert_nearly_same_tables(history, expected)
+    checkpoints = {path.name for path in tmp_path.glob("state*")}
+    assert checkpoints == {"state.h5", *(f"state.{rank}.h5" for rank in range(1, after))}
+    for _, path in read_pvd(tmp_path / "fields.pvd"):
+        assert len(read_vtu(path).cells) > 0
+
+
+def test_a_backend_that_cannot_cut_its_state_is_resumed_by_as_many_ranks(tmp_path, monkeypatch):
+    monkeypatch.setattr(Gathered, "state_format", None)
     shared(2, tmp_path, end=0.008)
     for count in (1, 3):
         refused_by_all(count, rf"found a run of 2 processes; allowed is a run of {count}", tmp_path, resume=True)
 
 
-def test_a_run_of_one_process_is_not_resumed_by_two(tmp_path):
-    shared(1, tmp_path, end=0.008)
-    refused_by_all(2, r"found a run of 1 process; allowed is a run of 2, .* Resume it with 1", tmp_path, resume=True)
+def test_a_kill_between_checkpoints_of_fewer_ranks_than_before_loses_nothing(tmp_path):
+    expected, *_ = shared(2)
+    shared(3, tmp_path, end=0.02)
+    names = ("state.h5", "state.1.h5", "state.2.h5")
+    before = [(tmp_path / name).read_bytes() for name in names]
+    shared(2, tmp_path, resume=True, end=0.04)
+    (tmp_path / "state.h5").rename(tmp_path / "state.h5.part")
+    for name in ("state.h5", "state.2.h5"):
+        (tmp_path / name).write_bytes(before[names.index(name)])
+    for history in shared(2, tmp_path, resume=True):
+        assert_nearly_same_tables(history, expected)
 
 
 def test_checkpoints_of_different_times_are_refused(tmp_path):
@@ -288,6 +319,31 @@ def test_an_interrupt_of_one_rank_waits_for_nobody(tmp_path):
         on_ranks(2, work)
     assert not (tmp_path / "summary.json").exists()
     assert len(shared(2, tmp_path, resume=True, end=0.02)) == 2
+
+
+@pytest.mark.parametrize("moment", ["in a step", "after it"])
+def test_ctrl_c_on_one_rank_ends_all_with_a_summary(tmp_path, monkeypatch, moment):
+    scene = fall(0.02, fluid=GATHERED)
+    advance = Gathered.advance
+
+    def press(ranks):
+        if ranks.rank == 1:
+            ranks.interrupt()
+
+    def pressed(backend, *arguments):
+        press(backend.ranks)
+        return advance(backend, *arguments)
+
+    def work(ranks):
+        gathered_backend.CURRENT.ranks = ranks
+        after = press if moment == "after it" else lambda ranks: None
+        with pytest.raises(SharedInterrupt):
+            rigidfluid.run(scene, tmp_path, progress=lambda _: after(ranks))
+
+    if moment == "in a step":
+        monkeypatch.setattr(Gathered, "advance", pressed)
+    on_ranks(2, work)
+    assert json.loads((tmp_path / "summary.json").read_text())["status"] == "interrupted"
 
 
 def test_a_backend_of_one_process_is_not_started_by_two(tmp_path):

@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from falling import falling_disk
+from falling import SCENES, falling_disk
 
+import rigidfluid
 from rigidfluid.api import scene_from_dict as scene_of
+from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.model.state import ErrorEstimate, State
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.error_estimate import UNSEEN
@@ -109,6 +111,24 @@ def test_without_a_tolerance_steps_are_told_and_no_error_is_estimated():
     assert np.isinf(steps["error"]).all()
     assert set(steps["unknowns"]) == {summarise(simulation, "complete")["unknowns"]}
     np.testing.assert_array_equal(steps["remeshes"], np.zeros(4))
+    assert set(steps["cells"]) == {len(simulation.state.mesh.cells)}
+
+
+def test_steps_and_the_summary_tell_of_the_worst_cell():
+    simulation = Simulation(falling_disk(**SCENE, time={"step": 0.008, "end": 0.016}))
+    worst = []
+    simulation.observe(lambda now: worst.append(cell_quality(now.state.mesh.points, now.state.mesh.cells).min()))
+    simulation.go()
+    told = simulation.history.steps["quality"]
+    assert np.all((told > 0.9 * np.array(worst)) & (told <= worst))  # bent cells are worse than straight ones
+    assert summarise(simulation, "complete")["worst_quality"] == told.min()
+
+
+def test_without_a_mesh_no_quality_is_told():
+    simulation = Simulation(rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"]))
+    simulation.go()
+    assert np.isnan(simulation.history.steps["quality"]).all()
+    assert summarise(simulation, "complete")["worst_quality"] is None
 
 
 def test_a_body_that_is_moved_at_once_starts_again_with_short_steps(run):

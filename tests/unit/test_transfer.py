@@ -13,6 +13,7 @@ from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.discretisation import kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
 from rigidfluid.taylor_hood.transfer import _with_energy
 
@@ -53,7 +54,7 @@ def test_both_levels_are_carried_over(spinning):
     )
     for suffix, points, pose, twist in levels:
         velocity, pressure = after.fluid["velocity" + suffix], after.fluid["pressure" + suffix]
-        assert np.abs(divergence(new, points, velocity)).max() < 1e-12 * np.abs(velocity).max()
+        assert np.abs(divergence(new, points, velocity)).max() < 1e-9 * np.abs(velocity).max()
         nodes = new.surfaces.body_nodes[0]
         arm = new.numbering.node_points(points)[nodes] - pose.position[0]
         rigid = twist.velocity[0] + twist.angular_velocity[0] * np.column_stack([-arm[:, 1], arm[:, 0]])
@@ -83,6 +84,42 @@ def test_a_new_mesh_in_a_gap_that_closes_keeps_the_energy_of_both_levels():
         )
         assert new == pytest.approx(old, rel=1e-9)
     assert after.ledger.transfer_loss == pytest.approx(0.0, abs=1e-9 * before.ledger.kinetic)
+
+
+def after_a_new_mesh(simulation, saved):
+    simulation.restore(saved)
+    simulation.mesh_updater.needs_remesh = lambda state, _: state.tick == saved.state.tick
+    return simulation.step()
+
+
+@pytest.mark.parametrize("solver", ["lu", "schur"])
+def test_what_projections_leave_is_no_burst_of_pressure(solver, monkeypatch):
+    """Beside projections to 1e-12, in the worst case: the flow is still young, and the energy's scale at its limit."""
+    scene = falling_disk(body={"angular_velocity": 30.0, "velocity": [0.0, -4.0]}, fluid={"solver": solver}, **SHORT)
+    simulation = Simulation(scene)
+    simulation.step()
+    simulation.step()
+    saved = simulation.save()
+    found = after_a_new_mesh(simulation, saved)
+    solve = SparseDiscretisation.solve
+
+    def sharper(self, system, tolerance):
+        return solve(self, system, 1e-12 if system.matrix.viscosity == 0.0 else tolerance)
+
+    monkeypatch.setattr(SparseDiscretisation, "solve", sharper)
+    best = after_a_new_mesh(simulation, saved)
+    assert found.mesh.cells is not saved.state.mesh.cells
+    pressure = best.fluid["pressure"]
+    assert np.abs(found.fluid["pressure"] - pressure).max() < 2e-7 * np.ptp(pressure)
+    assert found.ledger.kinetic == pytest.approx(best.ledger.kinetic, rel=1e-8)
+
+
+def test_a_transfer_assembles_one_matrix_for_each_level(spinning, monkeypatch):
+    made, assemble = [], SparseDiscretisation._assemble
+    monkeypatch.setattr(SparseDiscretisation, "_assemble", lambda self, m: made.append(m) or assemble(self, m))
+    spinning.mesh_updater.needs_remesh = lambda *_: True
+    spinning.mesh_updater.remesh_if_needed(spinning.state, spinning.state.pose)
+    assert [matrix.viscosity for matrix in made] == [0.0, 0.0]
 
 
 def test_flow_beside_potential_flow_is_scaled_by_a_quarter_at_most(spinning):

@@ -100,7 +100,7 @@ def _between(name: str, body: Body, pair: list[str], width: float, interaction: 
 
 
 def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | None) -> Iterator[Finding]:
-    """Compare the range with the smallest body and with the cells on the bodies.
+    """Compare the range with the smallest body and with the finest cells in gaps, but for laws of films.
 
     Parameters
     ----------
@@ -123,8 +123,11 @@ def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | Non
         text = f"the law reaches {figure(law.range)}, further than the largest ball inside {name}, {figure(size)}"
         remedy, found = f"Set {key} to {at_most(size)} or less.", {"range": law.range, "half_thickness": size}
         yield Finding("warning", "range", (name,), text, remedy, found, {"range": size})
-    if mesh is not None and law.range < mesh.size_body:
-        text = f"the law begins at {figure(law.range)}, within one cell of {figure(mesh.size_body)}"
-        remedy = f"Set mesh.size_body to {at_most(law.range)} or less, or widen {key}."
-        found = {"range": law.range, "size_body": mesh.size_body}
-        yield Finding("warning", "range", (), text, remedy, found, {"size_body": law.range})
+    if mesh is None or law.film:
+        return
+    finest, enough = mesh.size_body / 2**mesh.refinements, law.range * 2**mesh.refinements
+    if law.range < finest:
+        text = f"the law begins at {figure(law.range)}, within one of the finest cells of {figure(finest)}"
+        remedy = f"Set mesh.size_body to {at_most(enough)} or less, or widen {key}."
+        found = {"range": law.range, "size_body": mesh.size_body, "finest_cell": finest}
+        yield Finding("warning", "range", (), text, remedy, found, {"size_body": enough})

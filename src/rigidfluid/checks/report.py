@@ -12,10 +12,12 @@ import numpy as np
 from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
+from rigidfluid.checks.film import counted_once
 from rigidfluid.checks.finding import GRADES, Finding
 from rigidfluid.checks.impact import on_impact
 from rigidfluid.checks.joints import of_joints
 from rigidfluid.checks.mechanisms import of_mechanisms
+from rigidfluid.checks.memory import in_memory
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.rebound import in_a_film
 from rigidfluid.checks.resolution import in_the_gap
@@ -113,6 +115,8 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     yield from chain(to_a_tolerance(scene.time), of_facets(system))
     yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
+    if mesh is not None:
+        yield from chain(in_memory(system, mesh), counted_once(system, mesh))
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
         if mesh is not None:

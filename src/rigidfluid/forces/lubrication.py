@@ -7,7 +7,6 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.contact.balls import require_balls
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads, Motion
 from rigidfluid.errors import SceneError
@@ -27,8 +26,9 @@ class LubricationOptions(PartOptions):
 class LubricationLaw(ForceLaw):
     """F = -6πμ R² v_n (1/h - 1/range) n in 3D, -3√2 πμ v_n [(R/h)^(3/2) - (R/range)^(3/2)] n in 2D, for gap < range.
 
-    h = max(gap, cutoff), R = r_a r_b/(r_a + r_b), the ball's radius at a flat wall, with r_b < 0 in a round hollow, and
-    v_n the relative velocity along the normal. The terms are the leading ones of a squeezed film; what they give at
+    h = max(gap, cutoff), v_n is the relative velocity along the normal, and R the contact's effective radius: of balls
+    r_a r_b/(r_a + r_b), the ball's radius at a flat wall, with r_b < 0 in a round hollow, and of ellipsoids what both
+    surfaces' curvatures make of it. The terms are the leading ones of a squeezed film; what they give at
     range is taken off, as the mesh resolves a film as thick as that: range is to be the gap where the mesh begins to
     fail. The force takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
@@ -44,7 +44,7 @@ class LubricationLaw(ForceLaw):
     Raises
     ------
     SceneError
-        If the cutoff is not below the range, or a surface is neither round nor flat.
+        If the cutoff is not below the range, or the curvature of a surface is not known.
 
     Notes
     -----
@@ -53,7 +53,7 @@ class LubricationLaw(ForceLaw):
     """
 
     name: ClassVar[str] = "lubrication"
-    balls_only: ClassVar[bool] = True
+    film: bool = True
     conservative: bool = False
     dissipative: bool = True
     Options: ClassVar[type[PartOptions]] = LubricationOptions
@@ -95,6 +95,15 @@ def _resistance(radius: FloatArray, film: FloatArray | float, dimension: int) ->
 
 
 def _effective_radius(contacts: Contacts) -> FloatArray:
-    """R = 1/(1/r_a + 1/r_b), (m,) [length]."""
-    require_balls(contacts, LubricationLaw.name)
-    return np.asarray(1.0 / (1.0 / contacts.radius_a + 1.0 / contacts.radius_b))
+    """R, (m,) [length]."""
+    lost = np.isnan(contacts.effective_radius)
+    if np.any(lost):
+        first = int(np.argmax(lost))
+        raise SceneError(
+            "contact.law",
+            f'"{LubricationLaw.name}" with surfaces {contacts.body_a[first]} and {contacts.body_b[first]}, whose gap'
+            " has no known curvature",
+            "balls, ellipses and ellipsoids, at flat or round walls that they fit into",
+            "Keep it to other contacts by `between` or `names`, or leave it out.",
+        )
+    return contacts.effective_radius

@@ -20,9 +20,11 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.writer import writing
 from rigidfluid.errors import OutputError
 from rigidfluid.movies.picture import Quantity, Scale, draw_bodies, flow_image, ground
+from rigidfluid.movies.projection import draw_projected
 from rigidfluid.movies.shot import Shot, Window, shot_of
 from rigidfluid.reports.results import Results, read_results
 from rigidfluid.reports.style import STYLE, new_figure
+from rigidfluid.reports.view_plane import PlaneName
 
 _SAMPLED = 12
 """Pictures from which the scale of the colours is taken."""
@@ -36,7 +38,7 @@ class Look:
 
     ``show``: which quantity of the fluid. ``follow``: a body that the picture goes with. ``window``: left, lower, right
     and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's longer
-    side. ``rate``: pictures a second.
+    side. ``rate``: pictures a second. ``plane``: which plane of a 3D run, as `view_plane` takes it.
     """
 
     show: Quantity = "speed"
@@ -44,6 +46,7 @@ class Look:
     window: Window | None = None
     longer: int = 600
     rate: int = 15
+    plane: PlaneName = "motion"
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,8 @@ class _Frame:
 def movie(folder: Path, out: Path | None = None, look: Look | None = None, progress: Progress | None = None) -> Path:
     """Make a movie from the results in a folder: a picture for each output time.
 
-    In 3D it shows the plane of gravity and of the bodies' motion, through the first body or the one followed.
+    Of a 3D flow it shows a slice through the first body or the one followed; without a fluid all bodies as seen along
+    the normal of that plane.
 
     Parameters
     ----------
@@ -84,7 +88,7 @@ def movie(folder: Path, out: Path | None = None, look: Look | None = None, progr
     """
     look, results = look or Look(), read_results(Path(folder), motion_only=True)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
-    shot, frames = shot_of(results, look.follow, look.window), _frames(results)
+    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
     scale = _scale(frames, shot, look)
     partial = path.with_name(f".{path.name}.part{path.suffix}")
     with matplotlib.rc_context(STYLE | _encoder()), writing(path):
@@ -104,21 +108,14 @@ def movie(folder: Path, out: Path | None = None, look: Look | None = None, progr
 
 
 def _frames(results: Results) -> list[_Frame]:
-    """The output times whose fields are there; without a fluid every so often by the same clock."""
-    if results.series:
-        found = [_Frame(_state(results, time), path) for time, path in results.series if path.exists()]
-    else:
-        times = np.arange(results.time[0], results.time[-1] + 1e-9, results.scene.output.every)
-        found = [_Frame(_state(results, time), None) for time in times]
+    """The output times whose fields are there, or that have none."""
+    outputs = [(time, path) for time, path in results.outputs if path is None or path.exists()]
+    found = [_Frame(results.state_at(time), path) for time, path in outputs]
     if len(found) < 2:
         raise OutputError(
             "the run", f"{len(found)} output times", "two or more, for a movie", "Run on, or shorten output.every."
         )
     return found
-
-
-def _state(results: Results, time: float) -> int:
-    return int(np.argmin(np.abs(results.time - time)))
 
 
 def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
@@ -134,9 +131,13 @@ def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
 
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
     grid = shot.grid(frame.state, look.longer)
-    flow = None if frame.path is None else flow_image(frame.path, look.show, grid)
-    picture = ground(results, grid) if flow is None else scale.colours(flow)
-    draw_bodies(picture, grid, results, frame.state)
+    if frame.path is not None:
+        picture = scale.colours(flow_image(frame.path, look.show, grid))
+        draw_bodies(picture, grid, results, frame.state)
+        return picture
+    picture = ground(results, grid)
+    draw = draw_bodies if results.system.dimension == 2 else draw_projected
+    draw(picture, grid, results, frame.state)
     return picture
 
 
@@ -145,8 +146,7 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
     size = shot.upper - shot.lower
     width, height = look.longer / 100.0 * size / size.max()
     figure = new_figure(max(width, 1.5) + (1.6 if results.series else 0.6), max(height, 1.0) + 0.8)
-    axes = figure.add_subplot(xlabel=f"{results.axes[shot.axes[0]]} [length]")
-    axes.set_ylabel(f"{results.axes[shot.axes[1]]} [length]")
+    axes = figure.add_subplot(xlabel=shot.plane.labels[0], ylabel=shot.plane.labels[1])
     axes.grid(visible=False)
     axes.locator_params(axis="x", nbins=1 if size[1] > 4.0 * size[0] else 4)
     axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
@@ -161,9 +161,7 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
 
 def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:
     """The time, and where the picture is."""
-    place = (shot.shift[state] if shot.shift.any() else np.zeros_like(shot.shift[state]))[list(shot.axes)]
-    (left, low), (right, high) = shot.lower + place, shot.upper + place
-    axes.images[0].set_extent((float(left), float(right), float(low), float(high)))
+    axes.images[0].set_extent(shot.extent(state))
     axes.set_title(f"time {time:.4g}")
 
 

@@ -1,8 +1,8 @@
-"""Where a movie looks: a window of the plane, in 3D of a plane through the bodies; it may go with a body."""
+"""Where a movie looks: a window of the plane, in 3D of a plane through a body; it may go with a body."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import OutputError
 from rigidfluid.reports.raster import Grid
 from rigidfluid.reports.results import Results
+from rigidfluid.reports.view_plane import PlaneName, ViewPlane, view_plane
 
 _MARGIN = 2.0
 """Widths of a body that are seen about one that is followed, to each side."""
@@ -19,31 +20,27 @@ Window = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Shot:
-    """The grid at each state, whose middle moves by ``shift`` (s, d).
+    """The grid at each state: in the ``plane`` through the points ``through`` (s, d), from ``lower`` to ``upper`` (2,),
+    moved by ``shift`` (s, 2) to the right and up."""
 
-    ``axes``: which coordinates go to the right and up. ``lower``, ``upper`` (2,): the window at no shift; ``depth``
-    (s, d): where the plane is, zero along its own axes.
-    """
-
-    axes: tuple[int, int]
+    plane: ViewPlane
+    through: FloatArray
     lower: FloatArray
     upper: FloatArray
     shift: FloatArray
-    depth: FloatArray
 
     def grid(self, state: int, longer: int) -> Grid:
         """The points of a picture, ``longer`` of them along its longer side."""
         flat = Grid.between(self.lower, self.upper, longer)
-        place = self.depth[state] + self.shift[state]
-        if len(place) == 2:
-            return Grid(flat.origin + place, flat.right, flat.up, flat.columns, flat.rows)
-        origin, right, up = (np.zeros(3) for _ in range(3))
-        for vector, values in ((origin, flat.origin), (right, flat.right), (up, flat.up)):
-            vector[list(self.axes)] = values
-        return Grid(origin + place, right, up, flat.columns, flat.rows)
+        return replace(flat, origin=flat.origin + self.shift[state]).lifted(self.plane, self.through[state])
+
+    def extent(self, state: int) -> tuple[float, float, float, float]:
+        """Left, right, lower and upper end."""
+        (left, low), (right, high) = self.lower + self.shift[state], self.upper + self.shift[state]
+        return float(left), float(right), float(low), float(high)
 
 
-def shot_of(results: Results, follow: str | None, window: Window | None) -> Shot:
+def shot_of(results: Results, follow: str | None, window: Window | None, plane: PlaneName = "motion") -> Shot:
     """The whole domain, a window of it, or what is about a body.
 
     Parameters
@@ -54,21 +51,21 @@ def shot_of(results: Results, follow: str | None, window: Window | None) -> Shot
         The body that the picture goes with.
     window : tuple of float or None
         Left, lower, right and upper end [length]; with ``follow`` from the body's centre on.
+    plane : str
+        Which plane of a 3D run, as `view_plane` takes it; through the body that is followed, or the first one.
 
     Raises
     ------
     OutputError
-        If there is no such body, or nothing in the window.
+        If there is no such body or plane, or nothing in the window.
     """
-    axes, position = _axes(results), results.vectors("")
-    lower, upper = (corner[list(axes)] for corner in results.system.domain.extent)
-    shift, depth = np.zeros((len(position), position.shape[2])), np.zeros((len(position), position.shape[2]))
-    body = 0 if follow is None else _number(results, follow)
-    if len(axes) < position.shape[2]:
-        across = ({0, 1, 2} - set(axes)).pop()
-        depth[:, across] = position[:, body, across]
+    seen = view_plane(results, plane)
+    body = 0 if follow is None else results.number_of(follow)
+    through = results.vectors("")[:, body]
+    lower, upper = seen.extent(*results.system.domain.extent)
+    shift = np.zeros((len(through), 2))
     if follow is not None:
-        shift[:, list(axes)] = position[:, body][:, list(axes)]
+        shift = seen.flat(through)
         half = _MARGIN * 2.0 * results.system.bodies[body].bounding_radius * np.ones(2)
         lower, upper = -half, half
     if window is not None:
@@ -77,21 +74,4 @@ def shot_of(results: Results, follow: str | None, window: Window | None) -> Shot
             raise OutputError(
                 "--view", window, "left, lower, right and upper end, in this order", "Give them in this order."
             )
-    return Shot(axes, lower, upper, shift, depth)
-
-
-def _axes(results: Results) -> tuple[int, int]:
-    """In 3D gravity's axis goes up, and to the right the other one along which bodies move or the domain is longer."""
-    if results.system.dimension == 2:
-        return 0, 1
-    gravity = np.abs(np.asarray(results.scene.fluid.gravity or (0.0, 0.0, 0.0)))
-    up = int(np.argmax(gravity)) if gravity.any() else 1
-    moved = np.ptp(results.vectors(""), axis=(0, 1)) + 1e-6 * results.system.domain.size
-    moved[up] = -1.0
-    return int(np.argmax(moved)), up
-
-
-def _number(results: Results, name: str) -> int:
-    if name not in results.names:
-        raise OutputError("--follow", name, f"a body: {', '.join(results.names[:20])}", "Name one of them.")
-    return results.names.index(name)
+    return Shot(seen, through, lower, upper, shift)

@@ -9,14 +9,17 @@ import numpy as np
 
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary_samples import sample_times, sampled_inflows
 from rigidfluid.reports.periods import frequency, late, late_periods
 from rigidfluid.reports.results import Results
+from rigidfluid.reports.stream import prescribed_stream
+from rigidfluid.reports.view_plane import plane_of_motion
 
 _LEAST_LIFT = 1e-3
 """Of the mean drag: a swing of the lift by less is rounding or what a mesh makes of symmetry."""
 _LEAST_WAY = 1e-2
 """Of the diameter: a swing of a path by less is none."""
+_LEAST_LEFT = 0.1
+"""The sine of the angle between the flow and the normal of the plane of motion below which lift is along its ``up``."""
 
 
 @dataclass(frozen=True)
@@ -50,16 +53,16 @@ def reference(results: Results) -> Reference | None:
     problem = results.system.backend.problem
     if problem is None or not problem.inertia or not results.system.backend.needs_mesh:
         return None
-    stream, speed = _stream(results), np.linalg.norm(results.vectors("v"), axis=2)
+    stream, speed = prescribed_stream(results), np.linalg.norm(results.vectors("v"), axis=2)
     if stream is not None:
         words = "the greatest mean velocity of an inlet"
-        return Reference(float(np.linalg.norm(stream)), _axes(stream), words)
+        return Reference(float(np.linalg.norm(stream)), _axes(results, stream), words)
     if speed.max() == 0.0:
         return None
     gravity = np.asarray(results.scene.fluid.gravity or np.zeros(results.system.dimension), dtype=float)
     fastest = results.vectors("v")[np.unravel_index(speed.argmax(), speed.shape)]
     along = -np.sign(fastest @ gravity) * gravity if fastest @ gravity != 0.0 else -fastest
-    return Reference(float(speed.max()), _axes(along), "the greatest speed of a body")
+    return Reference(float(speed.max()), _axes(results, along), "the greatest speed of a body")
 
 
 def diameters(results: Results) -> FloatArray:
@@ -97,24 +100,15 @@ def _mean(time: FloatArray, values: FloatArray) -> float:
     return float(np.trapezoid(values, time) / np.ptp(time)) if len(time) > 1 else float(values[-1])
 
 
-def _stream(results: Results) -> FloatArray | None:
-    """The greatest mean velocity over a surface that fluid comes in by, at any time (d,); None without any."""
-    means: list[FloatArray] = []
-    inlets = sampled_inflows(results.scene, results.system.domain)
-    times = sample_times(results.scene, steady=all(inlet.velocity.is_steady for inlet in inlets))
-    for inlet in inlets:
-        for time in times[times <= results.time[-1]]:
-            if (inlet.flux(time) or 0.0) > 0.0:
-                means.append(inlet.weights @ inlet.velocity(time, inlet.points) / inlet.weights.sum())
-    return max(means, key=lambda mean: float(np.linalg.norm(mean)), default=None)
-
-
-def _axes(along: FloatArray) -> FloatArray:
-    """Rows: along, and across it, in 2D to its left, in 3D the axes of space that are most across, made orthogonal."""
+def _axes(results: Results, along: FloatArray) -> FloatArray:
+    """Rows: along; across it to its left, in 3D in the plane of motion; and in 3D across that plane."""
     first = along / np.linalg.norm(along)
     if len(first) == 2:
         return np.array([first, [-first[1], first[0]]])
-    second = np.eye(3)[np.argsort(np.abs(first), kind="stable")[0]]
-    second = second - (second @ first) * first
+    plane = plane_of_motion(results)
+    left = np.cross(plane.normal, first)
+    if np.linalg.norm(left) < _LEAST_LEFT:
+        left = plane.up
+    second = left - (left @ first) * first
     second = second / np.linalg.norm(second)
     return np.array([first, second, np.cross(first, second)])

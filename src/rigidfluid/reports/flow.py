@@ -17,6 +17,13 @@ def basis(coordinates: FloatArray) -> FloatArray:
     return np.hstack([coordinates * (2.0 * coordinates - 1.0), middles])
 
 
+def node_coordinates(count: int) -> FloatArray:
+    """Barycentric coordinates (b, count) of the nodes of a cell with so many corners."""
+    corners = np.eye(count)
+    first, second = np.transpose(EDGES[count])
+    return np.vstack([corners, 0.5 * (corners[first] + corners[second])])
+
+
 def velocity_gradients(fields: Fields) -> FloatArray:
     """∂u_i/∂x_j at the b nodes of each of M cells, (M, b, d, d), index i before j [1/time].
 
@@ -43,9 +50,8 @@ def vorticity(fields: Fields, normal: FloatArray | None = None) -> FloatArray:
 
 def _slopes(dimension: int) -> FloatArray:
     """Derivatives (b, b, d) of the basis at the nodes: node, function, direction from the first corner to another."""
-    corners = np.eye(dimension + 1)
+    corners, nodes = np.eye(dimension + 1), node_coordinates(dimension + 1)
     first, second = np.transpose(EDGES[dimension + 1])
-    nodes = np.vstack([corners, 0.5 * (corners[first] + corners[second])])
     of_corners = (4.0 * nodes - 1.0)[:, :, None] * corners
     of_middles = 4.0 * (nodes[:, first, None] * corners[second] + nodes[:, second, None] * corners[first])
     along = np.concatenate([of_corners, of_middles], axis=1)

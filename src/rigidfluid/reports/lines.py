@@ -5,26 +5,25 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.core.setup.mechanisms import with_components
-from rigidfluid.reports.curves import MOST_LINES, add_legend, draw_bodies, widen
-from rigidfluid.reports.plane import distance_grid
+from rigidfluid.reports.curves import add_legend, draw_bodies, widen
+from rigidfluid.reports.paths import draw_paths
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import (
     BLACK,
     BLUE,
     GREEN,
     ORANGE,
-    PALETTE,
     PURPLE,
     SKY,
     VERMILLION,
     new_figure,
     time_panels,
 )
+from rigidfluid.reports.view_plane import ViewPlane
 
 _PARTS = {
     "residual_steps": "in smooth motion",
@@ -37,12 +36,12 @@ _VISIBLE = 0.05
 """Parts of the residual that are nowhere larger than this part of its greatest value are not drawn."""
 
 
-def position_plot(results: Results) -> Figure:
-    """The paths through the domain, and each coordinate over time."""
+def position_plot(results: Results, plane: ViewPlane) -> Figure:
+    """The paths through the domain as the ``plane`` shows them, and each coordinate over time."""
     position, axes_names = results.vectors(""), results.axes
-    figure = new_figure(8.0, 4.8)
+    figure = new_figure(8.0, 2.0 * len(axes_names) + 0.8)
     left, right = figure.subfigures(1, 2, width_ratios=(2, 3), squeeze=False)[0]
-    _draw_paths(left.subplots(), results, position)
+    draw_paths(left.subplots(), results, plane)
     panels = right.subplots(len(axes_names), 1, sharex=True)
     for k, axes in enumerate(panels):
         draw_bodies(axes, results.time, position[..., k], results.names)
@@ -159,28 +158,6 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
     solid = np.array([body.density for body in with_components(results.scene)[0].body])
     per_density = 2.0 * radius * speed / fluid.viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
-
-
-def _draw_paths(axes: Axes, results: Results, position: FloatArray) -> None:
-    """The paths in the domain, in 3D in the box around it, seen along the last axis: their x and y."""
-    domain = results.system.domain
-    if domain.dimension == 2:
-        axes.contour(*distance_grid(domain), levels=[0.0], colors=BLACK, linewidths=0.8)
-    else:
-        lower, upper = (corner[:2] for corner in domain.extent)
-        axes.add_patch(Rectangle((lower[0], lower[1]), *(upper - lower), fill=False, color=BLACK, linewidth=0.8))
-    many = len(results.names) > MOST_LINES
-    for i in range(len(results.names)):
-        colour = BLUE if many else PALETTE[i]
-        path = position[:, i]
-        axes.plot(path[:, 0], path[:, 1], color=colour, linewidth=0.5 if many else 1.4, alpha=0.3 if many else 1.0)
-        axes.plot(*path[0, :2], "o", color=colour, markersize=2 if many else 5, fillstyle="none")
-        axes.plot(*path[-1, :2], "o", color=colour, markersize=2 if many else 5)
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel("x [length]")
-    axes.set_ylabel("y [length]")
-    axes.set_title("path (ring: start, dot: end)")
 
 
 def _draw_residual(axes: Axes, shares: dict[str, FloatArray], time: FloatArray) -> None:

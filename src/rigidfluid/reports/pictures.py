@@ -1,4 +1,4 @@
-"""Pictures of a 2D flow: speed, vorticity, streamlines and mesh in the whole domain; mesh about one body; its gap."""
+"""Pictures of a flow, in 3D of a slice of it: speed, pressure, vorticity, streamlines and mesh; mesh about one body."""
 
 from __future__ import annotations
 
@@ -7,97 +7,40 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.tri import Triangulation
 
-from rigidfluid.core.model.types import BoolArray, Fields, FloatArray
-from rigidfluid.core.output.vtu import read_vtu
-from rigidfluid.reports.flow import vorticity
-from rigidfluid.reports.plane import Outline, cell_by_cell, corner_triangles, fine_triangles
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.reports.moment import Moment, View
 from rigidfluid.reports.raster import Grid, Sampling
-from rigidfluid.reports.results import Results
-from rigidfluid.reports.style import BODY, COLOURMAP, SIGNED_COLOURMAP, new_figure
-
-MOMENTS = 4
-"""How many output times a row of pictures shows."""
+from rigidfluid.reports.style import BLACK, BODY, COLOURMAP, SIGNED_COLOURMAP, new_figure
 
 SHARE = 99.0
-"""Per cent of the nodes whose vorticity has a colour of its own: at one sharp corner it is without bound."""
+"""Per cent of the nodes whose vorticity or pressure has a colour of its own: at one sharp corner both are without
+bound."""
 
 TALLEST, NARROWEST = 8.0, 1.4
 """A panel's greatest height, and the least width of its place [inch]."""
 
 _GRID = 400  # points along the longer side from which streamlines are drawn
 _CALM = 1e-4  # of the highest speed: where the fluid is slower, rounding decides where it goes
-
-
-@dataclass(frozen=True)
-class Moment:
-    """The fields at one output time, and the centre (2,) of the body looked at."""
-
-    time: float
-    fields: Fields
-    centre: FloatArray
-    gap: float
-
-    @property
-    def speed(self) -> FloatArray:
-        """|u| at the nodes, (N,) [length/time]."""
-        return np.asarray(np.linalg.norm(self.fields.velocity, axis=1))
-
-
-@dataclass(frozen=True)
-class View:
-    """The part of the plane that a panel shows, between the corners ``lower`` and ``upper`` (2,)."""
-
-    lower: FloatArray
-    upper: FloatArray
-
-    @classmethod
-    def about(cls, centre: FloatArray, half: float) -> View:
-        """A square about a point."""
-        return cls(centre - half, centre + half)
-
-    @classmethod
-    def whole(cls, moment: Moment) -> View:
-        """All that is meshed."""
-        points = moment.fields.points
-        return cls(points.min(axis=0), points.max(axis=0))
-
-    def holds(self, points: FloatArray) -> BoolArray:
-        """Which points (N, 2) lie in the view, (N,)."""
-        return np.asarray(np.all((points >= self.lower) & (points <= self.upper), axis=1))
+_OUT_OF_PLANE = 45.0  # degrees between velocity and slice from which on a line in the slice tells little
 
 
 @dataclass(frozen=True)
 class Colours:
-    """What colours show: a ``label``, a ``map``, the range ``lowest`` to ``highest``, and how a moment is coloured:
-    triangles and values at their corners."""
+    """What colours show: a ``label``, a ``map``, the range ``lowest`` to ``highest``, and the values ``of`` a moment at
+    its nodes (N,), or at those of each cell (M, b)."""
 
     label: str
     map: str
     lowest: float
     highest: float
-    of: Callable[[Moment], tuple[Triangulation, FloatArray]]
+    of: Callable[[Moment], FloatArray]
 
 
 Over = Callable[[Axes, Moment, View], object]
 """What is drawn over the colours."""
-
-
-def moments(results: Results) -> list[Moment]:
-    """Some output times spread over the run, the last among them, looking at the body that came nearest to anything."""
-    count = len(results.series)
-    chosen = np.unique(np.linspace(0, count - 1, min(MOMENTS + 1, count)).round().astype(int))
-    body = int(np.argmin(results.bodies["gap"].min(axis=0)))
-    return [_moment(results, int(i), body) for i in (chosen[1:] if count > 1 else chosen)]
-
-
-def narrowest_moment(results: Results) -> Moment:
-    """The output time at which a gap was smallest, looking at that body."""
-    gaps = np.array([results.bodies["gap"][_state(results, time)] for time, _ in results.series])
-    output, body = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
-    return _moment(results, int(output), int(body))
 
 
 def speed_picture(shown: Sequence[Moment]) -> Figure:
@@ -113,12 +56,14 @@ def streamline_picture(shown: Sequence[Moment]) -> Figure:
 
 
 def vorticity_picture(shown: Sequence[Moment]) -> Figure:
-    """Vorticity in the whole domain."""
-    views = [View.whole(moment) for moment in shown]
-    size = np.concatenate([np.abs(vorticity(moment.fields)).ravel() for moment in shown])
-    highest = float(np.percentile(size, SHARE))
-    colours = Colours("vorticity [1/time]", SIGNED_COLOURMAP, -highest, highest, _vorticity_of)
-    return _panels(shown, views, colours)
+    """Vorticity in the whole domain, of a slice the component to the observer."""
+    return _signed_picture(shown, "vorticity [1/time]", lambda moment: moment.section.vorticity)
+
+
+def pressure_picture(shown: Sequence[Moment]) -> Figure:
+    """Dynamic pressure in the whole domain."""
+    unit = "force/area" if shown[0].section.is_slice else "force/length"
+    return _signed_picture(shown, f"pressure [{unit}]", lambda moment: moment.section.fields.pressure)
 
 
 def whole_mesh_picture(moment: Moment) -> Figure:
@@ -129,13 +74,12 @@ def whole_mesh_picture(moment: Moment) -> Figure:
 
 def mesh_picture(shown: Sequence[Moment]) -> Figure:
     """Speed and mesh about one body."""
-    return _mesh_panels(shown, [View.about(moment.centre, 1.5 * _extent(moment)) for moment in shown])
+    return _mesh_panels(shown, [View.about(moment.centre, 1.5 * moment.width) for moment in shown])
 
 
-def gap_picture(moment: Moment) -> Figure:
-    """Close-up of the narrowest gap with its cells."""
-    middle = Outline.of(moment.fields).narrowest(moment.centre)
-    return _mesh_panels([moment], [View.about(middle, min(4.0 * moment.gap, _extent(moment)))])
+def gap_picture(moment: Moment, middle: FloatArray) -> Figure:
+    """Close-up of a gap about its ``middle`` (2,), with its cells."""
+    return _mesh_panels([moment], [View.about(middle, min(4.0 * moment.gap, moment.width))])
 
 
 def _mesh_panels(shown: Sequence[Moment], views: Sequence[View]) -> Figure:
@@ -147,13 +91,19 @@ def _mesh_panels(shown: Sequence[Moment], views: Sequence[View]) -> Figure:
 
 def _panels(shown: Sequence[Moment], views: Sequence[View], colours: Colours, over: Over | None = None) -> Figure:
     """One panel a moment, solids grey, the same colours for the same value in all."""
-    figure, panels = _frame(len(shown), views[0])
+    figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
         drawn = axes.tripcolor(
-            *colours.of(moment), shading="gouraud", cmap=colours.map, vmin=colours.lowest, vmax=colours.highest or 1.0
+            *moment.section.triangles(colours.of(moment)),
+            shading="gouraud",
+            cmap=colours.map,
+            vmin=colours.lowest,
+            vmax=colours.highest or 1.0,
         )
         if over is not None:
             over(axes, moment, view)
+        for outline in moment.outlines:
+            axes.plot(*outline.T, color=BLACK, linewidth=0.8)
         _look_at(axes, view)
         axes.set_title(f"time {moment.time:.4g}")
     extend = "both" if colours.lowest < 0.0 else "neither"
@@ -161,7 +111,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], colours: Colours, ov
     return figure
 
 
-def _frame(count: int, view: View) -> tuple[Figure, list[Axes]]:
+def frame(count: int, view: View, labels: tuple[str, str]) -> tuple[Figure, list[Axes]]:
     """Panels in a row for a tall view, in a column for a flat one, else two by two; low enough for a page."""
     width, height = view.upper - view.lower
     columns = min(count, 4 if height > 1.5 * width else 2 if height > 0.8 * width else 1)
@@ -173,9 +123,9 @@ def _frame(count: int, view: View) -> tuple[Figure, list[Axes]]:
     for unused in grid.ravel()[count:]:
         unused.set_visible(False)
     for axes in grid[-1]:
-        axes.set_xlabel("x [length]")
+        axes.set_xlabel(labels[0])
     for row in grid:
-        row[0].set_ylabel("y [length]")
+        row[0].set_ylabel(labels[1])
     return figure, list(grid.ravel()[:count])
 
 
@@ -192,28 +142,33 @@ def _look_at(axes: Axes, view: View) -> None:
 
 def _speed(shown: Sequence[Moment], views: Sequence[View]) -> Colours:
     """From rest to the highest speed that is seen."""
-    seen = [m.speed[view.holds(m.fields.points)] for m, view in zip(shown, views, strict=True)]
+    sections = [moment.section for moment in shown]
+    seen = [one.speed[view.holds(one.flat_points)] for one, view in zip(sections, views, strict=True)]
     fastest = max(float(values.max(initial=0.0)) for values in seen)
-    return Colours(
-        "speed [length/time]", COLOURMAP, 0.0, fastest, lambda moment: (fine_triangles(moment.fields), moment.speed)
-    )
+    return Colours("speed [length/time]", COLOURMAP, 0.0, fastest, lambda moment: moment.section.speed)
 
 
-def _vorticity_of(moment: Moment) -> tuple[Triangulation, FloatArray]:
-    """It jumps from cell to cell, so each cell has corners of its own."""
-    return cell_by_cell(moment.fields), vorticity(moment.fields).ravel()
+def _signed_picture(shown: Sequence[Moment], label: str, of: Callable[[Moment], FloatArray]) -> Figure:
+    """Values about zero, with colours for those of most nodes."""
+    size = np.concatenate([np.abs(of(moment)).ravel() for moment in shown])
+    highest = float(np.percentile(size, SHARE))
+    colours = Colours(label, SIGNED_COLOURMAP, -highest, highest, of)
+    return _panels(shown, [View.whole(moment) for moment in shown], colours)
 
 
 def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:
-    axes.triplot(corner_triangles(moment.fields), color="white", linewidth=0.3)
+    axes.add_collection(LineCollection(list(moment.section.edges), colors="white", linewidths=0.3), autolim=False)
 
 
 def _draw_streamlines(axes: Axes, moment: Moment, view: View) -> None:
-    """Lines along the velocity, none where the fluid rests to rounding."""
-    grid = Grid.between(view.lower, view.upper, _GRID)
-    sampling = Sampling.of(moment.fields, grid)
-    u, v = (sampling.image(moment.fields.velocity[:, k][moment.fields.cells]) for k in range(2))
-    moving = np.hypot(u, v) > _CALM * moment.speed.max()  # False outside the mesh
+    """Lines along the velocity, none where the fluid rests to rounding, or goes through the slice rather than along."""
+    section, grid = moment.section, Grid.between(view.lower, view.upper, _GRID)
+    sampling = Sampling.of(section.fields, grid.lifted(section.plane, section.through))
+    velocity = section.fields.velocity[section.fields.cells]
+    u, v = (sampling.image(velocity @ direction) for direction in (section.plane.right, section.plane.up))
+    speed = np.linalg.norm([sampling.image(component) for component in np.moveaxis(velocity, 2, 0)], axis=0)
+    along = np.hypot(u, v)  # nan outside the mesh, as the speed is
+    moving = (along > _CALM * section.speed.max()) & (along >= np.cos(np.radians(_OUT_OF_PLANE)) * speed)
     if not moving.any():
         return
     x = grid.origin[0] + grid.right[0] * np.arange(grid.columns)
@@ -222,19 +177,3 @@ def _draw_streamlines(axes: Axes, moment: Moment, view: View) -> None:
     u, v = (np.ma.masked_where(~moving, values) for values in (u, v))
     density = tuple(np.maximum(1.5 * size / size.max(), 0.25))
     axes.streamplot(x, y, u, v, density=density, color="white", linewidth=0.6, arrowsize=0.6)
-
-
-def _extent(moment: Moment) -> float:
-    """The body's largest width."""
-    return float(np.ptp(Outline.of(moment.fields).around(moment.centre), axis=0).max())
-
-
-def _moment(results: Results, output: int, body: int) -> Moment:
-    time, path = results.series[output]
-    state = _state(results, time)
-    return Moment(time, read_vtu(path), results.vectors("")[state, body], float(results.bodies["gap"][state, body]))
-
-
-def _state(results: Results, time: float) -> int:
-    """Number of the accepted state at an output time."""
-    return int(np.argmin(np.abs(results.time - time)))

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.model.types import Fields, FloatArray, IntArray
-from rigidfluid.reports.flow import basis
+from rigidfluid.reports.flow import basis, node_coordinates
 from rigidfluid.reports.plane import QUARTERS
+from rigidfluid.reports.slice import EIGHTHS
+from rigidfluid.reports.view_plane import ViewPlane
 
 _ROUNDING = 1e-9
 """By which barycentric coordinates may be negative of a point on a side."""
-
-_MIDDLES = np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]])
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,31 @@ class Grid:
         right, up = np.diag(size / (columns, rows))
         return cls(lower + 0.5 * (right + up), right, up, int(columns), int(rows))
 
+    def lifted(self, plane: ViewPlane, through: FloatArray) -> Grid:
+        """This grid of the plane's own coordinates as points of the plane through a point ``through`` (d,)."""
+        right, up = self.right[0] * plane.right, self.up[1] * plane.up
+        return Grid(plane.lifted(self.origin, through), right, up, self.columns, self.rows)
+
     @property
-    def normal(self) -> FloatArray:
-        """Unit normal (3,) of the plane, in 3D."""
-        across = np.cross(self.right, self.up)
-        return np.asarray(across / np.linalg.norm(across))
+    def plane(self) -> ViewPlane:
+        """The directions of the rows and columns."""
+        return ViewPlane(self.right / np.linalg.norm(self.right), self.up / np.linalg.norm(self.up))
+
+    def points(self, columns: slice | None = None, rows: slice | None = None) -> FloatArray:
+        """The points, or a part of them, (rows, columns, d)."""
+        i = np.arange(self.columns)[columns or slice(None)]
+        j = np.arange(self.rows)[rows or slice(None)]
+        return np.asarray(self.origin + i[None, :, None] * self.right + j[:, None, None] * self.up)
+
+    def about(self, centre: FloatArray, radius: float) -> tuple[slice, slice] | None:
+        """Columns and rows of the square that a ball about ``centre`` (d,) covers; None outside the grid."""
+        middle = self.coordinates(centre)
+        reach = radius / np.array([np.linalg.norm(self.right), np.linalg.norm(self.up)])
+        first = np.maximum(np.floor(middle - reach).astype(int), 0)
+        last = np.minimum(np.ceil(middle + reach).astype(int), (self.columns - 1, self.rows - 1)) + 1
+        if np.any(last <= first):
+            return None
+        return slice(int(first[0]), int(last[0])), slice(int(first[1]), int(last[1]))
 
     def coordinates(self, points: FloatArray) -> FloatArray:
         """i and j of the feet of ``points`` (…, d) in the plane, (…, 2)."""
@@ -61,7 +81,7 @@ class Sampling:
 
     @classmethod
     def of(cls, fields: Fields, grid: Grid) -> Sampling:
-        """Find the points in the cells; of curved cells in 2D in four triangles each, whose corners are the nodes."""
+        """Find the points in the cells, each cut into four triangles or eight tetrahedra between its nodes."""
         parts, inner = _parts(fields)
         corners = fields.points[parts]
         near, lowest, counts = _rectangles(corners, grid)
@@ -91,9 +111,9 @@ class Sampling:
 
 def _parts(fields: Fields) -> tuple[IntArray, FloatArray]:
     """Linear simplices, their nodes (k M, d+1), cell by cell; and their corners in a cell's coordinates (k, …, d+1)."""
-    if fields.points.shape[1] == 3:
-        return fields.cells[:, :4], np.eye(4)[None]
-    return fields.cells[:, QUARTERS].reshape(-1, 3), _MIDDLES[QUARTERS]
+    parts = QUARTERS if fields.points.shape[1] == 2 else EIGHTHS
+    corners = parts.shape[1]
+    return fields.cells[:, parts].reshape(-1, corners), node_coordinates(corners)[parts]
 
 
 def _rectangles(corners: FloatArray, grid: Grid) -> tuple[IntArray, IntArray, IntArray]:
@@ -104,7 +124,7 @@ def _rectangles(corners: FloatArray, grid: Grid) -> tuple[IntArray, IntArray, In
     highest = np.minimum(np.floor(where.max(axis=1) + _ROUNDING), last).astype(np.int64)
     near = (highest >= lowest).all(axis=1)
     if corners.shape[2] == 3:
-        height = (corners - grid.origin) @ grid.normal
+        height = (corners - grid.origin) @ grid.plane.normal
         near &= (height.min(axis=1) <= 0.0) & (height.max(axis=1) >= 0.0)
     return np.flatnonzero(near), lowest[near], (highest - lowest + 1)[near]
 

@@ -15,12 +15,13 @@ from rigidfluid.reports.coefficients import Figures, figures, reference
 from rigidfluid.reports.contact_plot import contact_plot
 from rigidfluid.reports.lines import energy_plot, force_plot, gap_plot, joint_plot, position_plot, speed_plot, step_plot
 from rigidfluid.reports.mechanisms import mechanism_plot
+from rigidfluid.reports.moment import moment, narrowest, nearest_body, shown_outputs
+from rigidfluid.reports.narrowest import gap_middle
 from rigidfluid.reports.page import page
 from rigidfluid.reports.pictures import (
     gap_picture,
     mesh_picture,
-    moments,
-    narrowest_moment,
+    pressure_picture,
     speed_picture,
     streamline_picture,
     vorticity_picture,
@@ -28,18 +29,25 @@ from rigidfluid.reports.pictures import (
 )
 from rigidfluid.reports.results import Results, read_results
 from rigidfluid.reports.rotation_plot import rotation_plot, torque_plot, turning
+from rigidfluid.reports.space_view import dry_space_picture, flow_space_picture
 from rigidfluid.reports.style import STYLE, save
+from rigidfluid.reports.view_plane import PlaneName, ViewPlane, view_plane
 
 FOLDER, PAGE = "report", "report.html"
 
 
-def report(out: Path) -> list[Path]:
+def report(out: Path, plane: PlaneName = "motion", follow: str | None = None) -> list[Path]:
     """Make plots and one page from the results in a folder.
 
     Parameters
     ----------
     out : Path
         Folder that a run has written.
+    plane : str
+        Which plane pictures of a 3D run show, as `view_plane` takes it.
+    follow : str, optional
+        The body that pictures of the flow look at, and in 3D go through; the one that came nearest to anything if not
+        given.
 
     Returns
     -------
@@ -49,17 +57,19 @@ def report(out: Path) -> list[Path]:
     Raises
     ------
     OutputError
-        Where a result is missing or cannot be read, or the disk refuses.
+        Where a result is missing or cannot be read, there is no such body or plane, or the disk refuses.
     SceneError, PluginError
         Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
     """
     out = Path(out)
     results = read_results(out)
+    seen = view_plane(results, plane)
+    body = None if follow is None else results.number_of(follow)
     written: list[Path] = []
     shown: list[tuple[Path, str]] = []
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
         (out / FOLDER).mkdir(exist_ok=True)
-        for name, caption, figure, kinds in _pictures(results):
+        for name, caption, figure, kinds in _pictures(results, seen, body):
             paths = save(figure, out / FOLDER, name, kinds)
             written += paths
             shown.append((paths[0], caption))
@@ -67,21 +77,54 @@ def report(out: Path) -> list[Path]:
     return [*written, out / PAGE]
 
 
-def _pictures(results: Results) -> Iterator[tuple[str, str, Figure, tuple[str, ...]]]:
-    """Name, caption, figure and file formats of each picture; each is made when it is asked for."""
-    raster, both = ("png",), ("png", "svg")
-    if _has_pictures(results):
-        shown = moments(results)
-        yield "speed_field", "Speed of the fluid. Solids are grey.", speed_picture(shown), raster
-        caption = "Streamlines, seen by an observer at rest, over the speed."
-        yield "streamlines", caption, streamline_picture(shown), raster
-        caption = "Vorticity, positive where the fluid turns counter-clockwise."
-        yield "vorticity", caption, vorticity_picture(shown), raster
-        yield "whole_mesh", "The whole mesh at the last output time.", whole_mesh_picture(shown[-1]), raster
-        yield "mesh", "Mesh about the body that came nearest to another surface.", mesh_picture(shown), raster
-        caption = "The smallest gap among the output times."
-        yield "smallest_gap", caption, gap_picture(narrowest_moment(results)), raster
-    yield "position", "Where the bodies are.", position_plot(results), both
+_Picture = tuple[str, str, Figure, tuple[str, ...]]
+"""Name, caption, figure and file formats."""
+
+
+def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+    """Pictures of the fluid; each is made when it is asked for."""
+    raster, watched = ("png",), nearest_body(results) if body is None else body
+    where = _where(results, plane, watched)
+    shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
+    yield "speed_field", f"Speed of the fluid. Solids are grey.{where}", speed_picture(shown), raster
+    caption = f"Streamlines, seen by an observer at rest, over the speed.{where}"
+    if where:
+        caption += " None where the flow makes more than 45° with the plane."
+    yield "streamlines", caption, streamline_picture(shown), raster
+    caption = f"Vorticity, positive where the fluid turns counter-clockwise.{where}"
+    yield "vorticity", caption, vorticity_picture(shown), raster
+    yield "pressure", f"Dynamic pressure.{where}", pressure_picture(shown), raster
+    yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1]), raster
+    if where:
+        yield (
+            "space",
+            f"Bodies, the paths of a few, and the speed.{where}",
+            flow_space_picture(results, shown, plane),
+            raster,
+        )
+    whose = "the body that came nearest to another surface" if body is None else results.names[body]
+    yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(shown), raster
+    output, nearest = narrowest(results, body)
+    middle = gap_middle(results, results.state_at(results.series[output][0]), nearest, plane)
+    if middle is not None:
+        caption = f"The smallest gap among the output times.{_where(results, plane, nearest)}"
+        yield "smallest_gap", caption, gap_picture(moment(results, output, plane, nearest), middle), raster
+
+
+def _where(results: Results, plane: ViewPlane, body: int) -> str:
+    """Where the slice of a 3D run is."""
+    return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
+
+
+def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+    """All pictures; each is made when it is asked for."""
+    both = ("png", "svg")
+    if results.series:
+        yield from _flow_pictures(results, plane, body)
+    elif results.system.dimension == 3:
+        times = [results.outputs[output][0] for output in shown_outputs(results)]
+        yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
+    yield "position", "Where the bodies are.", position_plot(results, plane), both
     if results.system.mechanisms is not None:
         yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
     yield "speed", "How fast the bodies are.", speed_plot(results), both
@@ -110,12 +153,6 @@ def _figures(results: Results) -> list[tuple[str, Figures]]:
     return [] if by is None else list(zip(results.names, figures(results, by), strict=True))
 
 
-def _has_pictures(results: Results) -> bool:
-    return bool(results.series) and results.system.dimension == 2
-
-
 def _notes(results: Results) -> Iterator[str]:
     if not results.series:
         yield "This run has no fluid, and so no pictures of the flow."
-    elif not _has_pictures(results):
-        yield "Pictures of the flow are made of 2D runs alone; ParaView opens fields.pvd."

@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, moving
 from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
-from rigidfluid.core.output.writer import SERIES, SUMMARY
+from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.load import scene_of_results
 from rigidfluid.errors import OutputError
 
 NEEDED = (
@@ -39,10 +40,10 @@ REMEDY = "Run the scene again, or go on with --resume; then make the report."
 class Results:
     """A run read back: s states of n bodies.
 
-    ``summary`` as in summary.json, ``scene`` and ``system`` as the run built them; ``time`` (s,) [time]; ``bodies`` by
-    column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times
-    and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms).
-    ``contact_counts`` (s,): how many contacts there are within the range of the laws.
+    ``summary`` as in summary.json, empty where there is none; ``scene`` and ``system`` as the run built them; ``time``
+    (s,) [time]; ``bodies`` by column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column
+    (s,); ``series`` the times and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column
+    (s, mechanisms). ``contact_counts`` (s,): how many contacts there are within the range of the laws.
     """
 
     summary: dict[str, Any]
@@ -71,6 +72,24 @@ class Results:
         """The coordinates' names, ``xy`` or ``xyz``."""
         return "xyz"[: self.system.dimension]
 
+    @property
+    def outputs(self) -> tuple[tuple[float, Path | None], ...]:
+        """Output times and the files of their fields, None without a fluid."""
+        if self.series:
+            return self.series
+        times = np.arange(self.time[0], self.time[-1] + 1e-9, self.scene.output.every)
+        return tuple((float(time), None) for time in times)
+
+    def state_at(self, time: float) -> int:
+        """Number of the state nearest to a time."""
+        return int(np.argmin(np.abs(self.time - time)))
+
+    def number_of(self, name: str) -> int:
+        """Of the body of that name; raises OutputError if there is none."""
+        if name not in self.names:
+            raise OutputError("--follow", name, f"a body: {', '.join(self.names[:20])}", "Name one of them.")
+        return self.names.index(name)
+
     def vectors(self, prefix: str) -> FloatArray:
         """A vector of the table of bodies, (s, n, d): ``""`` position, ``v`` velocity, ``f`` fluid, ``cf`` contact."""
         return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)
@@ -84,7 +103,8 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     folder : Path
         Where a run has written.
     motion_only : bool
-        Whether to leave the tables of energies, joints and contacts alone.
+        Whether to leave the tables of energies, joints and contacts alone; then a run that was killed, or is going
+        on, can be read too, which has no summary.
 
     Returns
     -------
@@ -98,10 +118,13 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     SceneError, PluginError
         Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
     """
-    summary = _summary(folder / SUMMARY)
-    scene = scene_from_dict(summary["scene"])
-    system = build_system(scene)
-    bodies = _table(folder, "bodies", scene.dimension)
+    complete = not motion_only or (folder / SUMMARY).exists()
+    summary = _summary(folder / SUMMARY) if complete else {}
+    scene = scene_of_results(summary["scene"] if complete else read_scene(folder / CHECKPOINT))
+    system = build_system(scene, to_run=False)
+    bodies = _table(folder, "bodies", scene.dimension, complete=complete)
+    if not complete:
+        bodies = {name: values[: len(values) - len(values) % len(moving(system))] for name, values in bodies.items()}
     energy = {} if motion_only else _table(folder, "energy", scene.dimension)
     by_state = {name: _by_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
     count = len(system.bodies)
@@ -137,10 +160,10 @@ def _summary(path: Path) -> dict[str, Any]:
     return dict(summary)
 
 
-def _table(folder: Path, name: str, dimension: int) -> dict[str, NDArray[Any]]:
+def _table(folder: Path, name: str, dimension: int, *, complete: bool = True) -> dict[str, NDArray[Any]]:
     """A table by column; every row must be whole, and every column but the names a number."""
     path, names = folder / f"{name}.csv", columns(dimension)[name]
-    rows = _rows(path, names)
+    rows = _rows(path, names, complete=complete)
     history = History(dimension, {name: rows})
     return {key: values.astype(np.float64) for key, values in history.table(name).items() if KINDS.get(key) is not str}
 
@@ -158,11 +181,11 @@ def _joint_names(system: System) -> tuple[str, ...]:
     return tuple(one.name for one in system.linkage.readings(system.pose, system.twist, 0.0, None))
 
 
-def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False) -> list[Row]:
+def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, complete: bool = True) -> list[Row]:
     try:
         with path.open(newline="", encoding="utf-8") as file:
             header = next(csv.reader(file), [])
-        rows = read_rows(path)
+        rows = read_rows(path, complete=complete)
     except FileNotFoundError:
         raise _unreadable(path, "no file") from None
     except OSError as error:

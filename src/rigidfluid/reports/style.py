@@ -16,6 +16,8 @@ BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE = (
 )  # fmt: skip
 PALETTE = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 BODY = "#8c8c8c"
+SOLID = "#d8d8d8"
+"""Bodies under a light."""
 COLOURMAP = "viridis"
 SIGNED_COLOURMAP = "RdBu_r"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import ClassVar, final
 
 import numpy as np
@@ -52,6 +53,7 @@ class TaylorHoodBackend(FluidBackend):
     Options: ClassVar[type[PartOptions]] = TaylorHoodOptions
     curved_cells: ClassVar[bool] = True
     initial_flows: ClassVar[bool] = True
+    state_format: ClassVar[str | None] = "P2-P1"
 
     options: TaylorHoodOptions
     problem: FluidProblem
@@ -70,6 +72,10 @@ class TaylorHoodBackend(FluidBackend):
         The same ``numbering`` comes again for other motions and after ``forget``.
         """
 
+    def discretise_steady(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+        """The same for flows that do not change in time, in case another solver serves where nothing has inertia."""
+        return self.discretise(numbering, mesh, controlled)
+
     @abstractmethod
     def drop_factors(self) -> None:
         """Forget what the solutions of earlier systems have left behind."""
@@ -80,7 +86,8 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.initial_flow import formula_flow, steady_flow
         from rigidfluid.taylor_hood.transfer import initial
 
-        target, start = self._for_projection(_given(mesh)), self.problem.initial
+        start = self.problem.initial
+        target = self._for_steady(_given(mesh)) if start == "steady" else self._for_projection(_given(mesh))
         given = target, self.options.tolerance, _given(mesh), pose, twist
         if start == "rest":
             made = initial(*given)
@@ -152,6 +159,18 @@ class TaylorHoodBackend(FluidBackend):
         return self._on(_given(mesh), controlled).unknowns
 
     @final
+    def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
+        from rigidfluid.taylor_hood.pieces import joined
+
+        return joined(states, parts, mesh)
+
+    @final
+    def cut(self, fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
+        from rigidfluid.taylor_hood.pieces import cut
+
+        return cut(fluid, mesh, parts)
+
+    @final
     def forget(self) -> None:
         self.drop_factors()
         self._latest = self._latest_matrix = self._latest_attempt = None
@@ -181,6 +200,10 @@ class TaylorHoodBackend(FluidBackend):
 
     def _for_projection(self, mesh: Mesh) -> Discretisation:
         return self._on(mesh, np.ones(self.problem.motions, dtype=bool))
+
+    def _for_steady(self, mesh: Mesh) -> Discretisation:
+        controlled = np.ones(self.problem.motions, dtype=bool)
+        return self.discretise_steady(self.numbering_of(mesh), mesh, controlled)
 
     def _any(self, mesh: Mesh) -> Discretisation:
         """On this topology, whichever bodies are controlled."""

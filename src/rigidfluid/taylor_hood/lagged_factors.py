@@ -6,21 +6,21 @@ from collections.abc import Callable, Mapping
 from typing import ClassVar, final
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, gcrotmk
 
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
+from rigidfluid.taylor_hood.flexible_gmres import flexible_gmres
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.pardiso import Orderings
+from rigidfluid.taylor_hood.parts import Parts
 
 _LEAST = float(np.finfo(float).tiny)
 """In place of no tolerance at all, that of a right side of zero."""
 
 
 @final
-class LaggedFactors(LaggedSolver["sparse.csr_array"]):
+class LaggedFactors(LaggedSolver[Parts]):
     """LU by `factorise`.
 
     PARDISO's factors know their rebuild_cost; that of others is what SuperLU, which analyses each time, took.
@@ -38,9 +38,9 @@ class LaggedFactors(LaggedSolver["sparse.csr_array"]):
         self._orderings = orderings or Orderings()
         self._factors: Factors | None = None
 
-    def make(self, matrix: sparse.csr_array) -> None:
+    def make(self, matrix: Parts) -> None:
         before, self._factors = self._factors, None
-        self._factors = factorise(matrix, before, self._orderings)
+        self._factors = factorise(matrix.reduced(), before, self._orderings)
         self._rebuild_cost = self._factors.rebuild_cost or self._rebuild_cost
 
     def make_room(self) -> None:
@@ -53,34 +53,9 @@ class LaggedFactors(LaggedSolver["sparse.csr_array"]):
     def iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
-        """Preconditioned on the right, so that the norm that stops the iteration is the true residual's.
-
-        GCROT's inner iteration is flexible: it keeps what the factors gave, so that an iteration takes one solve by
-        them and the end none. A cycle is of half of ``most``; one that misses by round-off is followed by another.
-        """
         assert self._factors is not None
-        factors, solves = self._factors, 0
         cycles = 2 if most == self.most else 1
-
-        def precondition(vector: FloatArray) -> FloatArray:
-            nonlocal solves
-            solves += 1
-            return factors.solve(vector)
-
-        shape = (len(residual),) * 2
-        correction, failed = gcrotmk(
-            LinearOperator(shape, matvec=apply, dtype=np.float64),
-            residual,
-            rtol=0.0,
-            atol=tolerance,
-            M=LinearOperator(shape, matvec=precondition, dtype=np.float64),
-            m=most // cycles,
-            k=1,
-            maxiter=cycles,
-        )
-        if failed:  # or not judged: the last cycle
-            failed = self.norm(residual - apply(correction)) > tolerance
-        return correction, solves, not failed
+        return flexible_gmres(apply, self._factors.solve, residual, tolerance, most, cycles)
 
     def iterate_columns(
         self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float

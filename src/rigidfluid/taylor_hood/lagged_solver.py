@@ -33,6 +33,8 @@ class LaggedSolver(ABC, Generic[Matrix]):
     """
 
     rebuild_cost: ClassVar[Mapping[int, int]]
+    sharper: ClassVar[float] = 1.0
+    """What answers to impulses have for a residual, over what is asked of those by factors."""
     fresh_iterations: ClassVar[int]
     most: ClassVar[int]
 
@@ -158,10 +160,10 @@ class LaggedSolver(ABC, Generic[Matrix]):
         fresh = not self._is_made
         if fresh:
             self._renew(matrix)
-        found, wasted = self.iterate_columns(apply, right_sides, tolerance)
+        found, wasted = self.iterate_columns(apply, right_sides, self.sharper * tolerance)
         if found is None and not fresh:
             self._renew(matrix)
-            found, wasted = self.iterate_columns(apply, right_sides, tolerance)
+            found, wasted = self.iterate_columns(apply, right_sides, self.sharper * tolerance)
         self._wasted += wasted
         if found is None:
             self.forget()

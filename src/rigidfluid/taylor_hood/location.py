@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import EDGES
 
-_CANDIDATES = (8, 64, 512)
+_CANDIDATES = (3, 16, 64, 512)
 _INSIDE = -1e-10
 _ITERATIONS, _ENOUGH = 30, 1e-14
 _BEYOND = 0.2
@@ -22,14 +22,17 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
     A target outside the mesh takes the cell that it is least outside of, with its coordinates moved inside.
     The cells tried are those with the nearest centres, more of them for the targets that are not found yet.
     """
-    centres = cKDTree(points[cells].mean(axis=1))
+    corners = points[cells]
+    centres = cKDTree(corners.mean(axis=1))
+    inverse = np.linalg.inv(np.moveaxis(corners[:, 1:] - corners[:, :1], -1, -2))
     cell = np.zeros(len(targets), dtype=np.int64)
     coordinates = np.full((len(targets), cells.shape[1]), -np.inf)
     missing = np.arange(len(targets))
     for count in _CANDIDATES:
         _, near = centres.query(targets[missing], k=min(count, len(cells)))
         near = near.reshape(len(missing), min(count, len(cells)))
-        found = barycentric(points, cells[near], targets[missing, None])
+        rest = np.einsum("nkij,nkj->nki", inverse[near], targets[missing, None] - corners[near, 0])
+        found = np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
         best = np.argmax(found.min(axis=2), axis=1)
         rows = np.arange(len(missing))
         cell[missing], coordinates[missing] = near[rows, best], found[rows, best]

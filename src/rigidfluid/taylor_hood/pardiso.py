@@ -13,6 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 
+from rigidfluid.core.model.memory import require_memory
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.mkl import installed_mkl
 
@@ -22,9 +23,13 @@ _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 # Places in PARDISO's iparm, from 0.
 _GIVEN, _REORDERING, _PERMUTATION, _PIVOTS, _SCALED, _MATCHED = 0, 1, 4, 9, 10, 12
-_ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = 17, 18, 27, 34
+_FOR_FACTORS, _ENTRIES, _MFLOP, _SINGLE, _FROM_ZERO = 16, 17, 18, 27, 34
 _NESTED_DISSECTION = 2
 _TAKEN, _RETURNED = 1, 2
+
+_OUT_OF_MEMORY = -2
+_BYTES_OF_ANALYSIS = 56.0
+"""An analysis takes about so much for each entry of the matrix."""
 
 _Numbers = NDArray[np.int32]
 
@@ -89,6 +94,8 @@ class Pardiso:
     ------
     PardisoError
         Where it cannot be analysed.
+    StepError
+        Where analysis or factors do not fit into the memory that is available; nothing is tried then.
     """
 
     def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
@@ -148,7 +155,10 @@ class Pardiso:
         self._order = np.zeros(len(self._scale), dtype=np.int32) if known is None else known
         if not self.settings.matched:
             self._iparm[_PERMUTATION] = _RETURNED if known is None else _TAKEN
+        unknowns = len(self._scale)
+        require_memory(_BYTES_OF_ANALYSIS * len(self._data), f"an analysis and factors of {unknowns} unknowns")
         self._run(_ANALYSE)
+        require_memory(1024.0 * self._iparm[_FOR_FACTORS], f"factors of {unknowns} unknowns")
         if not self.settings.matched:
             orderings.keep(self._rows, self._columns, self._order)
 
@@ -161,6 +171,8 @@ class Pardiso:
         """A phase, with the right sides and where their solutions go."""
         matrix = self._data, self._rows, self._columns, self._order
         error = _call(self._handle, self._iparm, phase, len(self._scale), matrix, sides)
+        if error == _OUT_OF_MEMORY:
+            raise MemoryError(f"PARDISO cannot allocate factors of {len(self._scale)} unknowns")
         if error:
             raise PardisoError(f"PARDISO's error {error} in phase {phase}")
 

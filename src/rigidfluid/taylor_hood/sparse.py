@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -12,8 +13,9 @@ from scipy import sparse
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
-from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.parts import Parts
 from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
@@ -49,17 +51,31 @@ class Assembly(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Assembled:
-    """Pᵀ K P of a `CoupledMatrix`: K ``stiffness``, ``apply`` it, ``build`` it; the ``twists`` among the unknowns."""
+    """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``stiffness``, P of the
+    ``constraint``."""
 
     of: CoupledMatrix
     stiffness: sparse.csr_array
-    apply: Callable[[FloatArray], FloatArray]
-    build: Callable[[], sparse.csr_array]
-    twists: slice
+    constraint: Constraint
+    masses: FloatArray
+
+    @property
+    def twists(self) -> slice:
+        """The twists among the unknowns."""
+        first = self.constraint.twist_start
+        return slice(first, first + self.masses.shape[0] * self.masses.shape[1])
+
+    def apply(self, x: FloatArray) -> FloatArray:
+        """The matrix times x (unknowns,) or (unknowns, c)."""
+        result: FloatArray = self.constraint.transposed @ (self.stiffness @ (self.constraint.operator @ x))
+        of_bodies = x[self.twists].reshape(*self.masses.shape[:2], *x.shape[1:])
+        moved = np.einsum("nij,nj...->ni...", self.masses, of_bodies)
+        result[self.twists] += moved.reshape(x[self.twists].shape)
+        return result
 
 
 class SparseDiscretisation:
-    """Pᵀ K P, solved by factors of an earlier step's matrix.
+    """Pᵀ K P, solved by a Krylov iteration.
 
     Parameters
     ----------
@@ -67,7 +83,7 @@ class SparseDiscretisation:
         Equations and boundary conditions.
     assembly : Assembly
         The integrals.
-    solver, inviscid_solver : LaggedFactors
+    solver, inviscid_solver : LaggedSolver
         Of the matrices of steps, and of those without viscosity, as projections have. Kept from topology to topology;
         they must have been told to forget the last one.
     mesh : Mesh
@@ -80,8 +96,8 @@ class SparseDiscretisation:
         self,
         problem: FluidProblem,
         assembly: Assembly,
-        solver: LaggedFactors,
-        inviscid_solver: LaggedFactors,
+        solver: LaggedSolver[Parts],
+        inviscid_solver: LaggedSolver[Parts],
         mesh: Mesh,
         controlled: BoolArray,
     ) -> None:
@@ -118,7 +134,8 @@ class SparseDiscretisation:
         scale = max(solver.norm(right_side), s.scale)
         residual = right_side - assembled.apply(guess)
         enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
-        correction, _ = solver.solve(assembled.apply, assembled.build, residual, enough, outdated, s.again)
+        build = partial(self._parts, assembled)
+        correction, _ = solver.solve(assembled.apply, build, residual, enough, outdated, s.again)
         reduced = guess + correction
         everything = constraint.operator @ reduced + given
         twist = s.twist.copy()
@@ -159,7 +176,7 @@ class SparseDiscretisation:
             prefix = f"{_NAMES[viscous]}_"
             found = {name.removeprefix(prefix): each for name, each in memory.items() if name.startswith(prefix)}
             if found:
-                solver.recall(found, self._assembled(self._origin(found)).build)
+                solver.recall(found, partial(self._parts, self._assembled(self._origin(found))))
 
     def _origin(self, memory: Mapping[str, FloatArray]) -> CoupledMatrix:
         return CoupledMatrix(
@@ -179,7 +196,7 @@ class SparseDiscretisation:
         solver = self._solvers[assembled.of.viscosity != 0.0]
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
         right_sides[assembled.twists] = wrenches[~assembled.of.controlled].reshape(-1, wrenches.shape[2])
-        return solver.solve_columns(assembled.apply, assembled.build, right_sides, tolerance)
+        return solver.solve_columns(assembled.apply, partial(self._parts, assembled), right_sides, tolerance)
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
         """The latest of a step and the latest of its masses are kept, since both are asked again how bodies answer."""
@@ -191,21 +208,18 @@ class SparseDiscretisation:
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
         stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow)
-        constraint, masses = self._constraint, m.mass_matrix[~m.controlled]
-        constraint.place(m.node_points, m.position)
-        twists = slice(constraint.twist_start, constraint.twist_start + masses.shape[0] * masses.shape[1])
+        self._constraint.place(m.node_points, m.position)
+        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled])
 
-        def apply(x: FloatArray) -> FloatArray:
-            result: FloatArray = constraint.transposed @ (stiffness @ (constraint.operator @ x))
-            of_bodies = x[twists].reshape(*masses.shape[:2], *x.shape[1:])
-            result[twists] += np.einsum("nij,nj...->ni...", masses, of_bodies).reshape(x[twists].shape)
-            return result
+    def _parts(self, assembled: _Assembled) -> Parts:
+        """What a preconditioner is made from, which is noted."""
+        m, stiffness, masses = assembled.of, assembled.stiffness, assembled.masses
+        self._made_from[m.viscosity != 0.0] = m
 
-        def build() -> sparse.csr_array:
-            self._made_from[m.viscosity != 0.0] = m
+        def reduced() -> sparse.csr_array:
             return self._reduced_matrix(stiffness).filled(stiffness, masses)
 
-        return _Assembled(m, stiffness, apply, build, twists)
+        return Parts(self._constraint, stiffness, masses, m.points, m.inertia, m.viscosity, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
         """Whether its factors are of a step of another length or order, which serve badly."""

@@ -3,31 +3,56 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, ClassVar, final
+from typing import TYPE_CHECKING, ClassVar, Literal, final
+
+from pydantic import Field
 
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, FluidState, Mesh
-from rigidfluid.taylor_hood.backend import TaylorHoodBackend
-from rigidfluid.taylor_hood.discretisation import Discretisation
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, FluidState, Mesh, SolverCost
+from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
 
 if TYPE_CHECKING:
-    from rigidfluid.taylor_hood.sparse import Assembly
+    from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+    from rigidfluid.taylor_hood.parts import Parts
+    from rigidfluid.taylor_hood.sparse import Assembly, SparseDiscretisation
+
+_DEAR = 1.0
+"""Factors in 3D that are predicted to take as many seconds, with 22,000 unknowns and 180 MB, cost more than blocks."""
+
+
+class SparseOptions(TaylorHoodOptions):
+    """Keys of ``[fluid]`` that these backends read."""
+
+    solver: Literal["auto", "lu", "schur"] = Field(
+        "auto",
+        description="`lu` factorises the whole matrix; `schur` works by blocks and needs far less memory in 3D; "
+        "`auto`: `lu` in 2D and for small meshes in 3D, else `schur`",
+    )
 
 
 class SparseBackend(TaylorHoodBackend):
-    """One process; factors by PARDISO where it is installed and SuperLU elsewhere, kept from step to step."""
+    """One process; the whole matrix or blocks of it are factorised, by PARDISO where it is installed and SuperLU
+    elsewhere, and kept from step to step."""
 
+    Options: ClassVar[type[PartOptions]] = SparseOptions
     oblique_faces: ClassVar[bool] = True
     periodic_faces: ClassVar[bool] = True
+
+    options: SparseOptions
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
         from rigidfluid.taylor_hood.pardiso import Orderings
+        from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
 
         super().__init__(options, problem)
         dimension, orderings = self.problem.dimension, Orderings()
-        self._solver, self._inviscid_solver = (LaggedFactors(dimension, orderings) for _ in range(2))
+        self._solvers: dict[str, list[LaggedSolver[Parts]]] = {
+            "lu": [LaggedFactors(dimension, orderings) for _ in range(2)],
+            "schur": [LaggedSchur(dimension) for _ in range(2)],
+        }
         self._assembly: Assembly | None = None
         self._geometry: FloatArray
 
@@ -36,14 +61,25 @@ class SparseBackend(TaylorHoodBackend):
         """The integrals over the cells of a topology that was not seen before."""
 
     @final
-    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> SparseDiscretisation:
+        return self._discretised(numbering, mesh, controlled, self._method(numbering.unknowns))
+
+    @final
+    def discretise_steady(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> SparseDiscretisation:
+        """By factors where there is convection: without inertia blocks do not master it."""
+        method = "lu" if self.problem.inertia else self._method(numbering.unknowns)
+        return self._discretised(numbering, mesh, controlled, method)
+
+    def _discretised(
+        self, numbering: Numbering, mesh: Mesh, controlled: BoolArray, method: str
+    ) -> SparseDiscretisation:
         from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
         self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
-        solvers = self._solver, self._inviscid_solver
-        return SparseDiscretisation(self.problem, self._assembly, *solvers, mesh, controlled)
+        solver, inviscid_solver = self._solvers[method]
+        return SparseDiscretisation(self.problem, self._assembly, solver, inviscid_solver, mesh, controlled)
 
     @final
     def memory(self) -> FluidState:
@@ -68,5 +104,17 @@ class SparseBackend(TaylorHoodBackend):
 
     @final
     def drop_factors(self) -> None:
-        self._solver.forget()
-        self._inviscid_solver.forget()
+        for solvers in self._solvers.values():
+            for solver in solvers:
+                solver.forget()
+
+    @final
+    def solver_cost(self, cells: float) -> SolverCost | None:
+        unknowns = predicted_unknowns(cells, self.problem.dimension)
+        return predicted_run(self._method(unknowns), unknowns, self.problem.dimension, self.problem.inertia)
+
+    def _method(self, unknowns: float) -> Literal["lu", "schur"]:
+        if self.options.solver != "auto":
+            return self.options.solver
+        dimension = self.problem.dimension
+        return "schur" if dimension == 3 and predicted_factors(unknowns, dimension).seconds > _DEAR else "lu"

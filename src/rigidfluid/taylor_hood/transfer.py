@@ -14,7 +14,11 @@ from rigidfluid.taylor_hood.sampling import Samples
 from rigidfluid.taylor_hood.state import at_rest
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
-"""What divergence is left shows, over the step, as a burst of pressure: projections are solved so much better."""
+"""Of steps' tolerance, and at least: the residual of the projection that a run starts from."""
+
+_POTENTIAL = 10.0
+"""Times steps' tolerance: the residual of the potential flow in a transfer, as only a part of it, by which the energy's
+scale differs from 1, gets into the state. What divergence is left shows, over the next step, as a burst of pressure."""
 
 _MOST_SCALED = 1.25
 """Flow beside potential flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
@@ -51,9 +55,10 @@ def transfer(
         position, twist = fluid["position" + suffix], fluid["twist" + suffix]
         every = np.ones(len(twist), dtype=bool)
         target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
-        projected = project(target, tolerance, velocity, points, position)
+        matrix = _masses(target, points, position)
+        projected = _projected(target, matrix, velocity, tolerance)
         at_boundary = target.surfaces.held_part(projected)
-        potential = project(target, tolerance, at_boundary, points, position)
+        potential = _projected(target, matrix, at_boundary, _POTENTIAL * tolerance)
         moved["velocity" + suffix] = _with_energy(target, points, projected, potential, energy)
     forget()
     return moved
@@ -74,15 +79,22 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
 def project(
     target: Discretisation, tolerance: float, velocity: FloatArray, points: FloatArray, position: FloatArray
 ) -> FloatArray:
-    """The divergence-free velocity nearest to ``velocity`` in L², unchanged on bodies and prescribed faces.
+    """The divergence-free velocity nearest to ``velocity`` in L², unchanged on bodies and prescribed faces, solved
+    better than steps of this ``tolerance``.
 
     ``target`` takes all bodies as controlled.
     """
+    return _projected(target, _masses(target, points, position), velocity, max(_TIGHTER * tolerance, _TIGHTEST))
+
+
+def _masses(target: Discretisation, points: FloatArray, position: FloatArray) -> CoupledMatrix:
+    """The matrix of projections, the mass of velocities with their divergence, for bodies that are all controlled."""
     numbering, bodies = target.numbering, len(target.surfaces.body_nodes)
-    width, still = numbering.dimension + (1 if numbering.dimension == 2 else 3), np.zeros_like(velocity)
-    matrix = CoupledMatrix(
+    width, node_points = _width(target), numbering.node_points(points)
+    still = np.zeros_like(node_points)
+    return CoupledMatrix(
         points=points,
-        node_points=numbering.node_points(points),
+        node_points=node_points,
         inertia=1.0,
         viscosity=0.0,
         advection=still,
@@ -91,17 +103,26 @@ def project(
         mass_matrix=np.zeros((bodies, width, width)),
         controlled=np.ones(bodies, dtype=bool),
     )
+
+
+def _projected(target: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, tolerance: float) -> FloatArray:
+    numbering, none = target.numbering, np.zeros((len(matrix.controlled), _width(target)))
     system = CoupledSystem(
         matrix,
-        load=target.mass_times(points, velocity),
-        body_load=np.zeros((bodies, width)),
+        load=target.mass_times(matrix.points, velocity),
+        body_load=none,
         given=target.surfaces.held_part(velocity),
         velocity=velocity,
         pressure=np.zeros(numbering.vertices),
-        twist=np.zeros((bodies, width)),
+        twist=none,
         pressure_jump=np.zeros(numbering.vertices),
     )
-    return target.solve(system, max(_TIGHTER * tolerance, _TIGHTEST)).velocity
+    return target.solve(system, tolerance).velocity
+
+
+def _width(target: Discretisation) -> int:
+    """Components of a twist."""
+    return 3 if target.numbering.dimension == 2 else 6
 
 
 def _with_energy(

@@ -127,7 +127,7 @@ class PetscDiscretisation:
         right_sides = np.zeros((constraint.columns, wrenches.shape[2]))
         on_bodies = wrenches[~matrix.controlled].reshape(-1, wrenches.shape[2])
         right_sides[constraint.twist_slice] = on_bodies[: constraint.twists]
-        return solver.solve_columns(reduced.apply, lambda: reduced, right_sides, tolerance * solver.sharper)
+        return solver.solve_columns(reduced.apply, lambda: reduced, right_sides, tolerance)
 
     def _reduced(self, matrix: CoupledMatrix) -> Reduced:
         """Of this matrix, until the next one is assembled in the place of K."""

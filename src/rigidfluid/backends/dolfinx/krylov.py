@@ -36,8 +36,6 @@ class Krylov(LaggedSolver[Reduced]):
 
     defaults: ClassVar[Settings]
     """PETSc options."""
-    sharper: ClassVar[float] = 1.0
-    """What answers to impulses have for a residual, over what is asked of those by factors."""
     keeps_pattern: ClassVar[bool]
     """Whether what is found out about a matrix' pattern serves for the next one."""
 
@@ -46,12 +44,13 @@ class Krylov(LaggedSolver[Reduced]):
         self._settings = dict(settings)
         self._ksp: Any = None
         self._assembled: Any = None
-        self._operator = _Operator()
+        self._operator = _Operator(ranks)
 
     @final
     def make(self, matrix: Reduced) -> None:
         try:
-            self._make(matrix)
+            with _causes_told():
+                self._make(matrix)
         except PETSc.Error as error:
             raise StepRejected(
                 "fluid.backend",
@@ -101,7 +100,8 @@ class Krylov(LaggedSolver[Reduced]):
         _, pmat = self._ksp.getOperators()
         correction, right_side = pmat.createVecs()
         right_side.array[:] = residual
-        self._ksp.solve(right_side, correction)
+        with _causes_told():
+            self._ksp.solve(right_side, correction)
         self._operator.apply = None  # it holds the step's matrices
         found: FloatArray = correction.array.copy()
         return found, self._ksp.getIterationNumber(), self._ksp.getConvergedReason() > 0
@@ -201,14 +201,30 @@ class LaggedSchur(Krylov):
 
 
 class _Operator:
-    """What PETSc calls for A x."""
+    """What PETSc calls for A x, on all processes together."""
 
-    def __init__(self) -> None:
+    def __init__(self, ranks: Ranks) -> None:
+        self._ranks = ranks
         self.apply: Callable[[FloatArray], FloatArray] | None = None
 
     def mult(self, _matrix: Any, x: Any, y: Any) -> None:
         assert self.apply is not None
+        self._ranks.heed_interrupts()
         y.array[:] = self.apply(x.array_r)
+
+
+@contextmanager
+def _causes_told() -> Iterator[None]:
+    """Raise what was raised where PETSc called Python, such as Ctrl-C, in the place of PETSc's own error."""
+    try:
+        yield
+    except PETSc.Error as error:
+        cause = error.__cause__
+        while isinstance(cause, PETSc.Error):
+            cause = cause.__cause__
+        if cause is not None:
+            raise cause from None
+        raise
 
 
 def _constant_pressure(matrix: Any, moving: int) -> Any:

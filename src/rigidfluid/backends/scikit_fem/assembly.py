@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
@@ -23,10 +24,11 @@ class Rule(NamedTuple):
 
 
 class Sizes(NamedTuple):
-    """Numbers of the functions of the quadratic basis, and of the axes: as many as there are."""
+    """Numbers of the functions of the quadratic basis, of the axes, and of both together: as many as there are."""
 
     basis: tuple[int, ...]
     axes: tuple[int, ...]
+    entries: tuple[int, ...]
 
 
 class ReferenceTables(NamedTuple):
@@ -54,6 +56,20 @@ class Cells(NamedTuple):
     curved_points: FloatArray
 
 
+class Sparsity(NamedTuple):
+    """Where a cell's entries are in the sorted rows of the matrix, which start at ``indptr`` (unknowns + 1,).
+
+    A node's d rows and a vertex' row of pressures have an entry for each component of each neighbour, then one for
+    each neighbour that is a vertex: ``vertices_around`` (nodes,). ``ranks`` (M, b, b): the place of a cell's node j
+    among the neighbours of its node i; vertices come first, so that it serves pressures too.
+    """
+
+    indptr: NDArray[np.int32]
+    vertices_around: NDArray[np.int32]
+    ranks: NDArray[np.int16]
+    first_pressure: int
+
+
 def reference_tables(dimension: int) -> ReferenceTables:
     """Tabulate scikit-fem's quadratic simplex in ``dimension`` 2 or 3."""
     from skfem import ElementTetP2, ElementTriP2
@@ -73,7 +89,7 @@ def reference_tables(dimension: int) -> ReferenceTables:
     # In tetrahedra scikit-fem's rule of order 5 is exact to degree 4 only, and that of order 6 to degree 5.
     cubic = tabulate(5 if dimension == 2 else 6)
     mass = np.einsum("q,qi,qj->ij", cubic.weight, cubic.value, cubic.value)
-    sizes = Sizes(tuple(range(count)), tuple(range(dimension)))
+    sizes = Sizes(tuple(range(count)), tuple(range(dimension)), tuple(range(count * dimension)))
     return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass, sizes)
 
 
@@ -83,16 +99,19 @@ class CompiledAssembly:
     def __init__(self, numbering: Numbering) -> None:
         self.numbering = numbering
         self._tables = reference_tables(numbering.dimension)
-        self._straight = np.setdiff1d(np.arange(len(numbering.cells)), numbering.curved_cells)
+        straight = np.setdiff1d(np.arange(len(numbering.cells)), numbering.curved_cells)
+        if numbering.dimension == 3:  # the matrix is larger than the caches: neighbours one after the other
+            straight = straight[np.argsort(numbering.cells[straight].min(axis=1), kind="stable")]
+        self._straight = straight
         self._build_sparsity()
 
     def matrix(
         self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
     ) -> sparse.csr_array:
-        n, size = self.numbering, len(self._indices)
-        cells = self._cells(points)
-        data = kernels.assemble(points, cells, self._slots, size, inertia, viscosity, advection, flow, self._tables)
-        return sparse.csr_array((data, self._indices, self._indptr), shape=(n.unknowns,) * 2)
+        n, cells = self.numbering, self._cells(points)
+        data = np.zeros(len(self._indices))  # by NumPy, whose large pages cost a tenth of Numba's small ones
+        kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, self._tables)
+        return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         load: FloatArray = kernels.apply_mass(points, self._cells(points), self._tables, field)
@@ -107,14 +126,13 @@ class CompiledAssembly:
 
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension
-        velocity = (n.cell_nodes[:, :, None] * d + np.arange(d)).reshape(len(n.cells), -1)
-        unknowns = np.concatenate([velocity, n.nodes * d + n.cells], axis=1).astype(np.int32)
-        width = unknowns.shape[1]
-        rows = np.repeat(unknowns, width, axis=1).ravel()
-        columns = np.tile(unknowns, (1, width)).ravel()
+        width = n.cell_nodes.shape[1]
+        nodes = n.cell_nodes.astype(np.int32)
+        rows, columns = np.repeat(nodes, width, axis=1).ravel(), np.tile(nodes, (1, width)).ravel()
         ones = np.ones(len(rows), dtype=np.int8)
-        pattern = sparse.coo_array((ones, (rows, columns)), shape=(n.unknowns,) * 2).tocsr()
+        pattern = sparse.coo_array((ones, (rows, columns)), shape=(n.nodes,) * 2).tocsr()
         pattern.sort_indices()
-        self._indptr = pattern.indptr.astype(np.int32)
-        self._indices = pattern.indices.astype(np.int32)
-        self._slots = kernels.slots(self._indptr, self._indices, unknowns)
+        ranks = kernels.neighbour_ranks(pattern.indptr, pattern.indices, n.cell_nodes)
+        indptr, self._indices = kernels.expand(pattern.indptr, pattern.indices, n.vertices, d)
+        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(pattern.indptr)
+        self._sparsity = Sparsity(indptr, vertices_around, ranks, n.nodes * d)

@@ -15,17 +15,46 @@ from numba import njit
 
 
 @njit(cache=True)
-def slots(indptr, indices, unknowns):
-    """Position in a sorted CSR matrix of each entry of each cell's matrix, (M, width, width)."""
-    cells, width = unknowns.shape
-    result = np.empty((cells, width, width), np.int32)
+def neighbour_ranks(indptr, indices, cell_nodes):
+    """Of each cell's nodes i and j the place of j among the neighbours of i, which are sorted; (M, b, b)."""
+    cells, width = cell_nodes.shape
+    result = np.empty((cells, width, width), np.int16)
     for cell in range(cells):
         for i in range(width):
-            row = unknowns[cell, i]
-            first, last = indptr[row], indptr[row + 1]
+            node = cell_nodes[cell, i]
+            around = indices[indptr[node] : indptr[node + 1]]
             for j in range(width):
-                result[cell, i, j] = first + np.searchsorted(indices[first:last], unknowns[cell, j])
+                result[cell, i, j] = np.searchsorted(around, cell_nodes[cell, j])
     return result
+
+
+@njit(cache=True)
+def expand(indptr, indices, vertices, dimension):
+    """The matrix' pattern in rows, (unknowns + 1,) and (entries,), of the pattern that nodes have with nodes."""
+    nodes = len(indptr) - 1
+    wide_indptr = np.empty(nodes * dimension + vertices + 1, np.int32)
+    wide_indptr[0] = 0
+    lengths = np.empty(nodes, np.int64)
+    for node in range(nodes):
+        around = indices[indptr[node] : indptr[node + 1]]
+        lengths[node] = dimension * len(around) + np.searchsorted(around, vertices)
+    for row in range(len(wide_indptr) - 1):
+        node = row // dimension if row < nodes * dimension else row - nodes * dimension
+        wide_indptr[row + 1] = wide_indptr[row] + lengths[node]
+    wide = np.empty(wide_indptr[-1], np.int32)
+    for row in range(len(wide_indptr) - 1):
+        node = row // dimension if row < nodes * dimension else row - nodes * dimension
+        place = wide_indptr[row]
+        for slot in range(indptr[node], indptr[node + 1]):
+            for axis in range(dimension):
+                wide[place] = indices[slot] * dimension + axis
+                place += 1
+        for slot in range(indptr[node], indptr[node + 1]):
+            if indices[slot] >= vertices:
+                break
+            wide[place] = nodes * dimension + indices[slot]
+            place += 1
+    return wide_indptr, wide
 
 
 @njit(cache=True)
@@ -115,39 +144,48 @@ def add_convection(scalar, rule, q, dx, advection, flow, room, sizes):
 
 @njit(cache=True)
 def add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes):
-    """Add viscosity ∂φᵢ/∂xₐ ∂φⱼ/∂x_c at point ``q`` of a ``rule`` to ``stress`` (b, b, d, d) and -ψₖ ∂φᵢ/∂xₐ to
-    ``divergence`` (b, d, d+1)."""
-    for i in range(len(sizes.basis)):
-        for a in range(len(sizes.axes)):
-            left = viscosity * dx * gradient[i, a]
-            for j in range(len(sizes.basis)):
-                for c in range(len(sizes.axes)):
-                    stress[i, j, a, c] += left * gradient[j, c]
-            for k in range(len(sizes.axes) + 1):
-                divergence[i, a, k] -= dx * gradient[i, a] * rule.linear[q, k]
+    """Add viscosity ∂φᵢ/∂xₐ ∂φⱼ/∂x_c at point ``q`` of a ``rule`` to ``stress`` (b d, b d) and -ψₖ ∂φᵢ/∂xₐ to
+    ``divergence`` (b d, d+1)."""
+    flat = gradient.ravel()
+    for i in range(len(sizes.entries)):
+        left = viscosity * dx * flat[i]
+        for j in range(len(sizes.entries)):
+            stress[i, j] += left * flat[j]
+        for k in range(len(sizes.axes) + 1):
+            divergence[i, k] -= dx * flat[i] * rule.linear[q, k]
 
 
 @njit(cache=True)
-def scatter(data, slots, cell, scalar, stress, divergence, sizes):
+def scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes):
     """Add one cell's matrix to the entries ``data``: ``scalar`` and the stress of ∇u + ∇uᵀ, and the pressures'."""
     b, d = len(sizes.basis), len(sizes.axes)
+    ranks = sparsity.ranks[cell]
     for i in range(b):
         for j in range(b):
-            diagonal = scalar[i, j]
             for a in range(d):
-                diagonal += stress[i, j, a, a]
-            for a in range(d):
-                for c in range(d):
-                    data[slots[cell, i * d + a, j * d + c]] += stress[i, j, c, a] + (diagonal if a == c else 0.0)
+                scalar[i, j] += stress[i * d + a, j * d + a]
+    for i in range(b):
         for a in range(d):
+            row = nodes[i] * d + a
+            first, last = sparsity.indptr[row], sparsity.indptr[row + 1]
+            for j in range(b):
+                place = first + d * ranks[i, j]
+                for c in range(d):
+                    data[place + c] += stress[i * d + c, j * d + a] + (scalar[i, j] if a == c else 0.0)
+            place = last - sparsity.vertices_around[nodes[i]]
             for k in range(d + 1):
-                data[slots[cell, i * d + a, b * d + k]] += divergence[i, a, k]
-                data[slots[cell, b * d + k, i * d + a]] += divergence[i, a, k]
+                data[place + ranks[i, k]] += divergence[i * d + a, k]
+    for k in range(d + 1):
+        first = sparsity.indptr[sparsity.first_pressure + nodes[k]]
+        for j in range(b):
+            place = first + d * ranks[k, j]
+            for a in range(d):
+                data[place + a] += divergence[j * d + a, k]
 
 
 @njit(cache=True)
-def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, tables):
-    """Entries (size,) of the matrix of
+def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow, tables):
+    """Add to the entries ``data``, in the order of ``sparsity``, those of the matrix of
 
     inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
 
@@ -155,10 +193,9 @@ def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, ta
     """
     sizes = tables.sizes
     b, d = len(sizes.basis), len(sizes.axes)
-    data = np.zeros(size)
     jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
     advected, flowing, room = np.empty((b, d)), np.empty((b, d)), np.empty(b)
-    scalar, stress, divergence = np.empty((b, b)), np.empty((b, b, d, d)), np.empty((b, d, d + 1))
+    scalar, stress, divergence = np.empty((b, b)), np.empty((b * d, b * d)), np.empty((b * d, d + 1))
     moving = np.any(advection) or np.any(flow)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
@@ -180,7 +217,7 @@ def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, ta
         for q in range(len(rule.weight)):
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, rule.weight[q] * det, sizes)
-        scatter(data, slots, cell, scalar, stress, divergence, sizes)
+        scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         nodes = cells.nodes[cell]
@@ -199,8 +236,7 @@ def assemble(points, cells, slots, size, inertia, viscosity, advection, flow, ta
                 add_convection(scalar, rule, q, dx, advected, flowing, room, sizes)
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes)
-        scatter(data, slots, cell, scalar, stress, divergence, sizes)
-    return data
+        scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
 
 
 @njit(cache=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact import broad_phase
+from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
@@ -26,6 +27,8 @@ def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Conta
     """
     contacts = system.detector.detect(pose, mesh, reach)
     refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
+    if any(interaction.law.film for interaction in system.interactions):
+        return with_effective_radii(contacts, system.bodies, system.walls, pose)
     return contacts
 
 

@@ -73,6 +73,7 @@ class Restitution(ForceLaw):
         self.loss = loss
         self.loads = law.loads
         self.overlap = law.overlap
+        self.film = law.film
 
     @property
     def ranges(self) -> tuple[float, ...]:

@@ -14,12 +14,23 @@ import numpy as np
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces, on_surface
+from rigidfluid.core.mesh.size_field import two_nearest_bodies
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
 
 SQUEEZED = 0.3
 """An edge stays straight where bending it would leave less than this of a cell's volume anywhere in the cell."""
+
+DOUBTFUL = 0.5 * (1.0 + SQUEEZED)
+"""The same for a cell in a gap, whose share of its volume falls to `SQUEEZED` when the gap has halved, before which no
+other mesh is made; and for a cell whose quality it leaves below `LEAST_QUALITY`."""
+
+LEAST_QUALITY = 0.2
+"""A mesh is made anew at half of the quality that it had, and no cell is to be worse than 0.1."""
+
+NARROW = 1.5
+"""A cell is in a gap that is at most this many times wider than the cell's longest edge."""
 
 FLAT = 1e-9
 """An edge is straight when the surface is nearer to its middle than this many of its lengths."""
@@ -58,12 +69,33 @@ def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Do
     curved = replace(mesh, curved=CurvedEdges(edges[bends], surface[bends], middles[bends]))
     while curved.curved is not None:
         cells = CurvedCells(curved)
-        thin = cells.least_jacobian(curved.geometry) < SQUEEZED
-        if not thin.any():
+        thin = _too_thin(curved, cells, bodies, pose, domain)
+        if not len(thin):
             return curved
         kept = np.setdiff1d(np.arange(len(curved.curved.surface)), cells.bent[thin])
         curved = replace(mesh, curved=_chosen(curved.curved, kept))
     return mesh
+
+
+def _too_thin(mesh: Mesh, cells: CurvedCells, bodies: Sequence[Body], pose: Pose, domain: Domain) -> IntArray:
+    """Numbers of the ``cells`` that are bent too much."""
+    left = cells.least_jacobian(mesh.geometry)
+    doubtful = np.flatnonzero(left < DOUBTFUL)
+    left, vertices = left[doubtful], cells.cells[doubtful]
+    corners = mesh.points[vertices]
+    pairs = np.array(list(combinations(range(corners.shape[1]), 2)))
+    longest = np.linalg.norm(np.diff(corners[:, pairs], axis=2), axis=-1).max(axis=(1, 2), initial=0.0)
+    in_a_gap = gap_widths(corners.mean(axis=1), bodies, pose, domain) < NARROW * longest
+    bad = left * cell_quality(mesh.points, vertices) < LEAST_QUALITY
+    return np.asarray(doubtful[in_a_gap | bad | (left < SQUEEZED)])
+
+
+def gap_widths(points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
+    """Distance to the nearest body and that to the next surface together, (N,) [length]."""
+    first, second = two_nearest_bodies(points, bodies, pose, np.inf)
+    for piece in domain.pieces:
+        np.minimum(second, np.abs(piece.shape.signed_distance(points)), out=second)
+    return first + second
 
 
 def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, MeshPart
+
+_Piece = tuple[tuple[NDArray[Any], ...], CurvedEdges | None]
 
 
 def partition(mesh: Mesh, parts: int) -> IntArray:
@@ -54,32 +59,66 @@ def distributed(mesh: Mesh | None, ranks: Ranks) -> Mesh:
     if ranks.size == 1:
         assert mesh is not None
         return mesh
-    part = ranks.scatter(None if mesh is None else _parts(mesh, ranks.size))
-    assert part.part is not None
-    return replace(part, part=replace(part.part, ranks=ranks))
+    return shared(ranks.scatter(None if mesh is None else parts_of(mesh, partition(mesh, ranks.size))), ranks)
+
+
+def shared(part: Mesh, ranks: Ranks) -> Mesh:
+    """A part that `parts_of` has cut, held by one of these ``ranks``; a whole mesh stays one."""
+    return part if part.part is None else replace(part, part=replace(part.part, ranks=ranks))
+
+
+def parts_of(mesh: Mesh, owner: IntArray) -> list[Mesh]:
+    """All parts of a whole mesh, cells by their ``owner`` (M,) from 0 on, for ranks yet to be named; one part is the
+    mesh itself."""
+    count = int(owner.max()) + 1
+    if count == 1:
+        return [mesh]
+    facet_owner = owner[_cells_of_facets(mesh)]
+    vertices = [np.unique(mesh.cells[owner == rank]) for rank in range(count)]
+    lowest = np.empty(len(mesh.points), dtype=np.int64)
+    for rank in reversed(range(count)):
+        lowest[vertices[rank]] = rank
+    return [
+        _part(mesh, vertices[rank], np.flatnonzero(owner == rank), np.flatnonzero(facet_owner == rank), lowest == rank)
+        for rank in range(count)
+    ]
 
 
 def whole(mesh: Mesh) -> Mesh | None:
     """The mesh that the parts were cut from, with the points where they are now, on the root; None for the others."""
     if mesh.part is None:
         return mesh
-    part = mesh.part
-    own = part.owned
-    sent = (part.vertices[own], mesh.points[own], part.cells, part.vertices[mesh.cells])
-    pieces = part.ranks.gather((*sent, part.facets, part.vertices[mesh.facets], mesh.markers))
-    curved = _whole_curves(mesh)
-    if pieces is None:
-        return None
-    vertices, points, cells, corners, facets, facet_corners, markers = map(np.concatenate, zip(*pieces, strict=True))
-    vertex, cell, facet = np.argsort(vertices), np.argsort(cells), np.argsort(facets)
-    return Mesh(points[vertex], corners[cell], facet_corners[facet], markers[facet], curved=curved)
+    pieces = mesh.ranks.gather(_piece(mesh))
+    return None if pieces is None else _joined(pieces)
 
 
-def _whole_curves(mesh: Mesh) -> CurvedEdges | None:
-    """All parts' curved edges, each once, on the root."""
+def joined(parts: Sequence[Mesh]) -> Mesh:
+    """As `whole`, from all parts in the order of ranks."""
+    return parts[0] if len(parts) == 1 else _joined([_piece(part) for part in parts])
+
+
+def _piece(mesh: Mesh) -> _Piece:
+    """What the whole takes from a part: owned vertices, cells and facets by their numbers there, and curved edges."""
     assert mesh.part is not None
-    own = None if mesh.curved is None else replace(mesh.curved, vertices=mesh.part.vertices[mesh.curved.vertices])
-    pieces = [piece for piece in mesh.ranks.gather(own) or [] if piece is not None]
+    part, own = mesh.part, mesh.part.owned
+    curved = None if mesh.curved is None else replace(mesh.curved, vertices=part.vertices[mesh.curved.vertices])
+    arrays = (
+        *(part.vertices[own], mesh.points[own], part.cells, part.vertices[mesh.cells]),
+        *(part.facets, part.vertices[mesh.facets], mesh.markers),
+    )
+    return arrays, curved
+
+
+def _joined(pieces: Sequence[_Piece]) -> Mesh:
+    arrays, curved = zip(*pieces, strict=True)
+    vertices, points, cells, corners, facets, facet_corners, markers = map(np.concatenate, zip(*arrays, strict=True))
+    vertex, cell, facet = np.argsort(vertices), np.argsort(cells), np.argsort(facets)
+    curves = _joined_curves([piece for piece in curved if piece is not None])
+    return Mesh(points[vertex], corners[cell], facet_corners[facet], markers[facet], curved=curves)
+
+
+def _joined_curves(pieces: Sequence[CurvedEdges]) -> CurvedEdges | None:
+    """All parts' curved edges, each once."""
     if not pieces:
         return None
     vertices, surface, middles = (
@@ -107,20 +146,6 @@ def _halve(centres: FloatArray, cells: IntArray, first: int, parts: int, owner: 
         cut = len(cells) * half // parts
         _halve(centres, along[:cut], first, half, owner)
         _halve(centres, along[cut:], first + half, parts - half, owner)
-
-
-def _parts(mesh: Mesh, count: int) -> list[Mesh]:
-    """All parts, in the order of ranks, for ranks yet to be named."""
-    owner = partition(mesh, count)
-    facet_owner = owner[_cells_of_facets(mesh)]
-    vertices = [np.unique(mesh.cells[owner == rank]) for rank in range(count)]
-    lowest = np.empty(len(mesh.points), dtype=np.int64)
-    for rank in reversed(range(count)):
-        lowest[vertices[rank]] = rank
-    return [
-        _part(mesh, vertices[rank], np.flatnonzero(owner == rank), np.flatnonzero(facet_owner == rank), lowest == rank)
-        for rank in range(count)
-    ]
 
 
 def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, owned: BoolArray) -> Mesh:

@@ -6,6 +6,7 @@ The root makes each mesh and holds it whole meanwhile; every rank moves its own 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from itertools import chain
 
@@ -53,6 +54,8 @@ class MeshUpdater:
         Finer cells behind moving bodies, on each mesh but the first.
     inserter : Inserter
         How the bodies come into the first mesh.
+    watch : callable, optional
+        Times a stage by its name; the carrying over of the fluid is the stage "transfer".
     """
 
     def __init__(
@@ -64,6 +67,7 @@ class MeshUpdater:
         oldest: int | None = None,
         wake: Wake | None = None,
         inserter: Inserter = BY_SHAPE,
+        watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
     ) -> None:
         self._system = system
         self._sizes = sizes
@@ -72,6 +76,7 @@ class MeshUpdater:
         self._oldest = oldest
         self._wake = wake
         self._inserter = inserter
+        self._watch = watch
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells] | None = None
         self._reference: Reference | None = None
@@ -116,7 +121,8 @@ class MeshUpdater:
         except MeshError as error:
             # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
             return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
-        fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
+        with self._watch("transfer"):
+            fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
             mesh=mesh,
@@ -125,6 +131,10 @@ class MeshUpdater:
             ledger=state.ledger.after_transfer(loss),
             remesh_failed=None,
         )
+
+    def quality(self, state: State) -> float:
+        """Quality of the worst cell of the mesh where it is now, curved cells included; nan without a mesh [1]."""
+        return np.nan if state.reference is None else self._placed(state.reference, state.pose)[1]
 
     def _remade(self, mesh: Mesh, pose: Pose, twist: Twist) -> Mesh:
         assert self._sizes is not None

@@ -194,12 +194,13 @@ def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: F
     """The domain minus the bodies as a ``netgen.occ`` shape whose faces (edges in 2D) are named by surface number."""
     from netgen import occ
 
-    shape = numbered_shape(domain, len(bodies))
+    shape, placed = numbered_shape(domain, len(bodies)), []
     for i, body in enumerate(bodies):
-        placed = turned(body.cad_shape(), pose.orientation[i]).Move(occ.Vec(*in_space(pose.position[i])))
-        for side in sides(placed, domain.dimension):
+        placed.append(turned(body.cad_shape(), pose.orientation[i]).Move(occ.Vec(*in_space(pose.position[i]))))
+        for side in sides(placed[i], domain.dimension):
             side.name, side.maxh = str(i), float(size_body[i])
-        shape = shape - placed
+    if placed:  # all at once: one by one costs the square of their number
+        shape = shape - (placed[0] if len(placed) == 1 else occ.Compound(placed))
     identify(sides(shape, domain.dimension), len(bodies), domain)
     return shape
 

@@ -33,6 +33,7 @@ from rigidfluid.core.model.types import (
     Motion,
     Pose,
     Response,
+    SolverCost,
     Step,
     Twist,
 )
@@ -221,6 +222,9 @@ class ForceLaw(Part):
     """
 
     balls_only: ClassVar[bool] = False
+    film: bool = False
+    """Whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls, ellipses
+    and ellipsoids have."""
     conservative: bool = True
     """Whether it has an energy; else force, energy and stiffness are zero."""
     dissipative: bool = False
@@ -280,6 +284,9 @@ class FluidBackend(Part):
     """Whether it takes slip and pressure conditions on faces that lie across no axis."""
     periodic_faces: ClassVar[bool] = False
     """Whether it takes periodic conditions."""
+    state_format: ClassVar[str | None] = None
+    """What its state holds, by a name. Backends of one name resume each other's runs, and by `joined` and `cut` those
+    of other numbers of ranks; None where neither can be."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 
@@ -337,6 +344,10 @@ class FluidBackend(Part):
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
         """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
 
+    def solver_cost(self, cells: float) -> SolverCost | None:
+        """What steps on a mesh of about so many ``cells`` are going to take; None where the backend does not know."""
+        return None
+
     @abstractmethod
     def forget(self) -> None:
         """Drop every cache, so that the next step depends on the given state alone."""
@@ -352,3 +363,12 @@ class FluidBackend(Part):
     def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
         """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
         self.forget()
+
+    def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
+        """The state on a whole ``mesh`` from those on all its ``parts``; asked of the root alone, if there
+        is a `state_format`."""
+        raise NotImplementedError
+
+    def cut(self, fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
+        """The states on all ``parts`` of a whole ``mesh`` from the one there, to the last bit what `joined` takes."""
+        raise NotImplementedError

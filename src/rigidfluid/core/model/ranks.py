@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import Any, TypeVar, final
 
 import numpy as np
 
-from rigidfluid.errors import RigidfluidError
+from rigidfluid.errors import RigidfluidError, SharedInterrupt
 
 T = TypeVar("T")
 ROOT = 0
@@ -17,22 +17,41 @@ ROOT = 0
 
 
 class Ranks(ABC):
-    """Processes that run the same loop; every method is called by all of them together.
+    """Processes that run the same loop; every method but `interrupt` and `abort` is called by all of them together.
 
     ``rank`` is this one's number, from 0 to ``size`` - 1.
     """
 
     rank: int
     size: int
+    _is_interrupted = False
 
     @property
     def is_root(self) -> bool:
         """Whether this process meshes, and writes what is there once."""
         return self.rank == ROOT
 
-    @abstractmethod
+    def interrupt(self) -> None:
+        """Have all raise SharedInterrupt at their next `allgather`; safe to call from a signal's handler."""
+        self._is_interrupted = True
+
+    @final
     def allgather(self, item: T) -> list[T]:
-        """Everyone's ``item``, in the order of ranks, for all."""
+        """Everyone's ``item``, in the order of ranks, for all; raises SharedInterrupt where one was interrupted."""
+        pairs = self.exchange((item, self._is_interrupted))
+        if any(interrupted for _, interrupted in pairs):
+            self._is_interrupted = False  # what is still to be told needs exchanges
+            raise SharedInterrupt
+        return [each for each, _ in pairs]
+
+    @final
+    def heed_interrupts(self) -> None:
+        """Raise SharedInterrupt on all where one was interrupted."""
+        self.allgather(None)
+
+    @abstractmethod
+    def exchange(self, item: T) -> list[T]:
+        """Everyone's ``item``, in the order of ranks, for all, whoever was interrupted."""
 
     @abstractmethod
     def gather(self, item: T) -> list[T] | None:
@@ -87,7 +106,7 @@ class Alone(Ranks):
     rank = 0
     size = 1
 
-    def allgather(self, item: T) -> list[T]:
+    def exchange(self, item: T) -> list[T]:
         return [item]
 
     def gather(self, item: T) -> list[T] | None:
@@ -129,7 +148,7 @@ class MpiRanks(Ranks):
         self.rank: int = communicator.rank
         self.size: int = communicator.size
 
-    def allgather(self, item: T) -> list[T]:
+    def exchange(self, item: T) -> list[T]:
         return list(self.communicator.allgather(item))
 
     def gather(self, item: T) -> list[T] | None:

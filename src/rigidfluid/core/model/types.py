@@ -8,7 +8,7 @@ Surfaces are numbered through: bodies 0 … n-1, then the pieces of the domain's
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,9 @@ from rigidfluid.core.model.ranks import ALONE, Ranks
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+_FROM_RADII: FloatArray = np.empty(0)
+"""In place of effective radii that are not given."""
 
 FluidState = Mapping[str, FloatArray]
 """What a fluid backend remembers between steps, as named arrays, so that a checkpoint can hold it as it is."""
@@ -55,7 +58,8 @@ class Contacts:
     ``body_a`` (m,) is always a body, ``body_b`` (m,) a body or a wall (its surface number);
     ``point_a``, ``point_b``, ``normal`` (m, d); ``gap`` (m,) [length], negative where they overlap;
     ``radius_a``, ``radius_b`` (m,) radii of curvature [length], infinite on a flat wall, negative on a hollow one, NaN
-    where not known; ``at_wall`` (m,): whether b is a wall.
+    where not known; ``at_wall`` (m,): whether b is a wall. ``effective_radius`` (m,): of the ball at a flat wall that
+    squeezes a thin film alike, from the radii if not given, NaN where not known [length].
     """
 
     body_a: IntArray
@@ -67,6 +71,13 @@ class Contacts:
     radius_a: FloatArray
     radius_b: FloatArray
     at_wall: BoolArray
+    effective_radius: FloatArray = field(default_factory=lambda: _FROM_RADII)
+
+    def __post_init__(self) -> None:
+        if self.effective_radius is _FROM_RADII:
+            with np.errstate(divide="ignore"):  # a ball that fills its hollow
+                radius = 1.0 / (1.0 / self.radius_a + 1.0 / self.radius_b)
+            object.__setattr__(self, "effective_radius", radius)
 
     def __len__(self) -> int:
         return len(self.gap)
@@ -276,6 +287,20 @@ class Step:
     kinematics: Kinematics | None = None
     provisional: bool = False
     links: Links | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SolverCost:
+    """What the steps of a run are expected to take.
+
+    ``method``: of solution, as the scene's keys name it; ``unknowns`` of a step; ``memory`` of the process [byte]; CPU
+    ``seconds`` that factors take, or what else preconditions, each time it is made.
+    """
+
+    method: str
+    unknowns: float
+    memory: float
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)

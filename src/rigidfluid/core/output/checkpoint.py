@@ -6,9 +6,11 @@ Each rank has a file of its own. The ranks themselves are not stored: who reads 
 from __future__ import annotations
 
 import io
+import json
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +24,7 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 5
+FORMAT = 6
 """Of what is in a checkpoint, the backend's memory and the columns of tables included; files of others are refused."""
 
 
@@ -73,17 +75,39 @@ def read_staged(path: Path, ranks: Ranks) -> Checkpoint:
 
 def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
     """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
+    with _opened(path) as file:
+        checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
+    return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def read_origin(path: Path) -> tuple[int, int]:
+    """The tick of a checkpoint, and how many ranks wrote it together; raises OutputError as read_checkpoint does."""
+    with _opened(path) as file:
+        return int(file["state"]["tick"][()]), int(file["ranks"][()])
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
     if not path.is_file():
         raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
     try:
         with h5py.File(path, "r") as file:
             _refuse_other_formats(path, file)
-            checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
-    except (OSError, AttributeError, TypeError) as error:
+            yield file
+    except (OSError, AttributeError, TypeError, KeyError) as error:
         raise OutputError(
             str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
         ) from error
-    return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
+
+
+def read_scene(path: Path) -> dict[str, Any]:
+    """The scene of the run that a checkpoint is of; raises OutputError where there is none or it cannot be read."""
+    try:
+        with h5py.File(path, "r") as file:
+            return dict(json.loads(file["scene"].asstr()[()]))
+    except (OSError, KeyError, AttributeError, TypeError, ValueError) as error:
+        allowed = "the checkpoint of a run"
+        raise OutputError(str(path), f"no readable checkpoint ({error})", allowed, "Run the scene again.") from error
 
 
 def _refuse_other_formats(path: Path, file: h5py.File) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import Mechanisms, System
-from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Twist, Wrench
 
 Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]
@@ -42,16 +42,18 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
         "joints": ("time", "step", "joint", "gap", "angle", "rate", *named("f"), *torque),
         "energy": ("time", "step", *LEDGER_COLUMNS),
-        "steps": ("time", "step", "size", "error", "unknowns", "remeshes"),
+        "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
     }
 
 
 class StepCost(NamedTuple):
-    """What the step to a state took: its ``size`` [time], and how many meshes have been made since the start."""
+    """What the step to a state took: its ``size`` [time], how many meshes have been made since the start, and the
+    ``quality`` of the worst cell [1]."""
 
     size: float
     remeshes: int
+    quality: float
 
 
 def records(system: System, probes: FloatArray, state: State, time: float, cost: StepCost | None) -> Records:
@@ -121,7 +123,14 @@ def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
     """The error is infinite where it is not known."""
     unknowns = system.backend.unknowns(state.mesh, system.controlled_motions)
     error = math.inf if state.estimate is None else state.estimate.error
-    return (*stamp, cost.size, error, unknowns, cost.remeshes)
+    return (*stamp, cost.size, error, unknowns, cost.remeshes, count_cells(state.mesh), cost.quality)
+
+
+def count_cells(mesh: Mesh | None) -> int:
+    """Of the whole mesh."""
+    if mesh is None:
+        return 0
+    return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
 
 
 def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) -> Iterator[Row]:

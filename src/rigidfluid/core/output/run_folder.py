@@ -14,7 +14,11 @@ from rigidfluid.errors import OutputError
 MARK = "run.lock"
 """Locked while a run writes; its presence says that a folder is a run's."""
 
-PICTURES = ("speed_field", "mesh", "smallest_gap", "position", "speed", "gap", "force", "energy")
+PICTURES = (
+    *("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap", "space", "position"),
+    *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
+    "step",
+)
 """What the report of a run shows, each a PNG or SVG file."""
 
 _OWN = {

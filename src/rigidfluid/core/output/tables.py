@@ -61,7 +61,7 @@ class Table:
 
 KINDS: Mapping[str, type[float | int | str]] = {
     **dict.fromkeys(("body", "a", "b", "joint"), str),
-    **dict.fromkeys(("step", "probe", "unknowns", "remeshes"), int),
+    **dict.fromkeys(("step", "probe", "unknowns", "remeshes", "cells"), int),
 }
 """What stands in a column; a number with a fraction where it is not named here."""
 
@@ -71,10 +71,11 @@ def table_path(folder: Path, name: str) -> Path:
     return folder / f"{name}.csv"
 
 
-def read_rows(path: Path) -> list[Row]:
-    """The rows of a table on disk, numbers as numbers; raises ValueError where one is not."""
+def read_rows(path: Path, *, complete: bool = True) -> list[Row]:
+    """The rows of a table on disk, numbers as numbers; raises ValueError where one is not. Of a table that may not be
+    ``complete`` a last line that is cut off is left out."""
     with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.reader(file)
+        reader = csv.reader(line for line in file if complete or line.endswith("\n"))
         names = next(reader, [])
         return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
 

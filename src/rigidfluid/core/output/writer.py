@@ -12,19 +12,20 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TextIO
 
-from rigidfluid.core.model.ranks import ROOT, Ranks
+from rigidfluid.core.model.ranks import ALONE, ROOT, Ranks
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.checkpoint import (
     Checkpoint,
     adopt_checkpoint,
     read_checkpoint,
+    read_origin,
     read_staged,
     stage_checkpoint,
 )
 from rigidfluid.core.output.records import Records, columns
 from rigidfluid.core.output.run_folder import clear, locked, refuse_foreign
 from rigidfluid.core.output.tables import Table, table_path
-from rigidfluid.core.output.vtu import write_pvd, write_pvtu, write_vtu
+from rigidfluid.core.output.vtu import read_pvd, write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
 CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
@@ -55,6 +56,7 @@ class Writer:
         self.out, self._ranks = out, ranks
         self._tables: dict[str, Table] = {}
         self._mark: TextIO | None = None
+        self._series: list[str] = []
         with ExitStack() as undo:
             undo.callback(self.close)
             self._start(dimension, resumed)
@@ -65,6 +67,7 @@ class Writer:
         with self._writing_once(out) as is_mine:
             if is_mine:
                 self._mark = _taken(out, anew=resumed is None)
+                self._series = [] if resumed is None else _series(out)[: len(resumed.times)]
         for name, names in columns(dimension).items():
             path = table_path(out, name)
             with self._writing_once(path) as is_mine:
@@ -85,20 +88,20 @@ class Writer:
 
     def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
         """Write the fields of the last of ``times``, and the series of all of them."""
+        stem, pieces = f"{len(times) - 1:06d}", []
         if self._ranks.size == 1:
-            names, pieces = [f"{FIELDS}/{i:06d}.vtu" for i in range(len(times))], []
-            own = names[-1]
+            name = own = f"{FIELDS}/{stem}.vtu"
         else:
-            names = [f"{FIELDS}/{i:06d}.pvtu" for i in range(len(times))]
-            pieces = [f"{len(times) - 1:06d}.{rank}.vtu" for rank in range(self._ranks.size)]
-            own = f"{FIELDS}/{pieces[self._ranks.rank]}"
+            pieces = [f"{stem}.{rank}.vtu" for rank in range(self._ranks.size)]
+            name, own = f"{FIELDS}/{stem}.pvtu", f"{FIELDS}/{pieces[self._ranks.rank]}"
         with self._ranks.raise_on_all(), writing(self.out / own):
             write_vtu(self.out / own, fields)
-        with self._writing_once(self.out / names[-1]) as is_mine:
+        self._series.append(name)
+        with self._writing_once(self.out / name) as is_mine:
             if is_mine and pieces:
-                write_pvtu(self.out / names[-1], pieces)
+                write_pvtu(self.out / name, pieces)
             if is_mine:
-                write_pvd(self.out / SERIES, times, names)
+                write_pvd(self.out / SERIES, times, self._series)
 
     def checkpoint(self, checkpoint: Checkpoint) -> None:
         """Replace the checkpoint, no rank before all have written theirs."""
@@ -106,6 +109,9 @@ class Writer:
         for work in (partial(stage_checkpoint, path, checkpoint), partial(adopt_checkpoint, path)):
             with self._ranks.raise_on_all(), writing(path):
                 work()
+        with self._writing_once(self.out) as is_mine:
+            for stale in _checkpoints(self.out)[self._ranks.size :] if is_mine else ():
+                stale.unlink()  # of more ranks that wrote before
 
     def summary(self, summary: dict[str, Any]) -> None:
         """Write the summary."""
@@ -149,23 +155,44 @@ def checkpoint_name(rank: int) -> str:
     return CHECKPOINT if rank == ROOT else f"state.{rank}.h5"
 
 
+def ranks_of_run(out: Path) -> int:
+    """How many ranks have written the latest checkpoint in a folder; raises OutputError where there is none."""
+    latest, count = read_origin(out / CHECKPOINT)
+    for path in _checkpoints(out)[1:]:
+        latest, count = max((latest, count), read_origin(path))
+    return count
+
+
 def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
-    """This rank's checkpoint of the run in a folder; called by all ranks together.
+    """This rank's checkpoint of the run in a folder, of as many ranks; called by all of them together.
 
     Raises
     ------
     OutputError
-        Where there is none, it was written by another number of ranks, or the ranks' files are not of one time.
+        Where there is none, or the ranks' files are not of one time.
     """
     path = out / checkpoint_name(ranks.rank)
     for my_turn in (ranks.is_root, not ranks.is_root):
         with ranks.raise_on_all():
             if my_turn:
                 checkpoint = read_checkpoint(path, ranks)
-                _refuse_other_ranks(out, checkpoint.ranks, ranks.size)
     latest = int(ranks.greatest(checkpoint.state.tick))
     with ranks.raise_on_all():
-        return checkpoint if checkpoint.state.tick == latest else _caught_up(path, checkpoint.state.tick, latest, ranks)
+        return _of(latest, path, checkpoint, ranks)
+
+
+def earlier_parts(out: Path, count: int) -> list[Checkpoint]:
+    """The checkpoints of all ``count`` ranks that have written a run, in one process; raises as `earlier_run`."""
+    paths = [out / checkpoint_name(rank) for rank in range(count)]
+    parts = [read_checkpoint(path) for path in paths]
+    latest = max(part.state.tick for part in parts)
+    return [_of(latest, path, part, ALONE) for path, part in zip(paths, parts, strict=True)]
+
+
+def _of(latest: int, path: Path, checkpoint: Checkpoint, ranks: Ranks) -> Checkpoint:
+    """Of this tick: ``checkpoint``, or the one that was staged for its place."""
+    tick = checkpoint.state.tick
+    return checkpoint if tick == latest else _caught_up(path, tick, latest, ranks)
 
 
 def _caught_up(path: Path, tick: int, latest: int, ranks: Ranks) -> Checkpoint:
@@ -182,14 +209,15 @@ def _caught_up(path: Path, tick: int, latest: int, ranks: Ranks) -> Checkpoint:
     return staged
 
 
-def _refuse_other_ranks(out: Path, found: int, now: int) -> None:
-    if found != now:
-        raise OutputError(
-            str(out),
-            f"a run of {found} {'process' if found == 1 else 'processes'}",
-            f"a run of {now}, as many as there are now",
-            f"Resume it with {found}, or run without --resume.",
-        )
+def _checkpoints(out: Path) -> list[Path]:
+    """Those of all ranks, in their order."""
+    others = {int(path.name.split(".")[1]): path for path in out.glob("state.*.h5")}
+    return [out / CHECKPOINT, *(others[rank] for rank in sorted(others))]
+
+
+def _series(out: Path) -> list[str]:
+    """The files of fields that a run has listed, from its folder on."""
+    return [f"{FIELDS}/{path.name}" for _, path in read_pvd(out / SERIES)] if (out / SERIES).exists() else []
 
 
 @contextmanager

@@ -15,6 +15,10 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.ranks import Ranks
 
 _VARIABLES = (
     ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),  # Open MPI's mpirun
@@ -80,31 +84,39 @@ def no_collection() -> Iterator[None]:
 
 
 @contextmanager
-def remembered_interrupt() -> Iterator[Callable[[], None]]:
+def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     """Give what raises KeyboardInterrupt if Ctrl-C was pressed within and its exception is lost.
 
     Python ignores exceptions in finalisers and in what compiled code calls back, most of all where loops are compiled.
-    Only the main thread has signals, and another handler than Python's own is left alone.
+    Several processes are all told, and end together at an exchange; a second Ctrl-C ends the one that gets it at once.
+    They heed SIGTERM too, which is what mpirun makes of Ctrl-C. Only the main thread has signals, and other handlers
+    than Python's own are left alone.
     """
-    before, pressed = signal.getsignal(signal.SIGINT), False
-    if threading.current_thread() is not threading.main_thread() or before is not signal.default_int_handler:
-        yield lambda: None
+    if threading.current_thread() is not threading.main_thread():
+        yield ranks.heed_interrupts
         return
+    pressed = False
 
     def remember(number: int, frame: FrameType | None) -> None:
         nonlocal pressed
-        pressed = True
-        signal.default_int_handler(number, frame)
+        again, pressed = pressed, True
+        if ranks.size == 1 or again:
+            signal.default_int_handler(number, frame)
+        ranks.interrupt()
 
     def ask() -> None:
-        if pressed:
+        ranks.heed_interrupts()
+        if pressed and ranks.size == 1:
             raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, remember)
+    heard = [(signal.SIGINT, signal.default_int_handler), (signal.SIGTERM, signal.SIG_DFL)]
+    numbers = [number for number, own in heard[: 1 if ranks.size == 1 else 2] if signal.getsignal(number) is own]
+    before = {number: signal.signal(number, remember) for number in numbers}
     try:
         yield ask
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def one_openblas_thread() -> AbstractContextManager[object]:

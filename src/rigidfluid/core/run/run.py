@@ -9,10 +9,10 @@ from pathlib import Path
 
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
-from rigidfluid.core.run.process import one_openblas_thread, remembered_interrupt
+from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import OutputError, RigidfluidError
+from rigidfluid.errors import OutputError, RigidfluidError, SharedInterrupt
 
 __all__ = ["Progress", "run"]
 
@@ -58,7 +58,7 @@ def run(
     OutputError
         Where the disk refuses, there is nothing to resume, or ``out`` is another run's or not a run's.
     StepError
-        Where even the shortest step fails; what was computed stays, and can be resumed.
+        Where even the shortest step fails, or memory does not suffice; what was computed stays, and can be resumed.
 
     Any other error, as that of a plug-in, leaves a summary too.
     """
@@ -68,17 +68,20 @@ def run(
         if progress is not None:
             simulation.observe(lambda now: progress(_progress(now)))
         try:
-            with no_exit(), remembered_interrupt() as interrupt_if_lost:
+            with no_exit(), remembered_interrupt(simulation.system.backend.ranks) as interrupt_if_lost:
                 simulation.observe(lambda _: interrupt_if_lost())
                 simulation.go()
         except BaseException as error:
-            if simulation.alone or isinstance(error, RigidfluidError):  # others need not reach all ranks
+            # others need not reach all ranks
+            if simulation.alone or isinstance(error, (RigidfluidError, SharedInterrupt)):
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=_status(error))
                     told(simulation.history)
             raise
         simulation.finish(status="complete")
         told(simulation.history)
+        simulation.system.backend.forget()  # much memory, which the next run in this process may want
+        give_back_memory()
     return simulation.history
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wrench
@@ -22,19 +23,21 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
-from rigidfluid.core.output.writer import CHECKPOINT, Writer, earlier_run
+from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state, start_level
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
+from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.scene import FluidTable, Scene
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.errors import OutputError, SceneError, StepError
+from rigidfluid.registry import FLUID_BACKEND, Registry
 
 Observer = Callable[["Simulation"], None]
 
@@ -97,10 +100,11 @@ class Simulation:
         system = build_system(scene)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
-        earlier = _earlier(scene, out, self._ranks) if resume else None
+        earlier = _earlier(scene, out, system.backend) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, system)
         every, wake = (scene.mesh.remesh_every, scene.mesh.wake) if scene.mesh else (None, None)
+        self.watch = Stopwatch()
         self.mesh_updater = MeshUpdater(
             system,
             sizes,
@@ -109,8 +113,8 @@ class Simulation:
             oldest=None if every is None else self.clock.tick_from(every),
             wake=None if wake is None else Wake(wake.time, wake.size),
             inserter=inserter_of(scene.mesh),
+            watch=self.watch,
         )
-        self.watch = Stopwatch()
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
         self.history = History(scene.dimension, folder=out)
         self.extremes = Extremes.none(len(system.bodies))
@@ -120,11 +124,12 @@ class Simulation:
         self._observers: list[tuple[Schedule, Observer]] = []
         self.state: State
         try:
-            if earlier is None:
-                self._begin(out)
-            else:
-                assert out is not None
-                self._take_up(out, earlier)
+            with told_memory():
+                if earlier is None:
+                    self._begin(out)
+                else:
+                    assert out is not None
+                    self._take_up(out, earlier)
         except BaseException:
             self.close()
             raise
@@ -181,12 +186,13 @@ class Simulation:
         Raises
         ------
         StepError
-            Where even the shortest step fails, or the scene's end was reached before.
+            Where even the shortest step fails, memory does not suffice, or the scene's end was reached before.
         """
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
-        self.state = self.stepper.after(self.state)
+        with told_memory():
+            self.state = self.stepper.after(self.state)
         self._record()
         for schedule, observer in self._observers:
             if schedule.due(self.state.tick):
@@ -314,7 +320,8 @@ class Simulation:
     def _record(self) -> None:
         level, cost = self.state.level, None
         if self.state.count > 0 and level is not None:
-            cost = StepCost(self.clock.size(level), self.counts.remeshes)
+            quality = self.mesh_updater.quality(self.state)
+            cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
         now = records(self.system, self._probes, self.state, self.time, cost)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
@@ -402,19 +409,35 @@ def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
         )
 
 
-def _earlier(scene: Scene, out: Path | None, ranks: Ranks) -> Checkpoint:
-    """The checkpoint to resume; its scene must be this one, but for the end of time."""
+def _earlier(scene: Scene, out: Path | None, backend: FluidBackend) -> Checkpoint:
+    """The checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format."""
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
-    checkpoint = earlier_run(out, ranks)
+    checkpoint = checkpoint_for(backend, out)
     stored, given = json.loads(checkpoint.scene), scene.to_dict()
     stored["time"]["end"] = given["time"]["end"]
+    if _is_of_another(backend, stored["fluid"]["backend"]):
+        stored["fluid"], given["fluid"] = (_of_any_backend(tables["fluid"]) for tables in (stored, given))
+        checkpoint = replace(checkpoint, memory={})
     if stored != given:
         changed = sorted(table for table in stored.keys() | given.keys() if stored.get(table) != given.get(table))
         raise OutputError(
             str(out),
             f"a run of another scene (other: {', '.join(changed)})",
-            "a run of the same scene; only time.end may differ",
+            "a run of the same scene; only time.end may differ, and the backend among those of P2–P1 elements",
             "Give the same scene and the same --set, or run without --resume.",
         )
     return checkpoint
+
+
+def _is_of_another(backend: FluidBackend, name: str) -> bool:
+    """Whether a backend of this name is another one that writes the same states."""
+    if name == backend.name or backend.state_format is None:
+        return False
+    before = Registry.load().find(FLUID_BACKEND, name)
+    return (before.state_format, before.curved_cells) == (backend.state_format, backend.curved_cells)
+
+
+def _of_any_backend(fluid: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of ``[fluid]`` that are the same for all backends."""
+    return {key: value for key, value in fluid.items() if key in FluidTable.model_fields and key != "backend"}

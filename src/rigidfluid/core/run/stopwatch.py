@@ -8,15 +8,18 @@ from contextlib import contextmanager
 
 
 class Stopwatch:
-    """Adds up the seconds spent in each named stage; stages do not nest."""
+    """Adds up the seconds spent in each named stage; a stage within another counts by itself, and not in that one."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
+        self._within = 0.0
 
     @contextmanager
     def __call__(self, stage: str) -> Iterator[None]:
-        start = time.perf_counter()
+        start, outside, self._within = time.perf_counter(), self._within, 0.0
         try:
             yield
         finally:
-            self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
+            taken = time.perf_counter() - start
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + taken - self._within
+            self._within = outside + taken

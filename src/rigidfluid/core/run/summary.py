@@ -13,9 +13,9 @@ from rigidfluid.core.contact.strength import chosen_strengths
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
-from rigidfluid.core.output.records import LEDGER_COLUMNS
+from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.run.cycles import cycles
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.scene.scene import Scene
@@ -29,7 +29,7 @@ _PACKAGES = (
     *("fenics-dolfinx", "petsc4py", "mpi4py", "ngsolve"),
 )
 FIGURES = (
-    *("time", "unknowns", "cells", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
+    *("time", "unknowns", "cells", "worst_quality", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
     *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "energy"),
 )
@@ -49,7 +49,8 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
         "unknowns": system.backend.unknowns(state.mesh, system.controlled_motions),
-        "cells": 0 if state.mesh is None else _cells(state.mesh),
+        "cells": count_cells(state.mesh),
+        "worst_quality": _finite(np.min(simulation.history.steps["quality"], initial=np.inf)),
         "ranks": system.backend.ranks.size,
         "steps": state.count,
         "rejected_steps": simulation.counts.rejected,
@@ -75,11 +76,6 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
-
-
-def _cells(mesh: Mesh) -> int:
-    """Of the whole mesh."""
-    return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
 
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:

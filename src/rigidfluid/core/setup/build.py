@@ -16,7 +16,7 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
-from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
@@ -35,7 +35,7 @@ from rigidfluid.core.setup.impact import impact_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_linkage, joined_bodies
-from rigidfluid.core.setup.parts import Parts, known_parts
+from rigidfluid.core.setup.parts import Parts, Selected, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stacked
@@ -44,13 +44,15 @@ from rigidfluid.core.setup.window import build_window, opened
 _MOST_PAIRS = 1000
 
 
-def build_system(scene: Scene) -> System:
+def build_system(scene: Scene, to_run: bool = True) -> System:
     """Build the parts of a simulation and check that they fit together.
 
     Parameters
     ----------
     scene : Scene
         A validated scene.
+    to_run : bool
+        Whether it is to run; else its backend says what it is and no more, and none of its libraries is loaded.
 
     Returns
     -------
@@ -110,7 +112,7 @@ def build_system(scene: Scene) -> System:
         controlled=controlled,
         controlled_twist=motion,
         controlled_pose=motion.pose_at,
-        backend=parts.backend.part(parts.backend.options, _problem(scene, held, carried)),
+        backend=_backend(parts.backend, _problem(scene, held, carried), to_run),
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
@@ -125,6 +127,14 @@ def build_system(scene: Scene) -> System:
         linkage=linkage,
         joined=joined_bodies(scene),
     )
+
+
+def _backend(chosen: Selected[FluidBackend], problem: FluidProblem | None, to_run: bool) -> FluidBackend:
+    if to_run:
+        return chosen.part(chosen.options, problem)
+    idle = chosen.part.__new__(chosen.part)
+    FluidBackend.__init__(idle, chosen.options, problem)  # its own may load libraries
+    return idle
 
 
 def _assemblies(scene: Scene) -> IntArray:

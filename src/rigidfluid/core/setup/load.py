@@ -16,6 +16,7 @@ from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
 from rigidfluid.core.setup.strokes import with_drives
 from rigidfluid.core.setup.time_factor import with_time_tables
+from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 
 
 def scene_from_dict(data: Mapping[str, Any]) -> Scene:
@@ -37,6 +38,17 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
         If a key or value is not allowed, naming it, what is allowed and the remedy.
     PluginError
         If it names a part that is not there.
+    """
+    scene = scene_of_results(data)
+    if missing_packages(known_parts(scene).backend.part):
+        Registry.load().get(FLUID_BACKEND, scene.fluid.backend)  # says what is missing
+    return scene
+
+
+def scene_of_results(data: Mapping[str, Any]) -> Scene:
+    """As `scene_from_dict`, for results that may come from where other packages are installed.
+
+    Its backend may lack packages here, and then cannot run it.
     """
     scene = with_drives(with_time_tables(read_table(Scene, data)))
     check_tables(scene)

@@ -208,7 +208,7 @@ def _body(scene: Scene, registry: Registry, number: int) -> Body:
 
 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
-    part = registry.get(FLUID_BACKEND, table.backend)
+    part = registry.find(FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
     _refuse_unread(table.options, [part], type(table).model_fields, "fluid")
     return Selected(part, read_table(part.Options, table.options, "fluid"))
 
@@ -244,6 +244,10 @@ def _law(table: LawTable, law: type[ForceLaw], scene: Scene, bodies: Sequence[Bo
         remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
         found = f"{law.name!r} with bodies that are no balls"
         raise SceneError(f"{table.at}.law", found, "a law for any shape", remedy)
+    if law.film and any(body.semi_axes is None for body in met):
+        remedy = "Keep it to other contacts by `between` or `names`, or choose another law."
+        found = f"{law.name!r} with bodies of unknown curvature"
+        raise SceneError(f"{table.at}.law", found, "balls, ellipses and ellipsoids", remedy)
     own = {"restitution": table.restitution} if has_own_restitution(law) and table.restitution is not None else {}
     return Selected(law, _options(law, {**table.options, **own}, table.at))
 

@@ -1,0 +1,56 @@
+"""Does a law of thin films begin where the mesh ends to resolve them?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.design_contacts import representative_contacts
+from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.core.contact.gap_curvature import with_effective_radii
+from rigidfluid.core.model.interactions import Interaction
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.scene.scene import MeshTable
+
+QUESTION = "film"
+TWICE = 2.0
+"""A range of more than that times the gap that the mesh still resolves is warned of."""
+
+
+def counted_once(system: System, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the ranges of laws of films with h²/R: there the finest cells h are as wide as the film, √(R gap).
+
+    Parameters
+    ----------
+    system : System
+        Bodies and laws.
+    mesh : MeshTable
+        Sizes of the cells.
+
+    Yields
+    ------
+    Finding
+        A warning for each such law at walls, and one between bodies, where the mesh resists as well.
+    """
+    for met in representative_contacts(system):
+        for interaction in met.interactions:
+            if interaction.law.film and len(met.contacts):
+                yield from _finding(system, interaction, met.contacts, mesh.size_body / 2**mesh.refinements)
+
+
+def _finding(system: System, interaction: Interaction, contacts: Contacts, finest: float) -> Iterator[Finding]:
+    radius = with_effective_radii(contacts, system.bodies, system.walls, system.pose).effective_radius
+    row = int(np.nanargmax(radius))
+    law_range, resolved = interaction.law.range, finest**2 / float(radius[row])
+    if law_range <= TWICE * resolved:
+        return
+    names = system.surfaces[contacts.body_a[row]], system.surfaces[contacts.body_b[row]]
+    text = (
+        f"{' and '.join(names)}: the finest cells, {figure(finest)}, resolve films down to gaps of {figure(resolved)}"
+    )
+    text += f", and {interaction.law.name!r} counts them again from {figure(law_range)} on"
+    remedy = f"Leave the law out, set {interaction.field}.range to {at_most(resolved)}, or lower mesh.refinements."
+    found = {"range": law_range, "resolved": resolved, "finest_cell": finest}
+    yield Finding("warning", QUESTION, names, text, remedy, found, {"range": resolved})

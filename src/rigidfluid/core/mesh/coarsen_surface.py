@@ -1,0 +1,165 @@
+"""Takes vertices off bodies whose facets are much finer than wanted: the reverse of `refine_surface`.
+
+Facets that were bisected for a gap stay when it has opened, as MMG keeps all facets of bodies. In 3D a single contact
+leaves twice the cells behind, and every contact adds its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.refine_surface import LONGEST, edges_of_facets
+from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.errors import MeshError
+
+SHORTEST = 0.5
+"""An edge on a body is collapsed when it is shorter than this many times the wanted size."""
+
+LEAST_QUALITY = 0.1
+"""Quality that a cell must keep whose vertex is taken off."""
+
+MOST_TURNED = 0.5
+"""Least cosine of the angle by which a facet may turn when a vertex is taken off."""
+
+
+def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+    """Collapse edges of smooth bodies that are too short, shortest first, until none can be collapsed.
+
+    One end of the edge is taken off the mesh and its cells are drawn to the other one, which stays where it is, on the
+    exact surface. No cell is changed by two collapses at a time. An edge stays where a cell would get worse than
+    LEAST_QUALITY, a facet would turn too far or get an edge that is too long, or the surface would fold.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        In 3D, its vertices on their surfaces, the bodies at ``pose``.
+    bodies : sequence of Body
+        The shapes.
+    pose : Pose
+        Where they are.
+    walls : sequence of Wall
+        The walls whose gaps are resolved.
+    sizes : Sizes
+        The wanted size.
+
+    Returns
+    -------
+    Mesh
+        The same mesh if no edge is too short, or where what comes out is not closed by its facets.
+    """
+    given = mesh
+    smooth = np.array([body.least_radius is not None for body in bodies], dtype=bool)
+    refused: set[tuple[int, int]] = set()
+    while True:
+        pairs, wanted = _short_edges(mesh, smooth, bodies, pose, walls, sizes)
+        left = np.array([(a, b) not in refused for a, b in pairs.tolist()], dtype=bool)
+        if not left.any():
+            break
+        pairs, wanted = pairs[left], wanted[left]
+        apart = _apart(mesh, pairs)
+        pairs, wanted = pairs[apart], wanted[apart]
+        fits = _spares(mesh, pairs, wanted)
+        refused |= {(a, b) for a, b in pairs[~fits].tolist()}
+        if fits.any():
+            mesh, number = _collapsed(mesh, pairs[fits])
+            refused = {(int(number[a]), int(number[b])) for a, b in refused if number[a] >= 0 and number[b] >= 0}
+    try:
+        check_mesh(mesh, quality=0.0)
+    except MeshError:
+        return given
+    return mesh
+
+
+def _short_edges(
+    mesh: Mesh, smooth: BoolArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
+) -> tuple[IntArray, FloatArray]:
+    """Of each short edge the vertex to take off and the one that stays, (E, 2), both ways, and the wanted size (E,);
+    the shortest over that first."""
+    on_smooth = np.zeros(mesh.markers.max() + 1, dtype=bool)
+    on_smooth[: len(smooth)] = smooth
+    edges, _ = edges_of_facets(mesh, on_smooth[mesh.markers])
+    ends = mesh.points[edges]
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    short = np.flatnonzero(length < SHORTEST * sizes.size_body)
+    wanted = wanted_size(ends[short].mean(axis=1), bodies, pose, walls, sizes)
+    relative = length[short] / wanted
+    order = np.argsort(relative, kind="stable")
+    chosen = order[relative[order] < SHORTEST]
+    edges = edges[short[chosen]]
+    return np.stack([edges, edges[:, ::-1]], axis=1).reshape(-1, 2), np.repeat(wanted[chosen], 2)
+
+
+def _apart(mesh: Mesh, pairs: IntArray) -> BoolArray:
+    """Which of the ``pairs`` (E, 2), the first of them first, take their vertex off cells that no other one touches."""
+    rank = np.full(len(mesh.points), len(pairs))
+    np.minimum.at(rank, pairs[:, 0], np.arange(len(pairs)))
+    least = rank[mesh.cells].min(axis=1)
+    around = np.full(len(mesh.points), len(pairs))
+    for corner in mesh.cells.T:
+        np.minimum.at(around, corner, least)
+    return np.asarray(around[pairs[:, 0]] == np.arange(len(pairs)))
+
+
+def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
+    """Which of the ``pairs`` (E, 2), whose cells are apart, can be collapsed; edges are to be ``wanted`` (E,) long."""
+    at = np.full(len(mesh.points), -1)
+    at[pairs[:, 0]] = np.arange(len(pairs))
+    target = _targets(mesh, pairs)
+    spares = np.ones(len(pairs), dtype=bool)
+    cell, number = _changed(mesh.cells, at)
+    drawn = target[mesh.cells[cell]]
+    stays = ~_degenerate(drawn)
+    spares[number[stays][cell_quality(mesh.points, drawn[stays]) < LEAST_QUALITY]] = False
+    facet, number = _changed(mesh.facets, at)
+    drawn = target[mesh.facets[facet]]
+    gone = _degenerate(drawn)
+    spares &= np.bincount(number[gone], minlength=len(pairs)) == 2
+    before, after, number = mesh.points[mesh.facets[facet[~gone]]], mesh.points[drawn[~gone]], number[~gone]
+    turned = np.sum(_normals(before) * _normals(after), axis=1) < MOST_TURNED
+    longest = np.linalg.norm(after - np.roll(after, 1, axis=1), axis=2).max(axis=1)
+    spares[number[turned | (longest > LONGEST * wanted[number])]] = False
+    return spares
+
+
+def _collapsed(mesh: Mesh, pairs: IntArray) -> tuple[Mesh, IntArray]:
+    """The mesh after the collapses, and the new number of each vertex, -1 of those that are gone."""
+    target = _targets(mesh, pairs)
+    cells, facets = target[mesh.cells], target[mesh.facets]
+    cells, left = cells[~_degenerate(cells)], ~_degenerate(facets)
+    kept = target == np.arange(len(target))
+    number = np.cumsum(kept) - 1
+    new = Mesh(mesh.points[kept], number[cells], number[facets[left]], mesh.markers[left])
+    return new, np.where(kept, number, -1)
+
+
+def _targets(mesh: Mesh, pairs: IntArray) -> IntArray:
+    """What becomes of each vertex, (N,)."""
+    target = np.arange(len(mesh.points))
+    target[pairs[:, 0]] = pairs[:, 1]
+    return target
+
+
+def _changed(simplices: IntArray, at: IntArray) -> tuple[IntArray, IntArray]:
+    """The simplices that have a vertex taken off, and the number of its pair; no simplex has two."""
+    number = at[simplices].max(axis=1)
+    changed = np.flatnonzero(number >= 0)
+    return changed, number[changed]
+
+
+def _degenerate(simplices: IntArray) -> BoolArray:
+    """Which simplices have a vertex twice."""
+    ordered = np.sort(simplices, axis=1)
+    return np.asarray((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
+
+
+def _normals(triangles: FloatArray) -> FloatArray:
+    """Unit normals of triangles (M, 3, 3)."""
+    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))

@@ -1,0 +1,78 @@
+"""All bodies of a 3D run as somebody far away sees them, lit from the upper left, those in front over those behind."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.reports.bodies import rotations
+from rigidfluid.reports.raster import Grid
+from rigidfluid.reports.results import Results
+from rigidfluid.reports.style import SKY, VERMILLION
+
+_STEPS = 40
+"""Of the way to a body, each as long as the distance to it (sphere tracing: Hart 1996, doi:10.1007/s003710050084)."""
+_NEAR = 5e-3
+"""Of the bounding radius: a ray that has come so near has met the body."""
+_DIFFERENCE = 1e-3
+"""Of the bounding radius: the step of differences for the slope of the surface."""
+_BAND = 0.07
+"""Half the width over the bounding radius of the stripe that shows how a body turns."""
+_LIGHT = np.array([-0.4, 0.5, 0.77])
+"""To the light: to the right, up and to the observer."""
+_AMBIENT = 0.35
+"""The light on what is turned away from it."""
+
+
+def draw_projected(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
+    """Paint the bodies, as seen along the normal of the grid, into a picture (rows, columns, 3)."""
+    depth = np.full(picture.shape[:2], -np.inf)
+    places = zip(results.system.bodies, results.vectors("")[state], rotations(results, state), strict=True)
+    for body, centre, turn in places:
+        _draw(picture, depth, grid, body, centre, turn)
+
+
+def _draw(picture: FloatArray, depth: FloatArray, grid: Grid, body: Body, centre: FloatArray, turn: FloatArray) -> None:
+    """Only where nothing is in front of it."""
+    part = grid.about(centre, body.bounding_radius)
+    if part is None:
+        return
+    plane, (columns, rows) = grid.plane, part
+    axes = np.stack([plane.right, plane.up, plane.normal]) @ turn  # the observer's, in the body's frame
+    foot = (grid.points(columns, rows) - centre) @ turn
+    start = foot + (body.bounding_radius - foot @ axes[2])[..., None] * axes[2]
+    met, points = _met(body, start.reshape(-1, 3), axes[2])
+    height = (points @ axes[2]).reshape(foot.shape[:2]) + plane.normal @ centre
+    seen = met.reshape(foot.shape[:2]) & (height > depth[rows, columns])
+    points = points[seen.ravel()]
+    striped = (np.abs(points[:, 1]) < _BAND * body.bounding_radius) & (points[:, 0] > 0.0)
+    colour = np.where(striped[:, None], to_rgb(VERMILLION), to_rgb(SKY))
+    picture[rows, columns][seen] = colour * _brightness(body, points, axes)[:, None]
+    depth[rows, columns][seen] = height[seen]
+
+
+def _met(body: Body, start: FloatArray, back: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Which rays from ``start`` (P, 3) against ``back`` (3,) meet the body, (P,), and where they end, (P, 3)."""
+    points = start.copy()
+    on_the_way, met = np.ones(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
+    for _ in range(_STEPS):
+        distance = body.signed_distance(points[on_the_way])
+        rays = np.flatnonzero(on_the_way)
+        met[rays] = distance < _NEAR * body.bounding_radius
+        points[rays] -= np.maximum(distance, 0.0)[:, None] * back
+        passed = points[rays] @ back < -body.bounding_radius
+        on_the_way[rays] = ~(met[rays] | passed)
+        if not on_the_way.any():
+            break
+    return met, points
+
+
+def _brightness(body: Body, points: FloatArray, axes: FloatArray) -> FloatArray:
+    """Of points (P, 3) of the surface, from 0 to 1."""
+    step = _DIFFERENCE * body.bounding_radius
+    slopes = [body.signed_distance(points + step * axis) - body.signed_distance(points - step * axis) for axis in axes]
+    normal = np.stack(slopes, axis=1)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
+    return np.asarray(_AMBIENT + (1.0 - _AMBIENT) * np.maximum(normal @ _LIGHT / np.linalg.norm(_LIGHT), 0.0))

@@ -1,0 +1,28 @@
+"""What a preconditioner of the coupled matrix is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scipy import sparse
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.constraint import Constraint
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Of Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the free motions.
+
+    ``points`` (vertices, d) of the mesh; weights ``inertia`` of (u, v) and ``viscosity`` of (∇u + ∇uᵀ, ∇v) in K;
+    ``reduced()``: the matrix itself.
+    """
+
+    constraint: Constraint
+    stiffness: sparse.csr_array
+    masses: FloatArray
+    points: FloatArray
+    inertia: float
+    viscosity: float
+    reduced: Callable[[], sparse.csr_array]

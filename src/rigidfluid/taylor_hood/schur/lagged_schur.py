@@ -1,0 +1,39 @@
+"""Flexible GMRES preconditioned by the block triangle of an earlier step's matrix, in one process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import ClassVar, final
+
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.flexible_gmres import flexible_gmres
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.parts import Parts
+from rigidfluid.taylor_hood.schur.block_triangle import BlockTriangle
+
+
+@final
+class LaggedSchur(LaggedSolver[Parts]):
+    """By a `BlockTriangle`, whose memory and cost grow with the unknowns."""
+
+    rebuild_cost: ClassVar[Mapping[int, int]] = {2: 12, 3: 12}
+    fresh_iterations: ClassVar[int] = 20
+    most: ClassVar[int] = 200
+    sharper: ClassVar[float] = 1e-2  # factors leave far less than they are asked for, this leaves a slow error
+
+    def __init__(self, dimension: int) -> None:
+        super().__init__(ALONE, dimension)
+        self._triangle: BlockTriangle | None = None
+
+    def make(self, matrix: Parts) -> None:
+        self._triangle = BlockTriangle(matrix)
+
+    def drop(self) -> None:
+        self._triangle = None
+
+    def iterate(
+        self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
+    ) -> tuple[FloatArray, int, bool]:
+        assert self._triangle is not None
+        return flexible_gmres(apply, self._triangle.solve, residual, tolerance, most, 2)

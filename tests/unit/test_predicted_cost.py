@@ -1,0 +1,79 @@
+"""Predicted memory and time of factors, beside what was measured and what PARDISO counts here."""
+
+import importlib.util
+
+import pytest
+from falling import SCENES, falling_disk
+
+import rigidfluid
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.taylor_hood.predicted_cost import predicted_blocks, predicted_factors, predicted_run, predicted_unknowns
+
+MEASURED = [  # dimension, unknowns, bytes, CPU seconds of analysis and factors
+    (2, 11_627, 19_589 * 1024, 0.07),
+    (2, 43_790, 79_970 * 1024, 0.29),
+    (2, 158_648, 312_395 * 1024, 1.2),
+    (3, 16_511, 117_399 * 1024, 0.57),
+    (3, 29_974, 259_715 * 1024, 1.66),
+    (3, 51_118, 511_005 * 1024, 4.04),
+    (3, 89_752, 1_093_610 * 1024, 12.0),
+    (3, 139_551, 1_904_503 * 1024, 28.8),
+    (3, 248_705, 3_921_282 * 1024, 88.2),
+]
+
+BY_LU = ["fluid.solver=lu", "mesh.size=3.0", "mesh.size_body=0.6"]
+
+with_pardiso = pytest.mark.skipif(importlib.util.find_spec("pypardiso") is None, reason="MKL is not installed")
+
+
+@pytest.mark.parametrize(("dimension", "unknowns", "memory", "seconds"), MEASURED)
+def test_the_fit_goes_through_what_was_measured(dimension, unknowns, memory, seconds):
+    found = predicted_factors(unknowns, dimension)
+    assert found.bytes == pytest.approx(memory, rel=0.1)
+    assert found.seconds == pytest.approx(seconds, rel=0.15)
+
+
+@pytest.mark.parametrize(("unknowns", "seconds"), [(51_118, 0.26), (89_752, 0.47), (139_551, 0.91), (248_705, 1.49)])
+def test_blocks_grow_with_the_unknowns(unknowns, seconds):
+    assert predicted_blocks(unknowns, 3).seconds == pytest.approx(seconds, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("method", "dimension", "unknowns", "memory"),
+    [
+        ("lu", 2, 43_790, 434),
+        ("lu", 2, 158_648, 858),
+        ("lu", 3, 89_752, 1772),
+        ("lu", 3, 248_705, 5275),
+        ("schur", 2, 158_648, 595),
+        ("schur", 3, 139_551, 822),
+        ("schur", 3, 248_705, 1259),
+    ],
+)
+def test_a_run_takes_what_runs_took(method, dimension, unknowns, memory):
+    """Far from contacts, where one matrix has factors, as in Stokes flow."""
+    found = predicted_run(method, unknowns, dimension, inertia=False)
+    assert found.memory == pytest.approx(memory * 2**20, rel=0.2)
+    made = (predicted_factors if method == "lu" else predicted_blocks)(unknowns, dimension)
+    assert predicted_run(method, unknowns, dimension, inertia=True).memory == found.memory + made.bytes
+
+
+@with_pardiso
+@pytest.mark.parametrize(
+    "scene",
+    [
+        falling_disk(mesh={"size": 0.2, "size_body": 0.02}),
+        rigidfluid.load_scene(
+            SCENES / "falling_sphere.toml", ["fluid.solver=lu", "mesh.size=3.0", "mesh.size_body=0.6"]
+        ),
+    ],
+    ids=["2D", "3D"],
+)
+def test_it_is_what_pardiso_counts(scene):
+    simulation = Simulation(scene)
+    simulation.step()
+    backend, mesh = simulation.system.backend, simulation.state.mesh
+    unknowns = backend.unknowns(mesh, simulation.system.controlled)
+    assert predicted_unknowns(len(mesh.cells), scene.dimension) == pytest.approx(unknowns, rel=0.1)
+    counted = 1024.0 * sum(backend._solvers["lu"][0]._factors._iparm[[15, 16]])
+    assert predicted_factors(unknowns, scene.dimension).bytes == pytest.approx(counted, rel=0.2)

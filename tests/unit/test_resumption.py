@@ -1,0 +1,36 @@
+"""A backend goes on from another one's checkpoint."""
+
+import numpy as np
+import pytest
+from falling import falling_disk
+
+import rigidfluid
+from rigidfluid.errors import OutputError
+
+
+def fall(end, backend, **fluid):
+    return falling_disk(
+        fluid={"backend": backend, "tolerance": 1e-12} | fluid,
+        time={"step": 0.004, "end": end},
+        mesh={"size": 0.4, "size_body": 0.08},
+        output={"every": 0.02},
+    )
+
+
+def test_another_backend_of_the_same_elements_goes_on(tmp_path):
+    pytest.importorskip("ngsolve")
+    alone = rigidfluid.run(fall(0.04, "scikit-fem"))
+    rigidfluid.run(fall(0.02, "scikit-fem", solver="lu"), tmp_path)
+    both = rigidfluid.run(fall(0.04, "ngsolve"), tmp_path, resume=True)
+    assert both.summary["scene"]["fluid"]["backend"] == "ngsolve"
+    for table in ("bodies", "energy"):
+        for name, column in alone.table(table).items():
+            if column.dtype.kind == "f":
+                np.testing.assert_allclose(both.table(table)[name], column, rtol=1e-7, atol=1e-8, err_msg=name)
+
+
+def test_another_backend_takes_no_other_fluid(tmp_path):
+    pytest.importorskip("ngsolve")
+    rigidfluid.run(fall(0.004, "scikit-fem"), tmp_path)
+    with pytest.raises(OutputError, match=r"a run of another scene \(other: fluid\)"):
+        rigidfluid.run(fall(0.008, "ngsolve", viscosity=0.3), tmp_path, resume=True)
