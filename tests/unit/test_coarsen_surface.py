@@ -20,7 +20,7 @@ BOX = box(LOWER, UPPER)
 SIZES = Sizes(0.8, 0.3, 0.5)
 
 
-@pytest.fixture(scope="module", params=[ball(0.5, 3), ellipsoid(0.6, 0.6, 0.5)], ids=["ball", "ellipsoid"])
+@pytest.fixture(scope="module", params=[ball(0.5, 3), ellipsoid(0.55, 0.55, 0.5)], ids=["ball", "ellipsoid"])
 def above_a_floor(request):
     """A body with a gap of .06, the walls, its pose, its mesh, and the same bisected for the gap."""
     body, pose, walls = request.param, upright([1.0, 1.0, 0.56]), box_walls(LOWER, UPPER, 1)
@@ -48,6 +48,14 @@ def test_facets_in_a_gap_stay(above_a_floor) -> None:
     merged = coarsen_surface(split, [body], pose, walls, SIZES)
     assert facets(merged) > 0.9 * facets(split)
     assert facets(merged) > 4 * facets(mesh)
+
+
+def test_a_small_ball_keeps_the_facets_that_its_curvature_asks_for() -> None:
+    """However coarse the wanted size: with 1.2 radii a ball would lose two thirds of its facets."""
+    body, pose = ball(0.5, 3), upright([1.0, 1.0, 1.0])
+    mesh = generate_mesh([body], pose, BOX, 0.8, 0.25, 0.5)
+    merged = coarsen_surface(mesh, [body], pose, [], Sizes(0.8, 0.6, 0.5))
+    assert facets(merged) > 0.9 * facets(mesh)
 
 
 def test_no_facets_are_merged_where_none_is_short(above_a_floor) -> None:

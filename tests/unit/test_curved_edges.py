@@ -35,7 +35,7 @@ def around_an_ellipsoid(request):
     d = request.param
     box = Box(BoxOptions(lower=(-1.0,) * d, upper=(1.0,) * d), d)
     body, pose = ellipsoid(*(0.5, 0.3, 0.3)[:d]), upright([0.1, 0.0, 0.0][:d])
-    return body, pose, box, curved_mesh(body, pose, box, 0.4, 0.15)
+    return body, pose, box, curved_mesh(body, pose, box, 0.4, 0.15 if d == 2 else 0.25)
 
 
 def test_all_edges_on_a_body_pass_through_its_surface(around_an_ellipsoid) -> None:

@@ -36,7 +36,7 @@ def pyvista_images(shown: Sequence[Space], plane: ViewPlane, longer: int) -> lis
     with TemporaryDirectory() as folder:
         path = Path(folder) / "space.npz"
         arrays = {f"{field.name}{i}": getattr(one, field.name) for i, one in enumerate(shown) for field in fields(one)}
-        np.savez(path, right=plane.right, up=plane.up, longer=longer, **arrays)
+        np.savez(path, across=plane.right, up=plane.up, longer=longer, **arrays)
         command = [sys.executable, "-m", __name__, str(path)]
         try:
             subprocess.run(command, capture_output=True, check=True, timeout=_PATIENCE)
@@ -49,7 +49,7 @@ def pyvista_images(shown: Sequence[Space], plane: ViewPlane, longer: int) -> lis
 def main(path: Path) -> None:
     """Draw what is in a file."""
     with np.load(path) as arrays:
-        plane = ViewPlane(arrays["right"], arrays["up"])
+        plane = ViewPlane(arrays["across"], arrays["up"])
         names = [field.name for field in fields(Space)]
         count = sum(name.startswith(names[0]) for name in arrays)
         shown = [Space(**{name: arrays[f"{name}{i}"] for name in names}) for i in range(count)]

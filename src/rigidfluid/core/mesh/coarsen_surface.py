@@ -22,6 +22,9 @@ from rigidfluid.errors import MeshError
 SHORTEST = 0.5
 """An edge on a body is collapsed when it is shorter than this many times the wanted size."""
 
+PER_RADIUS = 2.0
+"""Edges as long as a body's least radius of curvature over this are wanted anyway, as Netgen makes them."""
+
 LEAST_QUALITY = 0.1
 """Quality that a cell must keep whose vertex is taken off."""
 
@@ -55,10 +58,10 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
         The same mesh if no edge is too short, or where what comes out is not closed by its facets.
     """
     given = mesh
-    smooth = np.array([body.least_radius is not None for body in bodies], dtype=bool)
+    longest = np.array([0.0 if body.least_radius is None else body.least_radius / PER_RADIUS for body in bodies])
     refused: set[tuple[int, int]] = set()
     while True:
-        pairs, wanted = _short_edges(mesh, smooth, bodies, pose, walls, sizes)
+        pairs, wanted = _short_edges(mesh, longest, bodies, pose, walls, sizes)
         left = np.array([(a, b) not in refused for a, b in pairs.tolist()], dtype=bool)
         if not left.any():
             break
@@ -78,17 +81,17 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
 
 
 def _short_edges(
-    mesh: Mesh, smooth: BoolArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
+    mesh: Mesh, longest: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
 ) -> tuple[IntArray, FloatArray]:
-    """Of each short edge the vertex to take off and the one that stays, (E, 2), both ways, and the wanted size (E,);
-    the shortest over that first."""
+    """Of each short edge the vertex to take off and the one that stays, (E, 2), both ways, and the wanted size (E,), no
+    more than the ``longest`` (n,) of its body; the shortest over that first."""
     on_smooth = np.zeros(mesh.markers.max() + 1, dtype=bool)
-    on_smooth[: len(smooth)] = smooth
-    edges, _ = edges_of_facets(mesh, on_smooth[mesh.markers])
+    on_smooth[: len(longest)] = longest > 0.0
+    edges, body = edges_of_facets(mesh, on_smooth[mesh.markers])
     ends = mesh.points[edges]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     short = np.flatnonzero(length < SHORTEST * sizes.size_body)
-    wanted = wanted_size(ends[short].mean(axis=1), bodies, pose, walls, sizes)
+    wanted = np.minimum(wanted_size(ends[short].mean(axis=1), bodies, pose, walls, sizes), longest[body[short]])
     relative = length[short] / wanted
     order = np.argsort(relative, kind="stable")
     chosen = order[relative[order] < SHORTEST]

@@ -12,6 +12,7 @@ from itertools import chain
 
 import numpy as np
 
+from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_edges import CurvedCells, with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
@@ -142,8 +143,12 @@ class MeshUpdater:
         if self._wake is not None:
             sizes = replace(sizes, regions=(*sizes.regions, *self._wake.behind(s.bodies, pose, twist)))
         with ranks.raise_on_all():
-            args = s.bodies, pose, s.meshed(pose), s.walls, sizes
-            made = None if present is None else self._curved(remesh(present, *args), pose)
+            made = None
+            if present is not None:
+                domain = s.meshed(pose)
+                if domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
+                    present = coarsen_surface(present, s.bodies, pose, s.walls, sizes)
+                made = self._curved(remesh(present, s.bodies, pose, domain, s.walls, sizes), pose)
         return distributed(made, ranks)
 
     def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:

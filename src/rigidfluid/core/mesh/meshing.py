@@ -199,10 +199,26 @@ def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: F
         placed.append(turned(body.cad_shape(), pose.orientation[i]).Move(occ.Vec(*in_space(pose.position[i]))))
         for side in sides(placed[i], domain.dimension):
             side.name, side.maxh = str(i), float(size_body[i])
-    if placed:  # all at once: one by one costs the square of their number
-        shape = shape - (placed[0] if len(placed) == 1 else occ.Compound(placed))
+    for group in groups_apart(bodies, pose):  # one by one costs the square of their number
+        shape = shape - (placed[group[0]] if len(group) == 1 else occ.Compound([placed[i] for i in group]))
     identify(sides(shape, domain.dimension), len(bodies), domain)
     return shape
+
+
+def groups_apart(bodies: Sequence[Body], pose: Pose) -> list[list[int]]:
+    """The numbers of all bodies in groups of such whose bounding balls do not meet: OpenCASCADE takes none that overlap
+    in one compound."""
+    radius = np.array([body.bounding_radius for body in bodies])
+    groups: list[list[int]] = []
+    for i in range(len(bodies)):
+        for group in groups:
+            distance = np.linalg.norm(pose.position[group] - pose.position[i], axis=1)
+            if (distance > radius[group] + radius[i]).all():
+                group.append(i)
+                break
+        else:
+            groups.append([i])
+    return groups
 
 
 def numbered_shape(domain: Domain, first: int) -> Any:

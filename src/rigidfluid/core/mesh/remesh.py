@@ -9,7 +9,6 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.level_set import level_set_mesh
@@ -108,8 +107,7 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     """Re-mesh the fluid to the wanted size h(x); vertices on bodies and curved walls keep their coordinates to the last
     bit.
 
-    Their facets are kept too, except that those too long for the gap they face are bisected first, and that in 3D those
-    of smooth bodies that are left from a gap are merged. Where that would
+    Their facets are kept too, except that those too long for the gap they face are bisected first. Where that would
     invert a cell, the cells are improved around the unbisected facets before. Of those that still do not fit after
     ROUNDS of it, the ones within LONGEST_EDGE stay. MMG knows the wanted size at the vertices of the mesh that it is
     given alone, and sometimes leaves a sliver at a flat wall: where its mesh is far too coarse or has a bad cell, it is
@@ -133,8 +131,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     Returns
     -------
     Mesh
-        A mesh of the same polyhedral domain, but for facets that are bisected or merged, with the others on bodies and
-        curved walls in the same order, before those of flat ones.
+        A mesh of the same polyhedral domain with the same facets on bodies and curved walls, in the same order, before
+        those of flat ones.
 
     Raises
     ------
@@ -144,8 +142,6 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
     check_mesh(mesh, quality=0.0)
     surroundings = bodies, pose, domain, walls, sizes
-    if domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
-        mesh = coarsen_surface(mesh, bodies, pose, walls, sizes)
     new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at)
     for _ in range(ROUNDS):
         well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
