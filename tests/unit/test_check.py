@@ -593,6 +593,14 @@ def test_a_law_without_losses_is_told_what_balls_in_liquids_do():
     assert "contact.restitution" in finding.text
 
 
+@pytest.mark.parametrize(("refinements", "resolved"), [(0, 0.004), (5, 0.02**2 / 1024 / RADIUS)])
+def test_a_film_that_is_resolved_down_to_the_range_needs_no_other_loss(refinements: int, resolved: float):
+    mesh = {"size": 0.2, "size_body": 0.02, "refinements": refinements}
+    finding = only("rebound", contact={"impact_speed": 0.1, "range": 0.003}, **WET, mesh=mesh)
+    assert finding.found["resolved"] == pytest.approx(resolved)
+    assert ("restitution_stokes" in finding.text) == (refinements == 0)
+
+
 def test_slow_impacts_in_a_liquid_do_not_come_back():
     finding = only("rebound", contact={"impact_speed": 0.1}, **WET, **MESH)
     assert finding.found["rebound"] == 0.0

@@ -11,12 +11,18 @@ from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "film"
 TWICE = 2.0
 """A range of more than that times the gap that the mesh still resolves is warned of."""
+
+
+def resolved_gap(mesh: MeshTable, radius: FloatArray) -> FloatArray:
+    """h²/R, the gap where a film, √(R gap) wide, is as wide as the finest cells h; of the effective ``radius``
+    [length]."""
+    return np.asarray((mesh.size_body / 2**mesh.refinements) ** 2 / radius)
 
 
 def counted_once(system: System, mesh: MeshTable) -> Iterator[Finding]:
@@ -37,16 +43,17 @@ def counted_once(system: System, mesh: MeshTable) -> Iterator[Finding]:
     for met in representative_contacts(system):
         for interaction in met.interactions:
             if interaction.law.film and len(met.contacts):
-                yield from _finding(system, interaction, met.contacts, mesh.size_body / 2**mesh.refinements)
+                yield from _finding(system, interaction, met.contacts, mesh)
 
 
-def _finding(system: System, interaction: Interaction, contacts: Contacts, finest: float) -> Iterator[Finding]:
+def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh: MeshTable) -> Iterator[Finding]:
     radius = with_effective_radii(contacts, system.bodies, system.walls, system.pose).effective_radius
     row = int(np.nanargmax(radius))
-    law_range, resolved = interaction.law.range, finest**2 / float(radius[row])
+    law_range, resolved = interaction.law.range, float(resolved_gap(mesh, radius[row]))
     if law_range <= TWICE * resolved:
         return
     names = system.surfaces[contacts.body_a[row]], system.surfaces[contacts.body_b[row]]
+    finest = mesh.size_body / 2**mesh.refinements
     text = (
         f"{' and '.join(names)}: the finest cells, {figure(finest)}, resolve films down to gaps of {figure(resolved)}"
     )

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
+from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.types import FluidProblem
+from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "rebound"
 REBOUND = 10.0
@@ -19,7 +22,7 @@ BALLS = 35.0
 """β of balls in liquids: they come back with exp(-β/St) of the speed of a dry rebound."""
 
 
-def in_a_film(met: DesignContacts, fluid: FluidProblem) -> Iterator[Finding]:
+def in_a_film(met: DesignContacts, fluid: FluidProblem, mesh: MeshTable) -> Iterator[Finding]:
     """Say what a law without losses means at the Stokes number of the impact.
 
     Parameters
@@ -28,6 +31,8 @@ def in_a_film(met: DesignContacts, fluid: FluidProblem) -> Iterator[Finding]:
         The bodies, with a wall or with each other.
     fluid : FluidProblem
         The fluid; without inertia it lets nothing rebound, and nothing is said.
+    mesh : MeshTable
+        Sizes of the cells, which may resolve the film before the law acts.
 
     Yields
     ------
@@ -46,16 +51,25 @@ def in_a_film(met: DesignContacts, fluid: FluidProblem) -> Iterator[Finding]:
     film = Film(fluid.dynamic_viscosity, radius, met.system.loads)
     struck = (met.speed > 0.0) & (met.inverse_mass > 0.0)
     stokes = np.where(struck, met.speed * film.stokes_number(met.contacts), np.inf)
+    system = met.system
+    curved = with_effective_radii(met.contacts, system.bodies, system.walls, system.pose).effective_radius
+    resolved = resolved_gap(mesh, curved)  # NaN is not: no film of facets is known
     for row in met.worst(-stokes):
         if struck[row]:
-            yield _finding(met, row, float(stokes[row]))
+            yield _finding(met, row, float(stokes[row]), float(resolved[row]))
 
 
-def _finding(met: DesignContacts, row: int, stokes: float) -> Finding:
+def _finding(met: DesignContacts, row: int, stokes: float, resolved: float) -> Finding:
     share = float(np.exp(-BALLS / stokes)) if stokes >= REBOUND else 0.0
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
-    field = next(one.field for one in met.interactions if one.law.conservative)
+    lossless = next(one for one in met.interactions if one.law.conservative)
     text = f"{' and '.join(met.names(row))}: the impact's Stokes number is {figure(stokes)}, where balls in liquids "
     text += f"{seen}, and the law gives back all that reaches its range; "
-    text += f"{field}.restitution and {field}.restitution_stokes = {BALLS:g} take some out"
-    return Finding("note", QUESTION, met.names(row), text, found={"stokes_number": stokes, "rebound": share})
+    if resolved <= lossless.law.range:
+        text += f"before that the film takes its part, which the mesh resolves down to a gap of {figure(resolved)}"
+        text += f"; {lossless.field}.restitution takes some out of the rest" if share else ""
+    else:
+        field = lossless.field
+        text += f"{field}.restitution and {field}.restitution_stokes = {BALLS:g} take some out"
+    found = {"stokes_number": stokes, "rebound": share, "resolved": resolved}
+    return Finding("note", QUESTION, met.names(row), text, found=found)
