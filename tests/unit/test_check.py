@@ -601,6 +601,14 @@ def test_a_film_that_is_resolved_down_to_the_range_needs_no_other_loss(refinemen
     assert ("restitution_stokes" in finding.text) == (refinements == 0)
 
 
+def test_what_the_mesh_resolves_of_films_of_facets_is_not_known():
+    square = {"type": "polygon", "points": [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]], "density": 3.0}
+    contact = {"law": "contact", "epsilon": "auto", "impact_speed": 0.1}
+    finding = only("rebound", square | {"position": [1.0, 0.5]}, contact=contact, **WET, **MESH)
+    assert "resolved" not in finding.found
+    assert "restitution_stokes" in finding.text
+
+
 def test_slow_impacts_in_a_liquid_do_not_come_back():
     finding = only("rebound", contact={"impact_speed": 0.1}, **WET, **MESH)
     assert finding.found["rebound"] == 0.0

@@ -71,5 +71,7 @@ def _finding(met: DesignContacts, row: int, stokes: float, resolved: float) -> F
     else:
         field = lossless.field
         text += f"{field}.restitution and {field}.restitution_stokes = {BALLS:g} take some out"
-    found = {"stokes_number": stokes, "rebound": share, "resolved": resolved}
+    found = {"stokes_number": stokes, "rebound": share}
+    if np.isfinite(resolved):
+        found["resolved"] = resolved
     return Finding("note", QUESTION, met.names(row), text, found=found)
