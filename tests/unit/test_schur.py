@@ -12,6 +12,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood import sparse_backend
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
+from rigidfluid.taylor_hood.schur.three_sides import times
 from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
 
 BALLS = {
@@ -65,6 +66,14 @@ def laplacian(n):
     found = sparse.csr_array(sparse.kron(line, unit) + sparse.kron(unit, line))
     found.sort_indices()
     return found
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3, 4])
+def test_a_matrix_times_a_few_columns(columns):
+    rng = np.random.default_rng(0)
+    matrix = sparse.random_array((40, 30), density=0.2, rng=rng, format="csr")
+    sides = rng.normal(size=(30, columns))
+    np.testing.assert_allclose(times(matrix, sides), matrix.toarray() @ sides, atol=1e-14)
 
 
 def test_factors_without_fill_are_exact_where_there_is_none():

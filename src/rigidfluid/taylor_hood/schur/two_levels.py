@@ -13,6 +13,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import factorise
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.scalar_space import ScalarSpace
+from rigidfluid.taylor_hood.schur.three_sides import times
 
 
 class TwoLevels:
@@ -42,9 +43,9 @@ class TwoLevels:
     def solve(self, right_sides: FloatArray) -> FloatArray:
         """F⁻¹ of one column for each component, (s, c), about."""
         found = self._smoother.solve(right_sides)
-        left = right_sides - self._matrix @ found
+        left = right_sides - times(self._matrix, found)
         found += self._space.coarse @ self._coarse.solve(self._restrict @ left)
-        found += self._smoother.solve(right_sides - self._matrix @ found)
+        found += self._smoother.solve(right_sides - times(self._matrix, found))
         return found
 
 
