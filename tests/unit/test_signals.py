@@ -1,4 +1,4 @@
-"""Ctrl-C still reaches Python after MMG has run."""
+"""Ctrl-C and SIGTERM still reach Python after MMG has run."""
 
 import contextlib
 import signal
@@ -20,14 +20,15 @@ def _ctrl_c_is_heard():
     signal.signal(signal.SIGINT, before)
 
 
-def test_ctrl_c_is_reported_and_leaves_a_summary(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_reported_and_leaves_a_summary(tmp_path, number):
     """The handler that Python knows of may differ from the system's: only a real signal tells."""
     command = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml"), "--out", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not (tmp_path / "state.h5").exists() and process.poll() is None:
         time.sleep(0.05)
     time.sleep(0.5)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     _, complaint = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "--resume" in complaint
@@ -48,3 +49,4 @@ def test_ctrl_c_that_is_lost_in_a_step_ends_the_run_after_it() -> None:
         rigidfluid.run(scene, progress=lose)
     assert len(steps) == 1
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL

@@ -85,12 +85,12 @@ def no_collection() -> Iterator[None]:
 
 @contextmanager
 def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
-    """Give what raises KeyboardInterrupt if Ctrl-C was pressed within and its exception is lost.
+    """Make SIGTERM within a KeyboardInterrupt as Ctrl-C is; give what raises that again where it was lost.
 
     Python ignores exceptions in finalisers and in what compiled code calls back, most of all where loops are compiled.
     Several processes are all told, and end together at an exchange; a second Ctrl-C ends the one that gets it at once.
-    They heed SIGTERM too, which is what mpirun makes of Ctrl-C. Only the main thread has signals, and other handlers
-    than Python's own are left alone.
+    SIGTERM is what mpirun makes of Ctrl-C, and what queues send when the time is up. Only the main thread has signals,
+    and other handlers than Python's own are left alone.
     """
     if threading.current_thread() is not threading.main_thread():
         yield ranks.heed_interrupts
@@ -110,7 +110,7 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
             raise KeyboardInterrupt
 
     heard = [(signal.SIGINT, signal.default_int_handler), (signal.SIGTERM, signal.SIG_DFL)]
-    numbers = [number for number, own in heard[: 1 if ranks.size == 1 else 2] if signal.getsignal(number) is own]
+    numbers = [number for number, own in heard if signal.getsignal(number) is own]
     before = {number: signal.signal(number, remember) for number in numbers}
     try:
         yield ask
