@@ -14,8 +14,8 @@ from rigidfluid.errors import MeshError
 
 def run_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
     """What MMG makes of a mesh when the ``kept`` facets (F,) and the corners of the domain are required to stay."""
-    mmg = as_mmg(mesh, kept, bodies, metric)
     try:
+        mmg = as_mmg(mesh, kept, bodies, metric)
         with kept_signals():
             mmg.remesh(verbose=-1, hgrad=gradation)
     except RuntimeError as error:
