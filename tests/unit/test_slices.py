@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import rigidfluid
@@ -22,7 +23,8 @@ from rigidfluid.reports.flow import EDGES
 from rigidfluid.reports.narrowest import gap_middle
 from rigidfluid.reports.results import Results, read_results
 from rigidfluid.reports.section import Section
-from rigidfluid.reports.space import box_edges, surface_triangles
+from rigidfluid.reports.space import Camera, Space, box_edges, surface_triangles
+from rigidfluid.reports.space_matplotlib import draw_space
 from rigidfluid.reports.space_pyvista import pyvista_images
 from rigidfluid.reports.space_view import dry_space_picture
 from rigidfluid.reports.style import SOLID
@@ -175,7 +177,18 @@ def test_a_drawing_process_that_fails_leaves_the_picture_to_matplotlib(
     monkeypatch.setattr("rigidfluid.reports.space_pyvista.sys.executable", str(fake))
     assert pyvista_images([], view_plane(tilted), 100) is None
     (axes,) = dry_space_picture(tilted, [0.5], view_plane(tilted)).axes
-    assert axes.name == "3d"
+    assert not axes.images
+    assert len(axes.collections) == 3
+
+
+def test_what_is_nearer_hides_what_is_behind() -> None:
+    plane, flat = ViewPlane.of_axes(0, 1, 3), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    near, far, box = flat + [0.0, 0.0, 1.0], flat, np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
+    none = np.zeros((0, 3, 3))
+    axes = Figure().add_subplot()
+    draw_space(axes, Space(np.array([near, far]), none, box, none, none), plane)
+    last = axes.collections[0].get_paths()[-1].vertices[:3]
+    np.testing.assert_allclose(last, Camera.of(plane).seen(near, box))
 
 
 def test_matplotlib_lights_bodies_from_above(tilted: Results, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,19 +1,17 @@
-"""A view of a 3D run on Matplotlib's axes."""
+"""A view of a 3D run on Matplotlib's axes, drawn or as an image."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
-from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.reports.space import Camera, Space, box_edges
 from rigidfluid.reports.style import BLACK, SOLID, VERMILLION
-from rigidfluid.reports.view_plane import ViewPlane, direction_label
+from rigidfluid.reports.view_plane import ViewPlane
 
 _LIGHT = np.array([-0.4, 0.5, 0.77])
 """To the light: to the observer's right, up and to the observer."""
@@ -23,42 +21,34 @@ _AMBIENT = 0.4
 """The light on what is turned away from it."""
 
 
-def draw_space(axes: Any, shown: Space, plane: ViewPlane) -> None:
-    """Draw on 3D axes, along which there are the plane's right, the direction across it, and its up."""
-    normal = plane.normal
-    towards = bool(normal[np.argmax(np.abs(normal))] > 0.0)
-    across = normal if towards else -normal
-    frame = np.stack([plane.right, across, plane.up], axis=1)
+def draw_space(axes: Axes, shown: Space, plane: ViewPlane) -> None:
+    """Draw triangles from behind to the front, then the edges of the box and the paths."""
+    camera = Camera.of(plane)
     colours = np.concatenate([_lit(shown.bodies, plane), shown.slice_colours.mean(axis=1)])
-    triangles = np.concatenate([shown.bodies, shown.slice_points]) @ frame
-    axes.computed_zorder = False
-    surfaces = Poly3DCollection(triangles, facecolors=colours, edgecolors=colours, linewidths=0.3, zorder=1)
+    triangles = np.concatenate([shown.bodies, shown.slice_points])
+    order = np.argsort(triangles.mean(axis=1) @ camera.to)
+    seen, colours = camera.seen(triangles[order], shown.box), colours[order]
+    surfaces = PolyCollection(list(seen), facecolors=colours, edgecolors=colours, linewidths=0.3, zorder=1)
     surfaces.set_antialiased(False)
-    axes.add_collection3d(surfaces)
-    axes.add_collection3d(Line3DCollection(box_edges(shown.box) @ frame, colors=BLACK, linewidths=0.5, zorder=0))
-    axes.add_collection3d(Line3DCollection(shown.paths @ frame, colors=VERMILLION, linewidths=0.8, zorder=2))
-    corners = box_edges(shown.box).reshape(-1, 3) @ frame
-    lower, upper = corners.min(axis=0), corners.max(axis=0)
-    axes.set_xlim(lower[0], upper[0])
-    axes.set_ylim(*((upper[1], lower[1]) if towards else (lower[1], upper[1])))
-    axes.set_zlim(lower[2], upper[2])
-    axes.set_xlabel(plane.labels[0])
-    axes.set_ylabel(direction_label(across))
-    axes.set_zlabel(plane.labels[1])
-    axes.set_box_aspect(upper - lower)
-    axes.set_proj_type("ortho")
-    axes.locator_params(nbins=4)
-    to = Camera.of(plane).to
-    azimuth = np.arctan2(-to @ normal, to @ plane.right)
-    axes.view_init(elev=np.degrees(np.arcsin(to @ plane.up)), azim=np.degrees(azimuth))
+    axes.add_collection(surfaces)
+    edges, paths = camera.seen(box_edges(shown.box), shown.box), camera.seen(shown.paths, shown.box)
+    axes.add_collection(LineCollection(list(edges), colors=BLACK, linewidths=0.5, zorder=0))
+    axes.add_collection(LineCollection(list(paths), colors=VERMILLION, linewidths=0.8, zorder=2))
+    _frame(axes, shown.box, camera)
 
 
 def draw_image(axes: Axes, image: NDArray[np.uint8], box: FloatArray, plane: ViewPlane) -> None:
-    """Show an image of the box (2, 3), and write at three of its edges along which axis they are, and from where to
-    where at long ones."""
+    """Show an image of the box (2, 3)."""
     camera = Camera.of(plane)
     width, height = 0.5 * camera.size(box)
     axes.imshow(image, extent=(-width, width, -height, height))
+    _frame(axes, box, camera)
+
+
+def _frame(axes: Axes, box: FloatArray, camera: Camera) -> None:
+    """Write at three edges of the box (2, 3) along which axis they are, and from where to where at long ones."""
+    width, height = 0.5 * camera.size(box)
+    axes.set(xlim=(-width, width), ylim=(-height, height), aspect="equal")
     axes.set_axis_off()
     edges = box_edges(box)
     seen = camera.seen(edges, box)

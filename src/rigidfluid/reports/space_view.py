@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -51,13 +51,12 @@ def _panels(spaces: list[Space], times: Sequence[float], plane: ViewPlane, scale
     rows = -(-len(spaces) // columns)
     across = min(3.6, 5.5 * width / height + 0.8)
     figure = new_figure(columns * across + 1.5, rows * (across * height / width + 0.4))
-    panels: list[Any] = []
+    panels: list[Axes] = []
     for k, (one, time) in enumerate(zip(spaces, times, strict=True), start=1):
+        axes = figure.add_subplot(rows, columns, k)
         if images is None:
-            axes: Any = figure.add_subplot(rows, columns, k, projection="3d")
             draw_space(axes, one, plane)
         else:
-            axes = figure.add_subplot(rows, columns, k)
             draw_image(axes, images[k - 1], one.box, plane)
         axes.set_title(f"time {time:.4g}")
         panels.append(axes)
