@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -453,7 +454,7 @@ def _print_end(history: History, folder: Path) -> None:
         _print(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
     if summary["smallest_gap"] is not None:
         _print(f"smallest gap: {_figure(summary['smallest_gap'])}")
-    _print(f"rest position: {_figure(summary['rest_position'])}")
+    _print_positions(summary["rest_position"])
     if summary["failed_remeshes"]:
         _print(
             f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on. "
@@ -464,6 +465,12 @@ def _print_end(history: History, folder: Path) -> None:
     if summary["unknowns"]:
         _print(_of_stages(summary["wall_time_per_stage"], summary["wall_time"]))
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
+
+
+def _print_positions(position: Mapping[str, Sequence[float]]) -> None:
+    shown = dict(islice(position.items(), MOST_BODIES))
+    more = len(position) - len(shown)
+    _print(f"position at the end: {_figure(shown)}" + (f", and {more} more in bodies.csv" if more else ""))
 
 
 def _of_stages(seconds: Mapping[str, float], total: float) -> str:

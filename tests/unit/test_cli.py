@@ -180,14 +180,14 @@ def test_run_ends_with_figures_and_files(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.stderr
     for text in (
         "smallest gap: 0.1",
-        "rest position: left_disk (0.32, 0.4995)",
+        "position at the end: left_disk (0.32, 0.4995)",
         "bodies.csv",
     ):
         assert text in result.stdout
     assert "Reynolds" not in result.stdout
     again = rigidfluid_command("run", SCENE, "--set", "time.end=0.002", "--out", tmp_path / "out", "--resume")
     assert again.exit_code == 0, again.stderr
-    assert "rest position: left_disk (0.34, 0.498)" in again.stdout
+    assert "position at the end: left_disk (0.34, 0.498)" in again.stdout
 
 
 def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -195,17 +195,18 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "reynolds_solid_density": 17.4567,
         "reynolds": 13.9654,
         "smallest_gap": None,
-        "rest_position": [1.0, 2.0],
+        "rest_position": {f"ball{i}": [1.0, float(i)] for i in range(22)},
         "failed_remeshes": 2,
         "latest_failed_remesh": "at time 0.3: mesh: found nothing",
     }
     history = History(2)
-    shares = dict.fromkeys(("created", "lost", "unaccounted", "path_friction", "put_in"), 0.0)
+    shares = dict.fromkeys(("created", "lost", "unaccounted", "path_friction", "put_in"), 0.0) | {"unaccounted": -1e-9}
     history.summary = figures | {"files": [tmp_path / "bodies.csv"], "energy": shares | {"warnings": []}}
     monkeypatch.setattr(rigidfluid.core.run.run, "run", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
-    assert "rest position: (1, 2)" in text
+    assert "position at the end: ball0 (1, 0), " in text
+    assert "ball19 (1, 19), and 2 more in bodies.csv" in text
     assert "2 times; the one before served on. The latest failure, at time 0.3: mesh: found nothing" in text
     assert "energy: 0 % created, 0 % lost, 0 % unaccounted for at the end, of 0 put in" in text
 

@@ -126,8 +126,8 @@ def energy_warnings(energy: Table) -> list[EnergyWarning]:
 
 def per_cent(share: float) -> str:
     """To two digits; what is below a millionth is nothing."""
-    value = 100.0 * share
-    return f"{value:.0f} %" if abs(value) >= 100.0 or abs(share) < 1e-6 else f"{value:.2g} %"
+    value = 100.0 * share if abs(share) >= 1e-6 else 0.0
+    return f"{value:.2g} %" if abs(value) < 100.0 else f"{value:.0f} %"
 
 
 def _put_in(energy: Table) -> float:
