@@ -31,9 +31,9 @@ def page(work: Work) -> Page:
     return Page("A hundred spheres settle", text, {"": curves(runs)})
 
 
-TEXT = """`scenes/hundred_spheres.toml`: {spheres} spheres settle in a box. In the fluid they are followed to {end} s, and
-without it (`--set fluid.backend=dry`) to the end, with a law that loses no energy. The scene is for meshes, memory and
-contacts: cells are as long as the spheres' radii, and there is nothing to hold the paths against.
+TEXT = """`scenes/hundred_spheres.toml`: {spheres} spheres settle in a box. In the fluid they are followed to {end} s,
+and without it (`--set fluid.backend=dry`) to the end, with a law that loses no energy. The scene is for meshes, memory
+and contacts: cells are as long as the spheres' radii, and there is nothing to hold the paths against.
 
 {figures}
 
