@@ -12,7 +12,8 @@ from falling import falling_disk
 from mesh_tools import ball, ellipsoid, upright
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.mesh.curved_edges import SQUEEZED, CurvedCells, with_curved_edges
+from rigidfluid.core.mesh.curved_cells import CurvedCells
+from rigidfluid.core.mesh.curved_edges import SQUEEZED, with_curved_edges
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.remesh import initial_mesh
