@@ -140,6 +140,21 @@ def test_edges_in_a_gap_stay_straight_before_it_halves() -> None:
         assert (with_curved_edges(mesh, [disk], pose, box).curved is not None) == bent
 
 
+def test_edges_of_poor_cells_stay_straight() -> None:
+    """Bending leaves either cell over a ball .54 of its volume, no wall is near, and its apex is held; of the quality
+    it leaves .24 over the one facet, and .14 over the narrower one."""
+    box = Box(BoxOptions(lower=(-9.0,) * 3, upper=(9.0,) * 3), 3)
+    facets, markers = np.array([[0, 1, 2], [3, 4, 5]]), np.array([0, 6])
+    for width, bent in ((0.12, True), (0.05, False)):
+        on_ball = np.array([[-0.4, 0.0, 1.0], [0.4, 0.0, 1.0], [0.0, width, 1.0]])
+        on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
+        middle = on_ball.mean(axis=0)
+        apex = middle + 0.25 * middle / np.linalg.norm(middle)
+        points = np.vstack([on_ball, apex, [[9.0, 9.0, 8.0], [9.0, 8.0, 9.0]]])
+        mesh = orient(Mesh(points, np.array([[0, 1, 2, 3]]), facets, markers))
+        assert (with_curved_edges(mesh, [ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box).curved is not None) == bent
+
+
 def test_edges_on_a_curved_wall_bend_outwards() -> None:
     round_dish = dish(1.0)
     mesh = curved_mesh(ball(0.3, 2), upright([0.2, 0.1]), round_dish)

@@ -57,12 +57,11 @@ def test_a_vertex_gives_way_to_edges_that_bend_towards_it() -> None:
 
 def test_no_cell_gets_worse_than_the_worst_before() -> None:
     """In a cube of random vertices, full of slivers."""
-    points = np.random.default_rng(3).random((60, 3))
+    points = np.random.default_rng(3).random((30, 3))
     given = delaunay(np.concatenate([np.array(list(product((0.0, 1.0), repeat=3))), points]))
     made = smooth_fluid(given)
     before, after = (cell_quality(mesh.points, mesh.cells) for mesh in (given, made))
-    assert after.min() >= before.min()
-    assert np.sum(after < 0.1) < 0.7 * np.sum(before < 0.1)
+    assert after.min() > 0.1 > 5.0 * before.min()
 
 
 def test_vertices_of_one_cell_do_not_move_at_a_time() -> None:
