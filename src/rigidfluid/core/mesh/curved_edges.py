@@ -70,16 +70,15 @@ def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Do
     if not bends.any():
         return mesh
     curved = replace(mesh, curved=CurvedEdges(edges[bends], surface[bends], middles[bends]))
-    if mesh.points.shape[1] == 3:  # in 2D a cell has seldom more than one bent edge, and is left enough of
-        curved = smooth_fluid(curved)
-    while curved.curved is not None:
+    while True:
+        if mesh.points.shape[1] == 3:  # in 2D a cell has seldom more than one bent edge, and is left enough of
+            curved = smooth_fluid(curved)
         cells = CurvedCells(curved)
         thin = _too_thin(curved, cells, bodies, pose, domain)
-        if not len(thin):
+        if curved.curved is None or not len(thin):
             return curved
         kept = np.setdiff1d(np.arange(len(curved.curved.surface)), cells.bent[thin])
         curved = replace(curved, curved=_chosen(curved.curved, kept))
-    return mesh
 
 
 def _too_thin(mesh: Mesh, cells: CurvedCells, bodies: Sequence[Body], pose: Pose, domain: Domain) -> IntArray:
