@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 
@@ -40,32 +41,30 @@ def smooth_fluid(mesh: Mesh) -> Mesh:
         The same cells, facets and curved edges.
     """
     near, movable = _around_bad_cells(mesh)
-    cells = CurvedCells(near)
-    every = np.concatenate([near.cells, cells.cells])
-    geometry, step = mesh.geometry.copy(), _shortest_edges(mesh.points, near.cells)
-    shortest = LAST * step
-    step *= FIRST
-    directions = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=mesh.points.shape[1]) if any(one)])
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-
-    def worst() -> FloatArray:
-        quality = np.concatenate([cell_quality(geometry, near.cells), cells.quality(geometry)])
-        return _least_at_vertices(every, quality, len(mesh.points))
-
+    geometry, step = mesh.geometry.copy(), FIRST * _shortest_edges(mesh.points, near.cells)
+    shortest = LAST / FIRST * step
+    worst_near = _worst_at_vertices(near)
     while True:
-        before = worst()
+        before = worst_near(geometry)
         movable = movable[(before[movable] < GOOD_QUALITY) & (step[movable] >= shortest[movable])]
         if not len(movable):
             return mesh.at(geometry)
         moved = movable[share_no_cell(near.cells, movable, len(mesh.points))]
+        worst = _worst_at_vertices(_with_cells_at(near, moved))
         start, best, reached = geometry[moved].copy(), before[moved] + LEAST_GAIN, geometry[moved].copy()
-        for direction in directions:
+        for direction in _directions(mesh.points.shape[1]):
             geometry[moved] = start + step[moved, None] * direction
-            now = worst()[moved]
+            now = worst(geometry)[moved]
             better = now > best
             reached[better], best[better] = geometry[moved[better]], now[better] + LEAST_GAIN
         geometry[moved] = reached
         step[moved[(reached == start).all(axis=1)]] *= 0.5
+
+
+def _directions(dimension: int) -> FloatArray:
+    """Along the axes and the diagonals, unit vectors (3^d - 1, d)."""
+    directions = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=dimension) if any(one)])
+    return np.asarray(directions / np.linalg.norm(directions, axis=1, keepdims=True))
 
 
 def _around_bad_cells(mesh: Mesh) -> tuple[Mesh, IntArray]:
@@ -74,8 +73,26 @@ def _around_bad_cells(mesh: Mesh) -> tuple[Mesh, IntArray]:
     bad = mesh.cells[cell_quality(mesh.points, mesh.cells) < GOOD_QUALITY]
     bent = cells.cells[cells.quality(mesh.geometry) < GOOD_QUALITY]
     movable = np.setdiff1d(np.concatenate([bad, bent]), mesh.facets)
-    touched = np.isin(mesh.cells, movable).any(axis=1)
-    return replace(mesh, cells=mesh.cells[touched]), movable
+    return _with_cells_at(mesh, movable), movable
+
+
+def _with_cells_at(mesh: Mesh, vertices: IntArray) -> Mesh:
+    """The mesh with no other cells than those at these ``vertices``."""
+    chosen = np.zeros(len(mesh.points), dtype=bool)
+    chosen[vertices] = True
+    return replace(mesh, cells=mesh.cells[chosen[mesh.cells].any(axis=1)])
+
+
+def _worst_at_vertices(mesh: Mesh) -> Callable[[FloatArray], FloatArray]:
+    """Quality of each vertex's worst cell, bent ones included, as a function of the geometry (N,)."""
+    cells = CurvedCells(mesh)
+    every = np.concatenate([mesh.cells, cells.cells])
+
+    def worst(geometry: FloatArray) -> FloatArray:
+        quality = np.concatenate([cell_quality(geometry, mesh.cells), cells.quality(geometry)])
+        return _least_at_vertices(every, quality, len(mesh.points))
+
+    return worst
 
 
 def _shortest_edges(points: FloatArray, cells: IntArray) -> FloatArray:
