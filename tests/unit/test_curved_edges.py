@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 from dish import dish
 from falling import falling_disk
 from mesh_tools import ball, ellipsoid, upright
+from scipy.spatial import Delaunay
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.mesh.curved_edges import SQUEEZED, CurvedCells, with_curved_edges
+from rigidfluid.core.mesh.curved_cells import CurvedCells
+from rigidfluid.core.mesh.curved_edges import SQUEEZED, with_curved_edges
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.topology import orient
+from rigidfluid.core.mesh.topology import boundary_facets, orient
 from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.domains.box import Box, BoxOptions
@@ -137,6 +140,41 @@ def test_edges_in_a_gap_stay_straight_before_it_halves() -> None:
     for height, bent in ((9.0, True), (1.5, False)):
         box = Box(BoxOptions(lower=(-9.0, -9.0), upper=(9.0, height)), 2)
         assert (with_curved_edges(mesh, [disk], pose, box).curved is not None) == bent
+
+
+def test_edges_of_poor_cells_stay_straight() -> None:
+    """Bending leaves either cell over a ball .54 of its volume, no wall is near, and its apex is held; of the quality
+    it leaves .24 over the one facet, and .14 over the narrower one."""
+    box = Box(BoxOptions(lower=(-9.0,) * 3, upper=(9.0,) * 3), 3)
+    facets, markers = np.array([[0, 1, 2], [3, 4, 5]]), np.array([0, 6])
+    for width, bent in ((0.12, True), (0.05, False)):
+        on_ball = np.array([[-0.4, 0.0, 1.0], [0.4, 0.0, 1.0], [0.0, width, 1.0]])
+        on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
+        middle = on_ball.mean(axis=0)
+        apex = middle + 0.25 * middle / np.linalg.norm(middle)
+        points = np.vstack([on_ball, apex, [[9.0, 9.0, 8.0], [9.0, 8.0, 9.0]]])
+        mesh = orient(Mesh(points, np.array([[0, 1, 2, 3]]), facets, markers))
+        assert (with_curved_edges(mesh, [ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box).curved is not None) == bent
+
+
+def test_vertices_that_gave_way_to_edges_come_back_where_these_stay_straight() -> None:
+    """Around an octahedron for a ball no edge can bend, and cells half as good as the straight ones are left."""
+    corners = np.array(list(product((-1.0, 1.0), repeat=3)))
+    octahedron = np.concatenate([np.eye(3), -np.eye(3)])
+    points = np.concatenate([octahedron, 1.5 * corners / 3**0.5, 3.0 * corners, 3.0 * octahedron])
+    cells = Delaunay(points).simplices.astype(np.int64)
+    cells = cells[(cells >= len(octahedron)).any(axis=1)]
+    facets = boundary_facets(cells)
+    middles = points[facets].mean(axis=1)
+    across = np.abs(middles).argmax(axis=1)
+    wall = 1 + 2 * across + (np.take_along_axis(middles, across[:, None], axis=1)[:, 0] > 0.0)
+    markers = np.where((facets < len(octahedron)).all(axis=1), 0, wall)
+    box = Box(BoxOptions(lower=(-3.0,) * 3, upper=(3.0,) * 3), 3)
+    mesh = with_curved_edges(
+        orient(Mesh(points, cells, facets, markers)), [ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box
+    )
+    assert mesh.curved is None
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.3
 
 
 def test_edges_on_a_curved_wall_bend_outwards() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.refine_surface import LONGEST, edges_of_facets
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
-from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.mesh.topology import check_mesh, share_no_cell
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
@@ -66,7 +66,7 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
         if not left.any():
             break
         pairs, wanted = pairs[left], wanted[left]
-        apart = _apart(mesh, pairs)
+        apart = share_no_cell(mesh.cells, pairs[:, 0], len(mesh.points))
         pairs, wanted = pairs[apart], wanted[apart]
         fits = _spares(mesh, pairs, wanted)
         refused |= {(a, b) for a, b in pairs[~fits].tolist()}
@@ -97,17 +97,6 @@ def _short_edges(
     chosen = order[relative[order] < SHORTEST]
     edges = edges[short[chosen]]
     return np.stack([edges, edges[:, ::-1]], axis=1).reshape(-1, 2), np.repeat(wanted[chosen], 2)
-
-
-def _apart(mesh: Mesh, pairs: IntArray) -> BoolArray:
-    """Which of the ``pairs`` (E, 2), the first of them first, take their vertex off cells that no other one touches."""
-    rank = np.full(len(mesh.points), len(pairs))
-    np.minimum.at(rank, pairs[:, 0], np.arange(len(pairs)))
-    least = rank[mesh.cells].min(axis=1)
-    around = np.full(len(mesh.points), len(pairs))
-    for corner in mesh.cells.T:
-        np.minimum.at(around, corner, least)
-    return np.asarray(around[pairs[:, 0]] == np.arange(len(pairs)))
 
 
 def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
