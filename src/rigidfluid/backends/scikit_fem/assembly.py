@@ -11,6 +11,7 @@ from scipy import sparse
 from rigidfluid.backends.scikit_fem import kernels
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.projection import Masses
 
 
 class Rule(NamedTuple):
@@ -113,6 +114,19 @@ class CompiledAssembly:
         kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
 
+    def masses(self, points: FloatArray) -> Masses:
+        n, d = self.numbering, self.numbering.dimension
+        mass, divergence = np.zeros(len(self._around)), np.zeros(d * self._starts[n.vertices])
+        kernels.assemble_masses(
+            mass, divergence, points, self._cells(points), self._starts, self._sparsity.ranks, self._tables
+        )
+        columns = (d * self._around[: self._starts[n.vertices], None] + np.arange(d, dtype=np.int32)).ravel()
+        rows = d * self._starts[: n.vertices + 1]
+        return Masses(
+            sparse.csr_array((mass, self._around, self._starts), shape=(n.nodes,) * 2),
+            sparse.csr_array((divergence, columns, rows), shape=(n.vertices, n.nodes * d)),
+        )
+
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         load: FloatArray = kernels.apply_mass(points, self._cells(points), self._tables, field)
         return load
@@ -135,4 +149,5 @@ class CompiledAssembly:
         ranks = kernels.neighbour_ranks(pattern.indptr, pattern.indices, n.cell_nodes)
         indptr, self._indices = kernels.expand(pattern.indptr, pattern.indices, n.vertices, d)
         vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(pattern.indptr)
+        self._starts, self._around = pattern.indptr, pattern.indices
         self._sparsity = Sparsity(indptr, vertices_around, ranks, n.nodes * d)

@@ -151,8 +151,16 @@ def add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes):
         left = viscosity * dx * flat[i]
         for j in range(len(sizes.entries)):
             stress[i, j] += left * flat[j]
+    add_flux(divergence, rule, q, gradient, dx, sizes)
+
+
+@njit(cache=True)
+def add_flux(flux, rule, q, gradient, dx, sizes):
+    """Add -ψₖ ∂φᵢ/∂xₐ at point ``q`` of a ``rule`` to ``flux`` (b d, d+1)."""
+    flat = gradient.ravel()
+    for i in range(len(sizes.entries)):
         for k in range(len(sizes.axes) + 1):
-            divergence[i, k] -= dx * flat[i] * rule.linear[q, k]
+            flux[i, k] -= dx * flat[i] * rule.linear[q, k]
 
 
 @njit(cache=True)
@@ -237,6 +245,56 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes)
         scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
+
+
+@njit(cache=True)
+def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
+    """Add (φⱼ, φᵢ) to ``mass`` and -(∇·u, q) to ``divergence``, on the pattern that nodes have with nodes: row i starts
+    at ``starts`` (nodes + 1,), and at d times that in the divergence, which has d columns for each neighbour."""
+    sizes = tables.sizes
+    b, d = len(sizes.basis), len(sizes.axes)
+    jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
+    scalar, flux = np.empty((b, b)), np.empty((b * d, d + 1))
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian, sizes)
+        det = inverted(jacobian, inverse)
+        for i in range(b):
+            for j in range(b):
+                scalar[i, j] = det * tables.mass[i, j]
+        flux[:] = 0.0
+        rule = tables.flat
+        for q in range(len(rule.weight)):
+            physical_gradients(rule, q, inverse, gradient, sizes)
+            add_flux(flux, rule, q, gradient, rule.weight[q] * det, sizes)
+        scatter_masses(mass, divergence, starts, ranks[cell], nodes, scalar, flux, sizes)
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        scalar[:] = 0.0
+        flux[:] = 0.0
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            dx = rule.weight[q] * inverted(jacobian, inverse)
+            for i in range(b):
+                for j in range(b):
+                    scalar[i, j] += dx * rule.value[q, i] * rule.value[q, j]
+            physical_gradients(rule, q, inverse, gradient, sizes)
+            add_flux(flux, rule, q, gradient, dx, sizes)
+        scatter_masses(mass, divergence, starts, ranks[cell], cells.nodes[cell], scalar, flux, sizes)
+
+
+@njit(cache=True)
+def scatter_masses(mass, divergence, starts, ranks, nodes, scalar, flux, sizes):
+    """Add one cell's ``scalar`` (b, b) and ``flux`` (b d, d+1) to the entries of `assemble_masses`."""
+    b, d = len(sizes.basis), len(sizes.axes)
+    for i in range(b):
+        for j in range(b):
+            mass[starts[nodes[i]] + ranks[i, j]] += scalar[i, j]
+    for k in range(d + 1):
+        for j in range(b):
+            place = d * (starts[nodes[k]] + ranks[k, j])
+            for a in range(d):
+                divergence[place + a] += flux[j * d + a, k]
 
 
 @njit(cache=True)
