@@ -1,6 +1,5 @@
 """A state on another mesh, and one after a blow: no divergence, bodies rigid, what is lost is known."""
 
-from functools import partialmethod
 
 import numpy as np
 import pytest
