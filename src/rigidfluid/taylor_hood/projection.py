@@ -20,8 +20,8 @@ from rigidfluid.taylor_hood.pardiso import Orderings
 _MOST = 200
 """Iterations. On straight cells they do not depend on the mesh: 6 a digit in 3D, 3 in 2D."""
 
-_SWEEPS = 2
-"""Of factors in single precision, for what is equal to round-off."""
+_REFINED = 2
+"""How often what factors in single precision give is refined, to round-off."""
 
 
 class Masses(NamedTuple):
@@ -58,8 +58,8 @@ class SparseProjection:
         self._whole_divergence = sparse.csr_array(pressures @ masses.divergence)
         self._divergence = sparse.csr_array(self._whole_divergence @ self._spread)
         self._gradient = sparse.csr_array(self._divergence.T)
-        d = velocities // masses.mass.shape[0]
-        self._diagonal = self._collect.power(2) @ np.repeat(masses.mass.diagonal(), d)
+        self._axes = velocities // masses.mass.shape[0]
+        self._diagonal = self._collect.power(2) @ np.repeat(masses.mass.diagonal(), self._axes)
         self._laplacian = sparse.csr_array(self._divergence @ (self._gradient / self._diagonal[:, None]))
         self._factors = factorise(self._laplacian, None, orderings)
 
@@ -74,41 +74,54 @@ class SparseProjection:
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
         held = surfaces.held_part(velocity)
-        free = constraint.free_unknowns[: constraint.twist_start]
-        x = surfaces.frames.into(guess).ravel()[free]
-        x -= self._potential(self._divergence @ x + self._whole_divergence @ held.ravel(), _SWEEPS)[1]
-        present = self._whole(held, x)
-        enough = tolerance * np.linalg.norm(self._load(present))
-        residual = self._load(velocity - present)
-        direction, before = np.zeros_like(x), 1.0
-        for _ in range(_MOST):
-            force, step = self._potential(self._divergence @ (residual / self._diagonal), 0)
-            residual = residual - force
-            step = residual / self._diagonal
+        x = surfaces.frames.into(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
+        x = self._without_divergence(held, x)
+        enough = tolerance * float(np.linalg.norm(self._load(self._whole(held, x))))
+        iterations = 0
+        while True:  # round-off in single precision takes the iterates off those without divergence
+            residual = self._load(velocity - self._whole(held, x))
+            residual = residual - self._force(self._divergence @ (residual / self._diagonal), _REFINED)
             if np.linalg.norm(residual) <= enough:
-                break
-            now = residual @ step
-            direction = step + (now / before) * direction
-            image = self._load(self._whole(np.zeros_like(held), direction))
-            length = now / (direction @ image)
-            x, residual, before = x + length * direction, residual - length * image, now
-        else:
-            raise StepRejected(
-                "fluid.tolerance",
-                f"a velocity whose projection does not converge to {tolerance:.1e} in {_MOST} iterations",
-                "a converging one",
-                "Loosen fluid.tolerance.",
-            )
-        x -= self._potential(self._divergence @ x + self._whole_divergence @ held.ravel(), _SWEEPS)[1]
-        return self._whole(held, x)
+                return self._whole(held, x)
+            if iterations >= _MOST:
+                raise StepRejected(
+                    "fluid.tolerance",
+                    f"a projection that does not converge to {tolerance:.1e} in {_MOST} iterations",
+                    "a converging one",
+                    "Loosen fluid.tolerance.",
+                )
+            correction, spent = self._correction(residual, enough, _MOST - iterations)
+            x, iterations = self._without_divergence(held, x + correction), iterations + spent
 
-    def _potential(self, divergence: FloatArray, sweeps: int) -> tuple[FloatArray, FloatArray]:
-        """The pressure's force that gives velocities of this ``divergence``, in D's measure, and these."""
+    def _correction(self, residual: FloatArray, enough: float, most: int) -> tuple[FloatArray, int]:
+        """What x lacks where a ``residual`` is left, until its norm is ``enough``, and the iterations, at ``most``."""
+        found, still = np.zeros_like(residual), np.zeros((self._mass.shape[0], self._axes))
+        step = direction = residual / self._diagonal
+        product = residual @ step
+        for iteration in range(most):
+            image = self._load(self._whole(still, direction))
+            length = product / (direction @ image)
+            found, residual = found + length * direction, residual - length * image
+            residual = residual - self._force(self._divergence @ (residual / self._diagonal))
+            if np.linalg.norm(residual) <= enough:
+                return found, iteration + 1
+            step, before = residual / self._diagonal, product
+            product = residual @ step
+            direction = step + (product / before) * direction
+        return found, most
+
+    def _without_divergence(self, held: FloatArray, x: FloatArray) -> FloatArray:
+        """The nearest x in D's measure, to round-off."""
+        divergence = self._divergence @ x + self._whole_divergence @ held.ravel()
+        return x - self._force(divergence, _REFINED) / self._diagonal
+
+    def _force(self, divergence: FloatArray, refined: int = 0) -> FloatArray:
+        """Bᵀp whose velocities D⁻¹Bᵀp have this ``divergence``, by factors ``refined`` so many times."""
         pressure = self._factors.solve(divergence)
-        for _ in range(sweeps):
+        for _ in range(refined):
             pressure = pressure + self._factors.solve(divergence - self._laplacian @ pressure)
-        force = self._gradient @ pressure
-        return force, force / self._diagonal
+        force: FloatArray = self._gradient @ pressure
+        return force
 
     def _whole(self, held: FloatArray, x: FloatArray) -> FloatArray:
         return held + (self._spread @ x).reshape(held.shape)

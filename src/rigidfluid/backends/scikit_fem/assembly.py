@@ -140,14 +140,7 @@ class CompiledAssembly:
 
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension
-        width = n.cell_nodes.shape[1]
-        nodes = n.cell_nodes.astype(np.int32)
-        rows, columns = np.repeat(nodes, width, axis=1).ravel(), np.tile(nodes, (1, width)).ravel()
-        ones = np.ones(len(rows), dtype=np.int8)
-        pattern = sparse.coo_array((ones, (rows, columns)), shape=(n.nodes,) * 2).tocsr()
-        pattern.sort_indices()
-        ranks = kernels.neighbour_ranks(pattern.indptr, pattern.indices, n.cell_nodes)
-        indptr, self._indices = kernels.expand(pattern.indptr, pattern.indices, n.vertices, d)
-        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(pattern.indptr)
-        self._starts, self._around = pattern.indptr, pattern.indices
+        self._starts, self._around, ranks = kernels.neighbours(n.cell_nodes, n.nodes)
+        indptr, self._indices = kernels.expand(self._starts, self._around, n.vertices, d)
+        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(self._starts)
         self._sparsity = Sparsity(indptr, vertices_around, ranks, n.nodes * d)

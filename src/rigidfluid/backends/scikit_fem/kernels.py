@@ -15,17 +15,40 @@ from numba import njit
 
 
 @njit(cache=True)
-def neighbour_ranks(indptr, indices, cell_nodes):
-    """Of each cell's nodes i and j the place of j among the neighbours of i, which are sorted; (M, b, b)."""
+def neighbours(cell_nodes, nodes):
+    """The pattern that nodes have with nodes, (nodes + 1,) and (entries,) sorted; and of each cell's nodes i and j the
+    place of j among the neighbours of i, (M, b, b)."""
     cells, width = cell_nodes.shape
-    result = np.empty((cells, width, width), np.int16)
+    first = np.zeros(nodes + 1, np.int64)
     for cell in range(cells):
         for i in range(width):
-            node = cell_nodes[cell, i]
-            around = indices[indptr[node] : indptr[node + 1]]
+            first[cell_nodes[cell, i] + 1] += 1
+    first = np.cumsum(first)
+    around, filled = np.empty(cells * width, np.int64), first[:-1].copy()  # each node's places in ``cell_nodes``
+    for cell in range(cells):
+        for i in range(width):
+            around[filled[cell_nodes[cell, i]]] = cell * width + i
+            filled[cell_nodes[cell, i]] += 1
+    indptr, indices = np.zeros(nodes + 1, np.int32), np.empty(cells * width * width, np.int32)
+    ranks, rank = np.empty((cells, width, width), np.int16), np.full(nodes, -1, np.int16)
+    for node in range(nodes):
+        count = indptr[node]
+        for place in around[first[node] : first[node + 1]]:
+            for other in cell_nodes[place // width]:
+                if rank[other] < 0:
+                    rank[other] = 0
+                    indices[count] = other
+                    count += 1
+        indptr[node + 1] = count
+        found = indices[indptr[node] : count]
+        found.sort()
+        for number in range(len(found)):
+            rank[found[number]] = number
+        for place in around[first[node] : first[node + 1]]:
             for j in range(width):
-                result[cell, i, j] = np.searchsorted(around, cell_nodes[cell, j])
-    return result
+                ranks[place // width, place % width, j] = rank[cell_nodes[place // width, j]]
+        rank[found] = -1
+    return indptr, indices[: indptr[-1]].copy(), ranks
 
 
 @njit(cache=True)
@@ -86,13 +109,13 @@ def straight_jacobian(points, nodes, jacobian, sizes):
 
 
 @njit(cache=True)
-def curved_jacobian(node_points, reference, jacobian):
+def curved_jacobian(node_points, reference, jacobian, sizes):
     """Write ∂x/∂X of one cell with nodes at ``node_points`` (b, d) into ``jacobian`` (d, d), where the basis has the
     gradients ``reference`` (b, d)."""
     jacobian[:] = 0.0
-    for node in range(len(reference)):
-        for i in range(node_points.shape[1]):
-            for j in range(reference.shape[1]):
+    for node in range(len(sizes.basis)):
+        for i in range(len(sizes.axes)):
+            for j in range(len(sizes.axes)):
                 jacobian[i, j] += node_points[node, i] * reference[node, j]
 
 
@@ -151,16 +174,8 @@ def add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes):
         left = viscosity * dx * flat[i]
         for j in range(len(sizes.entries)):
             stress[i, j] += left * flat[j]
-    add_flux(divergence, rule, q, gradient, dx, sizes)
-
-
-@njit(cache=True)
-def add_flux(flux, rule, q, gradient, dx, sizes):
-    """Add -ψₖ ∂φᵢ/∂xₐ at point ``q`` of a ``rule`` to ``flux`` (b d, d+1)."""
-    flat = gradient.ravel()
-    for i in range(len(sizes.entries)):
         for k in range(len(sizes.axes) + 1):
-            flux[i, k] -= dx * flat[i] * rule.linear[q, k]
+            divergence[i, k] -= dx * flat[i] * rule.linear[q, k]
 
 
 @njit(cache=True)
@@ -233,7 +248,7 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
         stress[:] = 0.0
         divergence[:] = 0.0
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             for i in range(b):
                 for j in range(b):
@@ -273,14 +288,24 @@ def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
         scalar[:] = 0.0
         flux[:] = 0.0
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
-            for i in range(b):
-                for j in range(b):
-                    scalar[i, j] += dx * rule.value[q, i] * rule.value[q, j]
+            for i in range(len(sizes.basis)):
+                left = dx * rule.value[q, i]
+                for j in range(len(sizes.basis)):
+                    scalar[i, j] += left * rule.value[q, j]
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_flux(flux, rule, q, gradient, dx, sizes)
         scatter_masses(mass, divergence, starts, ranks[cell], cells.nodes[cell], scalar, flux, sizes)
+
+
+@njit(cache=True)
+def add_flux(flux, rule, q, gradient, dx, sizes):
+    """Add -ψₖ ∂φᵢ/∂xₐ at point ``q`` of a ``rule`` to ``flux`` (b d, d+1)."""
+    flat = gradient.ravel()
+    for i in range(len(sizes.entries)):
+        for k in range(len(sizes.axes) + 1):
+            flux[i, k] -= dx * flat[i] * rule.linear[q, k]
 
 
 @njit(cache=True)
@@ -311,7 +336,7 @@ def apply_mass(points, cells, tables, field):
     for number, cell in enumerate(cells.curved):
         mass[:] = 0.0
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             for i in range(len(mass)):
                 for j in range(len(mass)):
@@ -349,7 +374,7 @@ def strain_square(points, cells, tables, velocity):
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             physical_gradients(rule, q, inverse, gradient, tables.sizes)
             total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope, tables.sizes)
