@@ -61,7 +61,7 @@ class SparseProjection:
         self._axes = velocities // masses.mass.shape[0]
         self._diagonal = self._collect.power(2) @ np.repeat(masses.mass.diagonal(), self._axes)
         self._laplacian = sparse.csr_array(self._divergence @ (self._gradient / self._diagonal[:, None]))
-        self._factors = factorise(self._laplacian, None, orderings)
+        self._factors = factorise(self._laplacian, None, orderings, positive=True)
 
     def product(self, first: FloatArray, second: FloatArray) -> float:
         """(first, second) of two velocities (nodes, d)."""
@@ -113,7 +113,8 @@ class SparseProjection:
     def _without_divergence(self, held: FloatArray, x: FloatArray) -> FloatArray:
         """The nearest x in D's measure, to round-off."""
         divergence = self._divergence @ x + self._whole_divergence @ held.ravel()
-        return x - self._force(divergence, _REFINED) / self._diagonal
+        nearest: FloatArray = x - self._force(divergence, _REFINED) / self._diagonal
+        return nearest
 
     def _force(self, divergence: FloatArray, refined: int = 0) -> FloatArray:
         """Bᵀp whose velocities D⁻¹Bᵀp have this ``divergence``, by factors ``refined`` so many times."""

@@ -36,14 +36,15 @@ class ReferenceTables(NamedTuple):
     """What the integrals over a cell take from scikit-fem.
 
     On straight cells ``cubic`` is exact for convection (degree 5), ``flat`` for stress and divergence (2), ``mass``
-    (b, b) is the exact mass matrix. On curved ones ``curved`` is exact for all of convection and divergence
-    (2 + 1 + 2 + (d - 1) of the map's adjugate), and so for the balance of energy.
+    (b, b) is the exact mass matrix and ``flux`` (b, d, d+1) has -(∂φ/∂X, ψ). On curved ones ``curved`` is exact for all
+    of convection and divergence (2 + 1 + 2 + (d - 1) of the map's adjugate), and so for the balance of energy.
     """
 
     cubic: Rule
     flat: Rule
     curved: Rule
     mass: FloatArray
+    flux: FloatArray
     sizes: Sizes
 
 
@@ -91,7 +92,9 @@ def reference_tables(dimension: int) -> ReferenceTables:
     cubic = tabulate(5 if dimension == 2 else 6)
     mass = np.einsum("q,qi,qj->ij", cubic.weight, cubic.value, cubic.value)
     sizes = Sizes(tuple(range(count)), tuple(range(dimension)), tuple(range(count * dimension)))
-    return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass, sizes)
+    flat = tabulate(2)
+    flux = -np.einsum("q,qir,qk->irk", flat.weight, flat.gradient, flat.linear)
+    return ReferenceTables(cubic, flat, tabulate(6 if dimension == 2 else 8), mass, flux, sizes)
 
 
 class CompiledAssembly:

@@ -277,11 +277,13 @@ def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
         for i in range(b):
             for j in range(b):
                 scalar[i, j] = det * tables.mass[i, j]
-        flux[:] = 0.0
-        rule = tables.flat
-        for q in range(len(rule.weight)):
-            physical_gradients(rule, q, inverse, gradient, sizes)
-            add_flux(flux, rule, q, gradient, rule.weight[q] * det, sizes)
+        for i in range(len(sizes.basis)):
+            for a in range(len(sizes.axes)):
+                for k in range(len(sizes.axes) + 1):
+                    total = 0.0
+                    for r in range(len(sizes.axes)):
+                        total += inverse[r, a] * tables.flux[i, r, k]
+                    flux[i * d + a, k] = det * total
         scatter_masses(mass, divergence, starts, ranks[cell], nodes, scalar, flux, sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
@@ -295,17 +297,11 @@ def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
                 for j in range(len(sizes.basis)):
                     scalar[i, j] += left * rule.value[q, j]
             physical_gradients(rule, q, inverse, gradient, sizes)
-            add_flux(flux, rule, q, gradient, dx, sizes)
+            for i in range(len(sizes.basis)):
+                for a in range(len(sizes.axes)):
+                    for k in range(len(sizes.axes) + 1):
+                        flux[i * d + a, k] -= dx * gradient[i, a] * rule.linear[q, k]
         scatter_masses(mass, divergence, starts, ranks[cell], cells.nodes[cell], scalar, flux, sizes)
-
-
-@njit(cache=True)
-def add_flux(flux, rule, q, gradient, dx, sizes):
-    """Add -ψₖ ∂φᵢ/∂xₐ at point ``q`` of a ``rule`` to ``flux`` (b d, d+1)."""
-    flat = gradient.ravel()
-    for i in range(len(sizes.entries)):
-        for k in range(len(sizes.axes) + 1):
-            flux[i, k] -= dx * flat[i] * rule.linear[q, k]
 
 
 @njit(cache=True)

@@ -34,7 +34,9 @@ class CahouetChabard:
         self._terms: list[Factors] = []
         orderings = Orderings()  # both have the same pattern
         if parts.viscosity > 0.0:
-            self._terms.append(factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings))
+            self._terms.append(
+                factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings, positive=True)
+            )
         if parts.inertia > 0.0:
             held = _open_vertices(constraint)
             grounded = _decoupled(laplacian, np.unique(self._which[held]))
@@ -42,7 +44,8 @@ class CahouetChabard:
                 pin = np.zeros(self._count)
                 pin[self._which[self._pin]] = laplacian.diagonal()[self._which[self._pin]]
                 grounded = grounded + sparse.diags_array(pin)
-            self._terms.append(factorise(sparse.csr_array(grounded / parts.inertia), None, orderings))
+            term = sparse.csr_array(grounded / parts.inertia)
+            self._terms.append(factorise(term, None, orderings, positive=True))
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         """S⁻¹ of the pressures' residual (pressures,), without the one that is pinned."""
