@@ -174,7 +174,7 @@ class Pardiso:
 
     def _part(self, matrix: sparse.csr_array) -> sparse.csr_array:
         """What PARDISO reads of it: one triangle where it is positive."""
-        return sparse.triu(matrix, format="csr") if self.settings.positive else matrix
+        return _upper_triangle(matrix) if self.settings.positive else matrix
 
     def _take(self, matrix: sparse.csr_array) -> None:
         self._scale = np.empty(matrix.shape[0])
@@ -189,6 +189,14 @@ class Pardiso:
             raise MemoryError(f"PARDISO cannot allocate factors of {len(self._scale)} unknowns")
         if error:
             raise PardisoError(f"PARDISO's error {error} in phase {phase}")
+
+
+def _upper_triangle(matrix: sparse.csr_array) -> sparse.csr_array:
+    """Rows stay sorted; SciPy takes three times as long."""
+    row = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+    kept = matrix.indices >= row
+    starts = np.searchsorted(row[kept], np.arange(matrix.shape[0] + 1))
+    return sparse.csr_array((matrix.data[kept], matrix.indices[kept], starts), shape=matrix.shape)
 
 
 @functools.cache

@@ -21,7 +21,7 @@ _MOST = 200
 """Iterations. On straight cells they do not depend on the mesh: 6 a digit in 3D, 3 in 2D."""
 
 _REFINED = 2
-"""How often what factors in single precision give is refined, to round-off."""
+"""How often what factors in single precision give is refined, where the iteration starts and ends."""
 
 
 class Masses(NamedTuple):
