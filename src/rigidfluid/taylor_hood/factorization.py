@@ -13,7 +13,7 @@ from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.pardiso import CHOLESKY, EXACT, FAST, SAFE, Orderings, Pardiso, PardisoError, Settings
+from rigidfluid.taylor_hood.pardiso import EXACT, FAST, SAFE, Orderings, Pardiso, PardisoError
 
 _WORTHLESS = 1e-3
 """Relative residual of a known solution, from which on factors are not used."""
@@ -57,14 +57,8 @@ def _singular(matrix: sparse.csr_array, error: Exception) -> StepRejected:
     )
 
 
-def factorise(
-    matrix: sparse.csr_array,
-    before: Factors | None = None,
-    orderings: Orderings | None = None,
-    *,
-    positive: bool = False,
-) -> Factors:
-    """Factorise a regular matrix, or one that is symmetric and ``positive``; raises StepRejected where it is singular.
+def factorise(matrix: sparse.csr_array, before: Factors | None = None, orderings: Orderings | None = None) -> Factors:
+    """Factorise a regular matrix; raises StepRejected where it is singular.
 
     The factors ``before`` are used up: where they are of the same pattern, PARDISO does not analyse it again. Else the
     order of elimination is taken from ``orderings``, if it is there.
@@ -78,12 +72,12 @@ def factorise(
             analysed = before
         else:
             before.free()
-    return _by_pardiso(matrix, analysed, orderings or Orderings(), CHOLESKY if positive else FAST)
+    return _by_pardiso(matrix, analysed, orderings or Orderings())
 
 
-def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: Orderings, first: Settings) -> Pardiso:
-    """By the ``first`` settings that serve; the last ones need not be tried, since there are no others."""
-    for settings in (first, EXACT, SAFE):
+def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: Orderings) -> Pardiso:
+    """By the first of its settings that serves; the last one need not be tried, since there is no other."""
+    for settings in (FAST, EXACT, SAFE):
         try:
             factors, analysed = analysed or Pardiso(matrix, settings, orderings), None
             factors.factorise(matrix)

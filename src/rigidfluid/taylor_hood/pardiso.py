@@ -18,7 +18,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.mkl import installed_mkl
 
 _ANALYSE, _FACTORISE, _SOLVE, _FREE = 11, 22, 33, -1
-_UNSYMMETRIC, _POSITIVE = 11, 2
+_UNSYMMETRIC = 11
 _SAME_BITS = 2  # MKL_CBWR_AUTO
 
 # Places in PARDISO's iparm, from 0.
@@ -41,25 +41,16 @@ class PardisoError(Exception):
 @dataclass(frozen=True)
 class Settings:
     """How factors are made: their ``precision``; whether unknowns are ``matched`` by the matrix' numbers first; pivots
-    below 10^-``pivots`` are replaced; whether the matrix is known to be symmetric and ``positive``."""
+    below 10^-``pivots`` are replaced."""
 
     precision: type[np.floating[Any]]
     matched: bool
     pivots: int
-    positive: bool = False
-
-    @property
-    def kind(self) -> int:
-        """PARDISO's number of such matrices."""
-        return _POSITIVE if self.positive else _UNSYMMETRIC
 
 
 FAST = Settings(np.float32, matched=False, pivots=6)
 """Half the memory and two thirds of the time of double precision. The analysis asks for the pattern alone, so that it
 serves all matrices that have it."""
-
-CHOLESKY = Settings(np.float32, matched=False, pivots=6, positive=True)
-"""Half the entries of the fast ones, and half the time."""
 
 EXACT, SAFE = Settings(np.float64, matched=True, pivots=13), Settings(np.float64, matched=False, pivots=8)
 """Where the fast ones are worthless: matched first; and with greater numbers in the place of small pivots."""
@@ -85,7 +76,7 @@ class Orderings:
 
 
 class Pardiso:
-    """LU or Cholesky factors of matrices of one pattern, which is analysed once.
+    """LU factors of matrices of one pattern, which is analysed once.
 
     Rows and columns are scaled first, so that single precision serves whatever the units are. There is no iterative
     refinement, which the Krylov iteration around the factors does better.
@@ -109,7 +100,6 @@ class Pardiso:
 
     def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
         self.settings = settings
-        matrix = self._part(matrix)
         self._rows, self._columns = (each.astype(np.int32, copy=False) for each in (matrix.indptr, matrix.indices))
         self._handle = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
@@ -118,7 +108,7 @@ class Pardiso:
         self._iparm[_SINGLE] = settings.precision is np.float32
         self._iparm[[_ENTRIES, _MFLOP]] = -1  # to be counted
         self._take(matrix)
-        self.free = weakref.finalize(self, _call, self._handle, self._iparm, settings.kind, _FREE, len(self._scale))
+        self.free = weakref.finalize(self, _call, self._handle, self._iparm, _FREE, len(self._scale))
         """Gives PARDISO's memory back."""
         self._analyse(orderings)
 
@@ -144,7 +134,7 @@ class Pardiso:
 
     def factorise(self, matrix: sparse.csr_array) -> None:
         """Factors of a matrix of this pattern; raises PardisoError where it is singular."""
-        self._take(self._part(matrix))
+        self._take(matrix)
         self._run(_FACTORISE)
 
     def solve(self, right_side: FloatArray) -> FloatArray:
@@ -172,10 +162,6 @@ class Pardiso:
         if not self.settings.matched:
             orderings.keep(self._rows, self._columns, self._order)
 
-    def _part(self, matrix: sparse.csr_array) -> sparse.csr_array:
-        """What PARDISO reads of it: one triangle where it is positive."""
-        return _upper_triangle(matrix) if self.settings.positive else matrix
-
     def _take(self, matrix: sparse.csr_array) -> None:
         self._scale = np.empty(matrix.shape[0])
         self._data = np.empty(matrix.nnz, dtype=self.settings.precision)
@@ -184,19 +170,11 @@ class Pardiso:
     def _run(self, phase: int, *sides: Any) -> None:
         """A phase, with the right sides and where their solutions go."""
         matrix = self._data, self._rows, self._columns, self._order
-        error = _call(self._handle, self._iparm, self.settings.kind, phase, len(self._scale), matrix, sides)
+        error = _call(self._handle, self._iparm, phase, len(self._scale), matrix, sides)
         if error == _OUT_OF_MEMORY:
             raise MemoryError(f"PARDISO cannot allocate factors of {len(self._scale)} unknowns")
         if error:
             raise PardisoError(f"PARDISO's error {error} in phase {phase}")
-
-
-def _upper_triangle(matrix: sparse.csr_array) -> sparse.csr_array:
-    """Rows stay sorted; SciPy takes three times as long."""
-    row = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-    kept = matrix.indices >= row
-    starts = np.searchsorted(row[kept], np.arange(matrix.shape[0] + 1))
-    return sparse.csr_array((matrix.data[kept], matrix.indices[kept], starts), shape=matrix.shape)
 
 
 @functools.cache
@@ -215,10 +193,10 @@ def _found_by_pypardiso() -> Any:
     return PyPardisoSolver().libmkl
 
 
-def _call(handle: Any, iparm: Any, matrix_kind: int, phase: int, size: int, matrix: Any = (), sides: Any = ()) -> int:
+def _call(handle: Any, iparm: Any, phase: int, size: int, matrix: Any = (), sides: Any = ()) -> int:
     """One phase; the error code, zero if there is none."""
     columns = sides[0].shape[1] if sides and sides[0].ndim == 2 else 1
-    integers = (ctypes.c_int32(each) for each in (1, 1, matrix_kind, phase, size, columns, 0))
+    integers = (ctypes.c_int32(each) for each in (1, 1, _UNSYMMETRIC, phase, size, columns, 0))
     copies, number, kind, phases, sizes, right_sides, silent = map(ctypes.byref, integers)
     data, rows, places, order = map(_address, matrix or (None,) * 4)
     given, found = map(_address, sides or (None,) * 2)

@@ -61,7 +61,7 @@ class SparseProjection:
         self._axes = velocities // masses.mass.shape[0]
         self._diagonal = self._collect.power(2) @ np.repeat(masses.mass.diagonal(), self._axes)
         self._laplacian = sparse.csr_array(self._divergence @ (self._gradient / self._diagonal[:, None]))
-        self._factors = factorise(self._laplacian, None, orderings, positive=True)
+        self._factors = factorise(self._laplacian, None, orderings)
 
     def product(self, first: FloatArray, second: FloatArray) -> float:
         """(first, second) of two velocities (nodes, d)."""

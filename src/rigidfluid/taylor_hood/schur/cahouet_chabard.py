@@ -34,9 +34,7 @@ class CahouetChabard:
         self._terms: list[Factors] = []
         orderings = Orderings()  # both have the same pattern
         if parts.viscosity > 0.0:
-            self._terms.append(
-                factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings, positive=True)
-            )
+            self._terms.append(factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings))
         if parts.inertia > 0.0:
             held = _open_vertices(constraint)
             grounded = _decoupled(laplacian, np.unique(self._which[held]))
@@ -44,8 +42,7 @@ class CahouetChabard:
                 pin = np.zeros(self._count)
                 pin[self._which[self._pin]] = laplacian.diagonal()[self._which[self._pin]]
                 grounded = grounded + sparse.diags_array(pin)
-            term = sparse.csr_array(grounded / parts.inertia)
-            self._terms.append(factorise(term, None, orderings, positive=True))
+            self._terms.append(factorise(sparse.csr_array(grounded / parts.inertia), None, orderings))
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         """S⁻¹ of the pressures' residual (pressures,), without the one that is pinned."""
