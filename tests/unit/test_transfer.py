@@ -1,6 +1,5 @@
 """A state on another mesh, and one after a blow: no divergence, bodies rigid, what is lost is known."""
 
-
 import numpy as np
 import pytest
 from falling import falling_disk
