@@ -43,6 +43,7 @@ class CoupledProjection:
     def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
         target, matrix = self._target, self._matrix
         none, still = np.zeros(matrix.mass_matrix.shape[:2]), np.zeros(target.numbering.vertices)
+        of_guess = target.mass_times(matrix.points, guess)
         system = CoupledSystem(
             matrix,
             load=target.mass_times(matrix.points, velocity),
@@ -52,6 +53,7 @@ class CoupledProjection:
             pressure=still,
             twist=none,
             pressure_jump=still,
+            scale=float(np.sqrt(target.surfaces.ranks.sum(np.sum(of_guess**2)))),
         )
         return target.solve(system, tolerance).velocity
 
