@@ -13,9 +13,10 @@ from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.discretisation import kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.projection import SparseProjection
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
-from rigidfluid.taylor_hood.transfer import _with_energy
+from rigidfluid.taylor_hood.transfer import _scale
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 
@@ -101,12 +102,10 @@ def test_what_projections_leave_is_no_burst_of_pressure(solver, monkeypatch):
     simulation.step()
     saved = simulation.save()
     found = after_a_new_mesh(simulation, saved)
-    solve = SparseDiscretisation.solve
-
-    def sharper(self, system, tolerance):
-        return solve(self, system, 1e-12 if system.matrix.viscosity == 0.0 else tolerance)
-
-    monkeypatch.setattr(SparseDiscretisation, "solve", sharper)
+    nearest = SparseProjection.nearest
+    monkeypatch.setattr(
+        SparseProjection, "nearest", lambda self, velocity, _, guess: nearest(self, velocity, 1e-12, guess)
+    )
     best = after_a_new_mesh(simulation, saved)
     assert found.mesh.cells is not saved.state.mesh.cells
     pressure = best.fluid["pressure"]
@@ -115,21 +114,23 @@ def test_what_projections_leave_is_no_burst_of_pressure(solver, monkeypatch):
 
 
 def test_a_transfer_assembles_one_matrix_for_each_level(spinning, monkeypatch):
-    made, assemble = [], SparseDiscretisation._assemble
-    monkeypatch.setattr(SparseDiscretisation, "_assemble", lambda self, m: made.append(m) or assemble(self, m))
+    made, assemble = [], CompiledAssembly.masses
+    monkeypatch.setattr(CompiledAssembly, "masses", lambda self, points: made.append(points) or assemble(self, points))
+    monkeypatch.setattr(SparseDiscretisation, "solve", None)
     spinning.mesh_updater.needs_remesh = lambda *_: True
-    spinning.mesh_updater.remesh_if_needed(spinning.state, spinning.state.pose)
-    assert [matrix.viscosity for matrix in made] == [0.0, 0.0]
+    after = spinning.mesh_updater.remesh_if_needed(spinning.state, spinning.state.pose)
+    for found, points in zip(made, (after.mesh.geometry, after.fluid["points_previous"]), strict=True):
+        np.testing.assert_array_equal(found, points)
 
 
 def test_flow_beside_potential_flow_is_scaled_by_a_quarter_at_most(spinning):
     """Where the new mesh cannot hold the energy, the rest is lost or gained, and told."""
     state = spinning.state
-    target, points, velocity = on(spinning, state.mesh), state.mesh.geometry, state.fluid["velocity"]
-    potential = np.where(target.surfaces.velocity_free, 0.0, velocity)
-    for energy, scale in ((0.0, 0.8), (1e6, 1.25)):
-        found = _with_energy(target, points, velocity, potential, energy)
-        np.testing.assert_allclose(found, potential + scale * (velocity - potential))
+    target, velocity = on(spinning, state.mesh), state.fluid["velocity"]
+    projection = target.projection(state.mesh.geometry, state.pose.position)
+    beside = np.where(target.surfaces.velocity_free, velocity, 0.0)
+    for square, scale in ((0.0, 0.8), (1e6, 1.25)):
+        assert _scale(projection, velocity, beside, square) == scale
 
 
 def test_a_blow_leaves_the_disk_its_velocity_and_the_energy_in_the_books():

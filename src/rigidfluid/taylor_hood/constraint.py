@@ -55,6 +55,7 @@ class Constraint:
         is_velocity = self.free_unknowns < self._numbering.nodes * d
         velocities = int(is_velocity.sum())
         self.twist_start = velocities
+        self.first_pressure = velocities + size * len(free_motions)
         self.unknowns = len(self.free_unknowns) + size * len(free_motions)
         self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_motions))
         nodes, self._carrier = joined([self.surfaces.motion_nodes[motion] for motion in free_motions])

@@ -12,6 +12,19 @@ from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
+class Projection(Protocol):
+    """Onto velocities without divergence on one geometry, unchanged on bodies and prescribed faces."""
+
+    def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
+        """That nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards, (nodes, d).
+
+        To a relative residual of ``tolerance``; raises StepRejected.
+        """
+
+    def product(self, first: FloatArray, second: FloatArray) -> float:
+        """(first, second) of velocities (nodes, d)."""
+
+
 class Discretisation(Protocol):
     """P2–P1 on one topology, or on one process' part of it; ``unknowns`` of all."""
 
@@ -25,6 +38,9 @@ class Discretisation(Protocol):
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
+
+    def projection(self, points: FloatArray, position: FloatArray) -> Projection:
+        """On the geometry ``points`` with motions at ``position`` (N, d), all of them controlled."""
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""

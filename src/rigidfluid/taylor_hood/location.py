@@ -69,11 +69,11 @@ def _by_newton(nodes: FloatArray, targets: FloatArray) -> FloatArray:
     By Newton's method with the straight cells' matrices.
     """
     d = targets.shape[1]
-    edges = np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2)
+    inverse = np.linalg.inv(np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2))
     coordinates = np.full((len(targets), d + 1), 1.0 / (d + 1))
     for _ in range(_ITERATIONS):
         missed = targets - np.einsum("nb,nbd->nd", quadratic_basis(coordinates), nodes)
-        rest = np.linalg.solve(edges, missed[..., None])[..., 0]
+        rest = np.einsum("nij,nj->ni", inverse, missed)
         coordinates = coordinates + np.column_stack([-rest.sum(axis=1), rest])
         coordinates = np.clip(coordinates, -_BEYOND, 1.0 + _BEYOND)
         if np.abs(rest).max(initial=0.0) < _ENOUGH:

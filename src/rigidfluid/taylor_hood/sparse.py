@@ -15,7 +15,9 @@ from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.pardiso import Orderings
 from rigidfluid.taylor_hood.parts import Parts
+from rigidfluid.taylor_hood.projection import Masses, SparseProjection
 from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
@@ -41,6 +43,9 @@ class Assembly(Protocol):
 
         ``advection`` a and ``flow`` c, (nodes, d), already hold the density. All have one sparsity pattern, zeros kept.
         """
+
+    def masses(self, points: FloatArray) -> Masses:
+        """The parts of K for projections: both patterns are the same for all ``points``, zeros kept."""
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function, (nodes, d)."""
@@ -109,6 +114,7 @@ class SparseDiscretisation:
         self._solvers = {True: solver, False: inviscid_solver}
         self._latest: dict[bool, _Assembled] = {}
         self._reduced: ReducedMatrix | None = None
+        self._orderings = Orderings()
         self._made_from: dict[bool, CoupledMatrix] = {}
 
     @property
@@ -117,6 +123,10 @@ class SparseDiscretisation:
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         return self._assembly.mass_times(points, field)
+
+    def projection(self, points: FloatArray, position: FloatArray) -> SparseProjection:
+        self._constraint.place(self.numbering.node_points(points), position)
+        return SparseProjection(self._assembly.masses(points), self._constraint, self._orderings)
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return self._assembly.strain_square(points, velocity)

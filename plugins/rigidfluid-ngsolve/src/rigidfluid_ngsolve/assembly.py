@@ -10,6 +10,7 @@ from scipy import sparse
 
 from rigidfluid.api import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.projection import Masses
 from rigidfluid_ngsolve.mesh import NodeMesh
 
 _ORDER_OF_FIELD = 2
@@ -70,6 +71,12 @@ class FormAssembly:
             self._order, self._indices, self._indptr = _renumbered(self.numbering, columns, starts)
         data = np.asarray(entries)[self._order]
         return sparse.csr_array((data, self._indices, self._indptr), shape=(self.numbering.unknowns,) * 2)
+
+    def masses(self, points: FloatArray) -> Masses:
+        n, d = self.numbering, self.numbering.dimension
+        still, velocities = np.zeros((n.nodes, d)), n.nodes * d
+        whole = self.matrix(points, 1.0, 0.0, still, still)
+        return Masses(whole[:velocities:d, :velocities:d], whole[velocities:, :velocities])
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         self._take(points, field)

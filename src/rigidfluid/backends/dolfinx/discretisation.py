@@ -16,6 +16,7 @@ from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
@@ -87,6 +88,9 @@ class PetscDiscretisation:
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         self._topology.space.move(points)
         return self._topology.forms.mass_times(field)
+
+    def projection(self, points: FloatArray, position: FloatArray) -> CoupledProjection:
+        return CoupledProjection(self, points, position)
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         self._topology.space.move(points)

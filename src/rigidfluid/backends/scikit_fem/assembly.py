@@ -11,6 +11,7 @@ from scipy import sparse
 from rigidfluid.backends.scikit_fem import kernels
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.projection import Masses
 
 
 class Rule(NamedTuple):
@@ -35,14 +36,15 @@ class ReferenceTables(NamedTuple):
     """What the integrals over a cell take from scikit-fem.
 
     On straight cells ``cubic`` is exact for convection (degree 5), ``flat`` for stress and divergence (2), ``mass``
-    (b, b) is the exact mass matrix. On curved ones ``curved`` is exact for all of convection and divergence
-    (2 + 1 + 2 + (d - 1) of the map's adjugate), and so for the balance of energy.
+    (b, b) is the exact mass matrix and ``flux`` (b, d, d+1) has -(∂φ/∂X, ψ). On curved ones ``curved`` is exact for all
+    of convection and divergence (2 + 1 + 2 + (d - 1) of the map's adjugate), and so for the balance of energy.
     """
 
     cubic: Rule
     flat: Rule
     curved: Rule
     mass: FloatArray
+    flux: FloatArray
     sizes: Sizes
 
 
@@ -90,7 +92,9 @@ def reference_tables(dimension: int) -> ReferenceTables:
     cubic = tabulate(5 if dimension == 2 else 6)
     mass = np.einsum("q,qi,qj->ij", cubic.weight, cubic.value, cubic.value)
     sizes = Sizes(tuple(range(count)), tuple(range(dimension)), tuple(range(count * dimension)))
-    return ReferenceTables(cubic, tabulate(2), tabulate(6 if dimension == 2 else 8), mass, sizes)
+    flat = tabulate(2)
+    flux = -np.einsum("q,qir,qk->irk", flat.weight, flat.gradient, flat.linear)
+    return ReferenceTables(cubic, flat, tabulate(6 if dimension == 2 else 8), mass, flux, sizes)
 
 
 class CompiledAssembly:
@@ -113,6 +117,19 @@ class CompiledAssembly:
         kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
 
+    def masses(self, points: FloatArray) -> Masses:
+        n, d = self.numbering, self.numbering.dimension
+        mass, divergence = np.zeros(len(self._around)), np.zeros(d * self._starts[n.vertices])
+        kernels.assemble_masses(
+            mass, divergence, points, self._cells(points), self._starts, self._sparsity.ranks, self._tables
+        )
+        columns = (d * self._around[: self._starts[n.vertices], None] + np.arange(d, dtype=np.int32)).ravel()
+        rows = d * self._starts[: n.vertices + 1]
+        return Masses(
+            sparse.csr_array((mass, self._around, self._starts), shape=(n.nodes,) * 2),
+            sparse.csr_array((divergence, columns, rows), shape=(n.vertices, n.nodes * d)),
+        )
+
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         load: FloatArray = kernels.apply_mass(points, self._cells(points), self._tables, field)
         return load
@@ -126,13 +143,7 @@ class CompiledAssembly:
 
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension
-        width = n.cell_nodes.shape[1]
-        nodes = n.cell_nodes.astype(np.int32)
-        rows, columns = np.repeat(nodes, width, axis=1).ravel(), np.tile(nodes, (1, width)).ravel()
-        ones = np.ones(len(rows), dtype=np.int8)
-        pattern = sparse.coo_array((ones, (rows, columns)), shape=(n.nodes,) * 2).tocsr()
-        pattern.sort_indices()
-        ranks = kernels.neighbour_ranks(pattern.indptr, pattern.indices, n.cell_nodes)
-        indptr, self._indices = kernels.expand(pattern.indptr, pattern.indices, n.vertices, d)
-        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(pattern.indptr)
+        self._starts, self._around, ranks = kernels.neighbours(n.cell_nodes, n.nodes)
+        indptr, self._indices = kernels.expand(self._starts, self._around, n.vertices, d)
+        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(self._starts)
         self._sparsity = Sparsity(indptr, vertices_around, ranks, n.nodes * d)

@@ -15,17 +15,40 @@ from numba import njit
 
 
 @njit(cache=True)
-def neighbour_ranks(indptr, indices, cell_nodes):
-    """Of each cell's nodes i and j the place of j among the neighbours of i, which are sorted; (M, b, b)."""
+def neighbours(cell_nodes, nodes):
+    """The pattern that nodes have with nodes, (nodes + 1,) and (entries,) sorted; and of each cell's nodes i and j the
+    place of j among the neighbours of i, (M, b, b)."""
     cells, width = cell_nodes.shape
-    result = np.empty((cells, width, width), np.int16)
+    first = np.zeros(nodes + 1, np.int64)
     for cell in range(cells):
         for i in range(width):
-            node = cell_nodes[cell, i]
-            around = indices[indptr[node] : indptr[node + 1]]
+            first[cell_nodes[cell, i] + 1] += 1
+    first = np.cumsum(first)
+    around, filled = np.empty(cells * width, np.int64), first[:-1].copy()  # each node's places in ``cell_nodes``
+    for cell in range(cells):
+        for i in range(width):
+            around[filled[cell_nodes[cell, i]]] = cell * width + i
+            filled[cell_nodes[cell, i]] += 1
+    indptr, indices = np.zeros(nodes + 1, np.int32), np.empty(cells * width * width, np.int32)
+    ranks, rank = np.empty((cells, width, width), np.int16), np.full(nodes, -1, np.int16)
+    for node in range(nodes):
+        count = indptr[node]
+        for place in around[first[node] : first[node + 1]]:
+            for other in cell_nodes[place // width]:
+                if rank[other] < 0:
+                    rank[other] = 0
+                    indices[count] = other
+                    count += 1
+        indptr[node + 1] = count
+        found = indices[indptr[node] : count]
+        found.sort()
+        for number in range(len(found)):
+            rank[found[number]] = number
+        for place in around[first[node] : first[node + 1]]:
             for j in range(width):
-                result[cell, i, j] = np.searchsorted(around, cell_nodes[cell, j])
-    return result
+                ranks[place // width, place % width, j] = rank[cell_nodes[place // width, j]]
+        rank[found] = -1
+    return indptr, indices[: indptr[-1]].copy(), ranks
 
 
 @njit(cache=True)
@@ -86,13 +109,13 @@ def straight_jacobian(points, nodes, jacobian, sizes):
 
 
 @njit(cache=True)
-def curved_jacobian(node_points, reference, jacobian):
+def curved_jacobian(node_points, reference, jacobian, sizes):
     """Write ∂x/∂X of one cell with nodes at ``node_points`` (b, d) into ``jacobian`` (d, d), where the basis has the
     gradients ``reference`` (b, d)."""
     jacobian[:] = 0.0
-    for node in range(len(reference)):
-        for i in range(node_points.shape[1]):
-            for j in range(reference.shape[1]):
+    for node in range(len(sizes.basis)):
+        for i in range(len(sizes.axes)):
+            for j in range(len(sizes.axes)):
                 jacobian[i, j] += node_points[node, i] * reference[node, j]
 
 
@@ -225,7 +248,7 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
         stress[:] = 0.0
         divergence[:] = 0.0
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             for i in range(b):
                 for j in range(b):
@@ -237,6 +260,62 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes)
         scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
+
+
+@njit(cache=True)
+def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
+    """Add (φⱼ, φᵢ) to ``mass`` and -(∇·u, q) to ``divergence``, on the pattern that nodes have with nodes: row i starts
+    at ``starts`` (nodes + 1,), and at d times that in the divergence, which has d columns for each neighbour."""
+    sizes = tables.sizes
+    b, d = len(sizes.basis), len(sizes.axes)
+    jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
+    scalar, flux = np.empty((b, b)), np.empty((b * d, d + 1))
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian, sizes)
+        det = inverted(jacobian, inverse)
+        for i in range(b):
+            for j in range(b):
+                scalar[i, j] = det * tables.mass[i, j]
+        for i in range(len(sizes.basis)):
+            for a in range(len(sizes.axes)):
+                for k in range(len(sizes.axes) + 1):
+                    total = 0.0
+                    for r in range(len(sizes.axes)):
+                        total += inverse[r, a] * tables.flux[i, r, k]
+                    flux[i * d + a, k] = det * total
+        scatter_masses(mass, divergence, starts, ranks[cell], nodes, scalar, flux, sizes)
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        scalar[:] = 0.0
+        flux[:] = 0.0
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
+            dx = rule.weight[q] * inverted(jacobian, inverse)
+            for i in range(len(sizes.basis)):
+                left = dx * rule.value[q, i]
+                for j in range(len(sizes.basis)):
+                    scalar[i, j] += left * rule.value[q, j]
+            physical_gradients(rule, q, inverse, gradient, sizes)
+            for i in range(len(sizes.basis)):
+                for a in range(len(sizes.axes)):
+                    for k in range(len(sizes.axes) + 1):
+                        flux[i * d + a, k] -= dx * gradient[i, a] * rule.linear[q, k]
+        scatter_masses(mass, divergence, starts, ranks[cell], cells.nodes[cell], scalar, flux, sizes)
+
+
+@njit(cache=True)
+def scatter_masses(mass, divergence, starts, ranks, nodes, scalar, flux, sizes):
+    """Add one cell's ``scalar`` (b, b) and ``flux`` (b d, d+1) to the entries of `assemble_masses`."""
+    b, d = len(sizes.basis), len(sizes.axes)
+    for i in range(b):
+        for j in range(b):
+            mass[starts[nodes[i]] + ranks[i, j]] += scalar[i, j]
+    for k in range(d + 1):
+        for j in range(b):
+            place = d * (starts[nodes[k]] + ranks[k, j])
+            for a in range(d):
+                divergence[place + a] += flux[j * d + a, k]
 
 
 @njit(cache=True)
@@ -253,7 +332,7 @@ def apply_mass(points, cells, tables, field):
     for number, cell in enumerate(cells.curved):
         mass[:] = 0.0
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             for i in range(len(mass)):
                 for j in range(len(mass)):
@@ -291,7 +370,7 @@ def strain_square(points, cells, tables, velocity):
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         for q in range(len(rule.weight)):
-            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian)
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
             dx = rule.weight[q] * inverted(jacobian, inverse)
             physical_gradients(rule, q, inverse, gradient, tables.sizes)
             total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope, tables.sizes)

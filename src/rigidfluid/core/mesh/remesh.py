@@ -17,7 +17,7 @@ from rigidfluid.core.mesh.meshing import generate_mesh, put_back
 from rigidfluid.core.mesh.mmg import run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
-from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, distinct_edges, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
@@ -215,7 +215,6 @@ def lowest_quality(mesh: Mesh) -> float:
 
 def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
     """Longest edge over the size wanted at its middle, max |x_b - x_a| / h [1]."""
-    pairs = np.array(list(combinations(range(mesh.cells.shape[1]), 2)))
-    edges = np.unique(np.sort(mesh.cells[:, pairs].reshape(-1, 2), axis=1), axis=0)
+    edges = distinct_edges(mesh.cells)
     start, end = mesh.points[edges[:, 0]], mesh.points[edges[:, 1]]
     return float(np.max(np.linalg.norm(end - start, axis=1) / size_at(0.5 * (start + end))))

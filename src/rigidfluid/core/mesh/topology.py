@@ -28,10 +28,15 @@ def boundary_facets(cells: IntArray) -> IntArray:
     """
     corners = np.sort(cells, axis=1)
     picks = np.array(list(combinations(range(cells.shape[1]), cells.shape[1] - 1)))
-    facets = corners[:, picks].reshape(-1, cells.shape[1] - 1)
-    unique, count = np.unique(facets, axis=0, return_counts=True)
-    boundary: IntArray = unique[count == 1]
-    return boundary
+    facets, count = _distinct(corners[:, picks].reshape(-1, cells.shape[1] - 1))
+    return facets[count == 1]
+
+
+def distinct_edges(cells: IntArray) -> IntArray:
+    """Edges of cells, (E, 2), vertex numbers ascending, rows in lexicographic order."""
+    corners = np.sort(cells, axis=1)
+    pairs = np.array(list(combinations(range(cells.shape[1]), 2)))
+    return _distinct(corners[:, pairs].reshape(-1, 2))[0]
 
 
 def orient(mesh: Mesh) -> Mesh:
@@ -69,7 +74,7 @@ def check_mesh(mesh: Mesh, quality: float) -> None:
     MeshError
         When the listed facets are not exactly the boundary of the cells, or the worst cell is too bad.
     """
-    listed = np.unique(np.sort(mesh.facets, axis=1), axis=0)
+    listed, _ = _distinct(np.sort(mesh.facets, axis=1))
     boundary = boundary_facets(mesh.cells)
     if len(listed) != len(mesh.facets) or not np.array_equal(listed, boundary):
         found = f"{len(mesh.facets)} marked facets around cells with {len(boundary)} boundary facets"
@@ -78,3 +83,13 @@ def check_mesh(mesh: Mesh, quality: float) -> None:
     if worst[cell] <= quality:
         where = np.array2string(mesh.points[mesh.cells[cell]].mean(axis=0), precision=4)
         raise MeshError(f"mesh near {where}", f"a cell of quality {worst[cell]:.3g}", f"more than {quality:g}", REMEDY)
+
+
+def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
+    """The distinct ``rows`` (N, k) in lexicographic order, and how often each is there.
+
+    By one number for each row: NumPy takes ten times as long to sort rows.
+    """
+    shape = (int(rows.max(initial=0)) + 1,) * rows.shape[1]
+    keys, count = np.unique(np.ravel_multi_index(tuple(rows.T), shape), return_counts=True)
+    return np.stack(np.unravel_index(keys, shape), axis=1), count

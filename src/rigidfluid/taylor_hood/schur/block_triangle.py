@@ -62,7 +62,8 @@ class BlockTriangle:
         bodies, width, _ = parts.masses.shape
         turning = constraint.twist_start + np.arange(bodies)[:, None] * width + np.arange(d, width)
         operator = constraint.operator[:, turning.ravel()]
-        rows = (sparse.csr_array(operator.T) @ parts.stiffness).T  # K is symmetric but for convection
+        on_bodies = np.flatnonzero(np.diff(operator.indptr))
+        rows = (operator[on_bodies].T @ parts.stiffness[on_bodies]).T  # K is symmetric but for convection
         columns = sparse.csr_array(constraint.transposed[: self._moving] @ sparse.csr_array(rows))
         k = width - d
         blocks = np.zeros((bodies, k, k))

@@ -8,6 +8,7 @@ from scipy import sparse
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.factorization import Factors, factorise
+from rigidfluid.taylor_hood.pardiso import Orderings
 from rigidfluid.taylor_hood.parts import Parts
 
 
@@ -31,8 +32,9 @@ class CahouetChabard:
         numbering = constraint.surfaces.numbering
         mass, laplacian = _integrals(numbering.cells, parts.points[: numbering.vertices], self._which, self._count)
         self._terms: list[Factors] = []
+        orderings = Orderings()  # both have the same pattern
         if parts.viscosity > 0.0:
-            self._terms.append(factorise(sparse.csr_array(mass / (2.0 * parts.viscosity))))
+            self._terms.append(factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings))
         if parts.inertia > 0.0:
             held = _open_vertices(constraint)
             grounded = _decoupled(laplacian, np.unique(self._which[held]))
@@ -40,7 +42,7 @@ class CahouetChabard:
                 pin = np.zeros(self._count)
                 pin[self._which[self._pin]] = laplacian.diagonal()[self._which[self._pin]]
                 grounded = grounded + sparse.diags_array(pin)
-            self._terms.append(factorise(sparse.csr_array(grounded / parts.inertia)))
+            self._terms.append(factorise(sparse.csr_array(grounded / parts.inertia), None, orderings))
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         """S⁻¹ of the pressures' residual (pressures,), without the one that is pinned."""
