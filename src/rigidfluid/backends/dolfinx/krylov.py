@@ -205,6 +205,15 @@ class LaggedSchur(Krylov):
         pressure.getPC().setPythonContext(CahouetChabard(matrix.schur()))
         if velocity.getPC().getType() == "mg":  # the scene may have chosen another
             _two_levels(velocity, linear_functions(matrix.constraint, matrix.operator))
+        self._drop_whole(ksp)
+
+    def _drop_whole(self, ksp: Any) -> None:
+        """Free the matrix: the blocks are copies of it."""
+        shell, _ = ksp.getOperators()
+        ksp.getPC().setReusePreconditioner(True)
+        ksp.setOperators(shell, shell)
+        self._assembled.destroy()
+        self._assembled = None
 
 
 def _two_levels(velocity: Any, basis: Any) -> None:
