@@ -120,20 +120,71 @@ def test_bodies_apart_have_no_entries_in_common():
     """Each would be a new nonzero of PETSc's matrix: many bodies would take minutes."""
     scene = scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}})
     run = after(scene, 1)
-    _, matrix = run.system.backend._solver._ksp.getOperators()
-    first = matrix.getSize()[0] - len(run.state.mesh.points) - 12  # twists are between velocities and pressures
+    velocity, _ = run.system.backend._solver._ksp.getPC().getFieldSplitSchurGetSubKSP()
+    _, matrix = velocity.getOperators()
+    first = matrix.getSize()[0] - 12  # twists come after velocities
     columns, _ = matrix.getRow(first)
     assert set(range(first, first + 6)) <= set(columns)
     assert not set(range(first + 6, first + 12)) & set(columns)
 
 
-def iterations(size, step):
-    scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
-    scene["mesh"], scene["time"]["step"] = {"size": 3 * size, "size_body": size}, step
-    simulation = after(scene_from_dict(scene), 2)
-    return simulation.system.backend._solver._ksp.getIterationNumber()
+def iterations(scene, steps=2):
+    return after(scene_from_dict(scene), steps).system.backend._solver._ksp.getIterationNumber()
 
 
 def test_iterations_depend_neither_on_the_cells_nor_on_the_step():
-    counts = [iterations(size, step) for size in (0.25, 0.125) for step in (0.0002, 0.002, 0.02)]
+    scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
+    meshes = [{"size": 3 * size, "size_body": size} for size in (0.25, 0.125)]
+    steps = [scene["time"] | {"step": step} for step in (0.0002, 0.002, 0.02)]
+    counts = [iterations({**scene, "mesh": mesh, "time": step}) for mesh in meshes for step in steps]
     assert max(counts) <= min(2 * min(counts), 45), counts
+
+
+def test_a_narrow_gap_takes_few_iterations():
+    """Viscosity dominates in its cells, mass in most others."""
+    fluid = BALLS["fluid"] | {"backend": "dolfinx", "viscosity": 2.0, "tolerance": 1e-8}
+    times = {"time": {"step": 0.05, "end": 0.25}, "output": {"every": 0.25}}
+    scene = {**BALLS, **times, "fluid": fluid, "mesh": {"size": 1.0, "size_body": 0.2}, "boundary": []}
+    balls = [{**BALLS["body"][1], "position": [1.0, 0.25 + gap, 1.0]} for gap in (0.25, 0.02)]
+    counts = [iterations({**scene, "body": [ball]}, 1) for ball in balls]
+    assert max(counts) <= 12, counts
+
+
+def test_linear_functions_have_what_is_linear_along_each_edge():
+    """Also between a free node and a body that turns."""
+    from rigidfluid.backends.dolfinx.linear_functions import linear_functions
+
+    run = after(scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}}), 1)
+    _, discretisation = run.system.backend._latest
+    constraint, space = discretisation._constraint, discretisation._topology.space
+    operator = constraint.operator(space.numbering.node_points(run.state.mesh.geometry), run.state.pose.position)
+    basis = linear_functions(constraint, operator)
+    coarse, fine = basis.createVecs()
+    coarse.array[:] = np.random.default_rng(0).normal(size=coarse.size)
+    basis.mult(coarse, fine)
+    whole, everything = operator.createVecs()
+    whole.array[: fine.size] = fine.array
+    operator.mult(whole, everything)
+    velocity = space.velocities(everything.array[: space.owned_nodes.size * 3])
+    vertices, free = space.numbering.vertices, discretisation.surfaces.velocity_free
+    expected = space.numbering.at_nodes(velocity[:vertices])
+    np.testing.assert_allclose(velocity[vertices:][free[vertices:]], expected[vertices:][free[vertices:]], atol=1e-12)
+    np.testing.assert_array_equal(fine.array[-12:], coarse.array[-12:])  # twists are themselves
+
+
+def test_a_projection_in_the_place_of_another_is_that_made_anew():
+    from petsc4py import PETSc
+    from scipy import sparse
+
+    from rigidfluid.backends.dolfinx.products import projected
+
+    random = np.random.default_rng(0)
+    parts = [sparse.random_array(shape, density=0.2, format="csr", rng=random) for shape in ((40, 40), (40, 25))]
+    made = None
+    for factor in (1.0, 3.0):
+        matrix, basis = (
+            PETSc.Mat().createAIJ(part.shape, csr=(part.indptr, part.indices, factor * part.data)) for part in parts
+        )
+        made = projected(matrix, basis, made)
+        expected = factor**3 * (parts[1].T @ parts[0] @ parts[1]).toarray()
+        np.testing.assert_allclose(made[:, :], expected, rtol=1e-12, atol=1e-12)

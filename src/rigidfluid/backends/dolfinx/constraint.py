@@ -30,15 +30,17 @@ class DistributedConstraint:
         Motions whose twist is given.
     pressure_pin : int or None
         A vertex of this process where the pressure is zero.
+
+    ``velocity_free`` says which of the process' own velocities are free.
     """
 
     def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pressure_pin: int | None) -> None:
-        self._space, ranks = space, surfaces.ranks
+        self.space, ranks = space, surfaces.ranks
         d = space.numbering.dimension
         self._free_motions = np.flatnonzero(~controlled)
-        self._velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
+        self.velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
         self._pressure_free = space.owned_vertices != (-1 if pressure_pin is None else pressure_pin)
-        self.velocities, self.pressures = int(self._velocity_free.sum()), int(self._pressure_free.sum())
+        self.velocities, self.pressures = int(self.velocity_free.sum()), int(self._pressure_free.sum())
         width = d + (1 if d == 2 else 3)
         self.twists = width * len(self._free_motions) if ranks.is_root else 0
         self.columns = self.velocities + self.twists + self.pressures
@@ -58,25 +60,31 @@ class DistributedConstraint:
     @property
     def rows(self) -> int:
         """Velocities and pressures that this process owns."""
-        return len(self._velocity_free) + len(self._pressure_free)
+        return len(self.velocity_free) + len(self._pressure_free)
 
     @property
     def twist_slice(self) -> slice:
         """The twists among this process' columns; empty but on the root."""
         return slice(self.velocities, self.velocities + self.twists)
 
+    @property
+    def is_coarse(self) -> BoolArray:
+        """Which of this process' free velocities and twists linear functions have: at vertices, and all twists."""
+        at_vertices = np.repeat(self.space.owned_nodes < self.space.numbering.vertices, self.space.numbering.dimension)
+        return np.concatenate([at_vertices[self.velocity_free], np.ones(self.twists, dtype=bool)])
+
     def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
         """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d).
 
         One matrix is filled again and again, as products with it are told from others by it.
         """
-        d = self._space.numbering.dimension
-        arm = node_points[self._space.owned_nodes[self._carried]] - position[self._free_motions][self._carrier]
+        d = self.space.numbering.dimension
+        arm = node_points[self.space.owned_nodes[self._carried]] - position[self._free_motions][self._carrier]
         ones = np.ones(len(self._order) - len(CROSS[d]) * len(arm))
         data = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])[self._order]
         if self._operator is None:
             sizes = (self.rows, None), (self.columns, None)
-            self._operator = PETSc.Mat().createAIJ(sizes, csr=(*self._pattern, data), comm=self._space.communicator)
+            self._operator = PETSc.Mat().createAIJ(sizes, csr=(*self._pattern, data), comm=self.space.communicator)
         else:
             self._operator.setValuesCSR(*self._pattern, data)
         self._operator.assemble()
@@ -84,19 +92,19 @@ class DistributedConstraint:
 
     def reduced(self, velocity: FloatArray, twist: FloatArray, pressure: FloatArray) -> FloatArray:
         """This process' unknowns from fields on nodes and vertices and all motions' twists (N, d+k)."""
-        space = self._space
-        on_owned = velocity[space.owned_nodes].ravel()[self._velocity_free]
+        space = self.space
+        on_owned = velocity[space.owned_nodes].ravel()[self.velocity_free]
         twists = twist[self._free_motions].ravel() if self.twists else np.zeros(0)
         return np.concatenate([on_owned, twists, pressure[space.owned_vertices][self._pressure_free]])
 
     def _free_columns(self) -> tuple[IntArray, IntArray]:
-        free = np.flatnonzero(np.concatenate([self._velocity_free, self._pressure_free]))
+        free = np.flatnonzero(np.concatenate([self.velocity_free, self._pressure_free]))
         number = np.arange(len(free)) + np.where(np.arange(len(free)) < self.velocities, 0, self.twists)
         return free, self.first_column + number
 
     def _lay_out(self) -> None:
         """Ones of what is free, U and ω × r of u = U + ω × r: the rows of P, and where its values come from."""
-        d, at, first = self._space.numbering.dimension, self._carried, self._first_twist + self._width * self._carrier
+        d, at, first = self.space.numbering.dimension, self._carried, self._first_twist + self._width * self._carrier
         free, number = self._free_columns()
         row = np.concatenate([free, *(at * d + a for a in range(d)), *(at * d + a for a, *_ in CROSS[d])])
         column = np.concatenate([number, *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])])

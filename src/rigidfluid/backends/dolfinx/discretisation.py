@@ -141,7 +141,7 @@ class PetscDiscretisation:
         topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection, m.flow)
         operator = constraint.operator(m.node_points, m.position)
         inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
-        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, m.points, m.inertia, m.viscosity)
+        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, m.inertia, m.viscosity)
         return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
+from rigidfluid.backends.dolfinx.products import projected
 from rigidfluid.backends.dolfinx.schur import SchurData
 from rigidfluid.core.model.types import FloatArray
 
@@ -64,7 +65,7 @@ class Reduced:
 
     def as_matrix(self, before: Any = None) -> Any:
         """A PETSc matrix, in the place of one that was made ``before`` with the same constraint, if there is one."""
-        made = self.matrix.PtAP(self.operator, result=before)
+        made = projected(self.matrix, self.operator, before)
         made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         twists = self.constraint.twist_slice
         numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column

@@ -1,9 +1,9 @@
-"""Preconditioners of the blocks: Cahouet–Chabard for the Schur complement, Jacobi or multigrid for the velocities."""
+"""Preconditioner of the Schur complement."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from dolfinx.fem.petsc import assemble_matrix
@@ -11,21 +11,14 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.model.types import BoolArray
 from rigidfluid.taylor_hood.surfaces import Surfaces
-
-if TYPE_CHECKING:
-    from rigidfluid.backends.dolfinx.reduced import Reduced
-
-MASS_DOMINATES = 1e-3
-"""From this inertia · h² / viscosity on, h of the smallest cell, Jacobi serves the velocities better than multigrid."""
 
 
 @dataclass(frozen=True)
 class SchurData:
     """What the Schur complement is made of at present: weights ``inertia`` of (u, v) and ``viscosity`` of
-    (∇u + ∇uᵀ, ∇v), the matrices' forms, ``cell`` the smallest cell's size [length].
+    (∇u + ∇uᵀ, ∇v), the matrices' forms.
 
     ``open`` (owned vertices,): where a pressure is prescribed; ``enclosed``: nowhere.
     """
@@ -33,36 +26,18 @@ class SchurData:
     inertia: float
     viscosity: float
     forms: Forms
-    cell: float
     open: BoolArray
     enclosed: bool
 
 
-def schur_data(
-    space: Space, forms: Forms, surfaces: Surfaces, points: FloatArray, inertia: float, viscosity: float
-) -> SchurData:
-    """For the mesh at ``points``."""
+def schur_data(space: Space, forms: Forms, surfaces: Surfaces, inertia: float, viscosity: float) -> SchurData:
+    """For the mesh where it is now."""
     numbering = space.numbering
-    volume = surfaces.ranks.min(np.abs(cell_volumes(points, numbering.cells)).min())
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
         if face.condition.type == "pressure":
             is_open[face.nodes[face.nodes < numbering.vertices]] = True
-    cell = float(volume ** (1.0 / numbering.dimension))
-    return SchurData(inertia, viscosity, forms, cell, is_open[space.owned_vertices], surfaces.enclosed)
-
-
-_MULTIGRID: dict[str, str | int] = {"pc_type": "gamg", "pc_gamg_aggressive_coarsening": 0}
-"""PETSc's own choice squares the graph, where a body's row joins all nodes on it: fifteen times the memory."""
-
-
-def velocity_options(matrix: Reduced) -> dict[str, str | int]:
-    """By mass dominance."""
-    schur = matrix.schur()
-    by_mass = schur.inertia * schur.cell**2 > MASS_DOMINATES * schur.viscosity
-    jacobi: dict[str, str | int] = {"pc_type": "jacobi"}
-    options = jacobi if by_mass else _MULTIGRID
-    return {f"fieldsplit_velocity_{key}": value for key, value in options.items()}
+    return SchurData(inertia, viscosity, forms, is_open[space.owned_vertices], surfaces.enclosed)
 
 
 class CahouetChabard:
