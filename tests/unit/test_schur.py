@@ -10,10 +10,10 @@ from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood import sparse_backend
+from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
-from rigidfluid.taylor_hood.schur.three_sides import times
 
 BALLS = {
     "scene": {"name": "two_balls", "dimension": 3},

@@ -1,20 +1,17 @@
 """The velocity without divergence that is nearest to another one, by conjugate gradients along such velocities."""
 
-# numba compiles for the types that come; annotations would be a second, unchecked signature.
-# mypy: disallow-untyped-defs=False
-
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.factorization import factorise
+from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.pardiso import Orderings
 
 _MOST = 200
@@ -65,7 +62,7 @@ class SparseProjection:
 
     def product(self, first: FloatArray, second: FloatArray) -> float:
         """(first, second) of two velocities (nodes, d)."""
-        return float(np.sum(first * _times(self._mass, second)))
+        return float(np.sum(first * times(self._mass, second)))
 
     def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
         """The velocity (nodes, d) without divergence nearest to ``velocity``, which it equals where that is held.
@@ -129,20 +126,4 @@ class SparseProjection:
 
     def _load(self, velocity: FloatArray) -> FloatArray:
         """(velocity, v) of the free test functions."""
-        return np.asarray(self._collect @ _times(self._mass, velocity).ravel())
-
-
-def _times(matrix: sparse.csr_array, field: FloatArray) -> FloatArray:
-    """The matrix (N, N) times a field (N, d); SciPy takes three times as long."""
-    result = np.zeros_like(field)
-    _add_product(result, matrix.indptr, matrix.indices, matrix.data, field, tuple(range(field.shape[1])))
-    return result
-
-
-@njit(cache=True)
-def _add_product(result, rows, columns, data, field, axes):
-    for row in range(len(rows) - 1):
-        for slot in range(rows[row], rows[row + 1]):
-            column, entry = columns[slot], data[slot]
-            for axis in range(len(axes)):
-                result[row, axis] += entry * field[column, axis]
+        return np.asarray(self._collect @ times(self._mass, velocity).ravel())

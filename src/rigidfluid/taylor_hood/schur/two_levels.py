@@ -11,9 +11,9 @@ from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import factorise
+from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.scalar_space import ScalarSpace
-from rigidfluid.taylor_hood.schur.three_sides import times
 
 
 class TwoLevels:
