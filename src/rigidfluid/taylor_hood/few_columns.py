@@ -1,4 +1,4 @@
-"""A sparse matrix times a few columns, as a field's components: entries are read once, and SciPy takes twice as long."""
+"""A sparse matrix times a few columns, as components of a field, in half of the time that SciPy takes."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
