@@ -206,10 +206,10 @@ def about_paper(fall: Fall) -> str:
         turned = "thrown back" if floor[np.argmin(floor) :].max() > law_range else "held"
         ends = f"is {turned}: the smallest gap is {floor.min():.4f} cm, at {fall.time[np.argmin(floor)]:.3f} s"
     else:
+        meshes = f": {failed} new meshes for it could not be made" if failed else ""
         ends = (
             f"the run ends at {fall.time[-1]:.3f} s, at a gap of {floor[-1]:.4f} cm that still closes by {closing:.1f} "
-            f"cm/s: {failed} new meshes for it could not be made. From a gap of {law_range / 3.0:.4f} cm on the law "
-            f"grows weaker"
+            f"cm/s{meshes}. From a gap of {law_range / 3.0:.4f} cm on the law grows weaker"
         )
     return f"""\
 ## The law with the paper's number
