@@ -29,7 +29,8 @@ def boundary_facets(cells: IntArray) -> IntArray:
     corners = np.sort(cells, axis=1)
     picks = np.array(list(combinations(range(cells.shape[1]), cells.shape[1] - 1)))
     facets, count = _distinct(corners[:, picks].reshape(-1, cells.shape[1] - 1))
-    return facets[count == 1]
+    boundary: IntArray = facets[count == 1]
+    return boundary
 
 
 def distinct_edges(cells: IntArray) -> IntArray:
