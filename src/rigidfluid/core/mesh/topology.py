@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.core.model.types import BoolArray, IntArray, Mesh
 from rigidfluid.errors import MeshError
 
 REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."
@@ -46,6 +46,18 @@ def orient(mesh: Mesh) -> Mesh:
     inverted = cell_volumes(mesh.points, cells) < 0.0
     cells[inverted, :2] = cells[inverted, 1::-1]
     return Mesh(mesh.points, cells, mesh.facets, mesh.markers)
+
+
+def share_no_cell(cells: IntArray, chosen: IntArray, vertices: int) -> BoolArray:
+    """Which of the ``chosen`` vertices (E,) no cell has two of: those that come first of them in all their cells; the
+    ``vertices`` are counted."""
+    rank = np.full(vertices, len(chosen))
+    np.minimum.at(rank, chosen, np.arange(len(chosen)))
+    least = rank[cells].min(axis=1)
+    around = np.full(vertices, len(chosen))
+    for corner in cells.T:
+        np.minimum.at(around, corner, least)
+    return np.asarray(around[chosen] == np.arange(len(chosen)))
 
 
 def check_mesh(mesh: Mesh, quality: float) -> None:
