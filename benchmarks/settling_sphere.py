@@ -28,7 +28,7 @@ from rigidfluid.core.setup.load import load_scene
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 
 STORE = Path(__file__).with_suffix(".json")
-SCENE = Path(__file__).parents[1] / "scenes" / "falling_sphere.toml"
+SCENE = Path(__file__).resolve().parents[1] / "scenes" / "falling_sphere.toml"
 # (size, size_body, growth) of the mesh: 55,000, 160,000 and more than 300,000 unknowns.
 MESHES = ((1.2, 0.3, 0.2), (0.8, 0.16, 0.2), (0.58, 0.11, 0.2))
 STEPS = (0.1, 0.01, 0.001)
@@ -190,7 +190,7 @@ def main() -> None:
                 if speaks:
                     print(line(row), flush=True)
                 if speaks and arguments.page:
-                    write_page(arguments.page, page(stored([row])))
+                    write_page(arguments.page, page(stored([row])), [SCENE])
 
 
 if __name__ == "__main__":
