@@ -208,7 +208,7 @@ def about_paper(fall: Fall) -> str:
     else:
         meshes = f": {failed} new meshes for it could not be made" if failed else ""
         ends = (
-            f"the run ends at {fall.time[-1]:.3f} s, at a gap of {floor[-1]:.4f} cm that still closes by {closing:.1f} "
+            f"the run ends at {fall.time[-1]:.3f} s, at a gap of {floor[-1]:.2g} cm that still closes by {closing:.1f} "
             f"cm/s{meshes}. From a gap of {law_range / 3.0:.4f} cm on the law grows weaker"
         )
     return f"""\
