@@ -491,8 +491,9 @@ def _print_energy(energy: Mapping[str, Any]) -> None:
     put_in, friction = energy["put_in"], ""
     if energy["path_friction"] and put_in:
         friction = f", friction of impacts {per_cent(energy['path_friction'] / put_in)} at most"
+    stabilised = f", {per_cent(energy['grad_div'])} by stabilisation" if energy["grad_div"] else ""
     _print(
-        f"energy: {per_cent(energy['created'])} created, {per_cent(energy['lost'])} lost{friction}, "
+        f"energy: {per_cent(energy['created'])} created, {per_cent(energy['lost'])} lost{friction}{stabilised}, "
         f"{per_cent(energy['unaccounted'])} unaccounted for at the end, of {_figure(put_in)} put in"
     )
     for warning in energy["warnings"]:

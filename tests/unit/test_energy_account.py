@@ -18,7 +18,7 @@ def table(**columns):
     energy |= {name: np.array(values, dtype=float) for name, values in columns.items()}
     stored = energy["kinetic"] + energy["contact"]
     incoming = energy["gravity"] + energy["boundary"] + energy["control"]
-    outgoing = energy["dissipation"] + energy["contact_loss"] + energy["transfer_loss"]
+    outgoing = energy["dissipation"] + energy["grad_div_loss"] + energy["contact_loss"] + energy["transfer_loss"]
     energy["residual"] = incoming - outgoing - (stored - stored[0])
     energy["residual_steps"] = energy["residual"] - sum(energy[name] for name in PARTS if name != "residual_steps")
     return energy

@@ -74,8 +74,8 @@ def test_a_projection_that_does_not_converge_rejects_the_step(given, monkeypatch
 def test_masses_and_divergence_are_those_of_the_whole_matrix(given):
     target, points, *_ = given
     assembly, d = target._assembly, target.numbering.dimension
-    still = np.zeros((target.numbering.nodes, d))
-    whole, velocities = assembly.matrix(points, 1.0, 0.0, still, still), still.size
+    still, none = np.zeros((target.numbering.nodes, d)), np.zeros(len(target.numbering.cells))
+    whole, velocities = assembly.matrix(points, 1.0, 0.0, still, still, none), still.size
     masses = assembly.masses(points)
     for found, expected in (
         (masses.mass, whole[:velocities:d, :velocities:d]),

@@ -113,8 +113,8 @@ def test_without_viscosity_the_pattern_is_the_same(steps):
     """One order of elimination serves both."""
     discretisation, made = steps
     matrix, _, masses, operator, built = made[-1]
-    still = np.zeros_like(matrix.flow)
-    stiffness = discretisation._assembly.matrix(matrix.points, matrix.inertia, 0.0, still, still)
+    still, none = np.zeros_like(matrix.flow), np.zeros(len(discretisation.numbering.cells))
+    stiffness = discretisation._assembly.matrix(matrix.points, matrix.inertia, 0.0, still, still, none)
     discretisation._constraint.place(matrix.node_points, matrix.position)
     inviscid = discretisation._reduced_matrix(stiffness).filled(stiffness, masses)
     wanted = expected(discretisation, stiffness, masses, operator)

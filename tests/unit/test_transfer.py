@@ -35,8 +35,8 @@ def on(simulation, mesh):
 
 
 def divergence(discretisation, points, velocity):
-    still = np.zeros_like(velocity)
-    matrix = CompiledAssembly(discretisation.numbering).matrix(points, 0.0, 0.0, still, still)
+    still, none = np.zeros_like(velocity), np.zeros(len(discretisation.numbering.cells))
+    matrix = CompiledAssembly(discretisation.numbering).matrix(points, 0.0, 0.0, still, still, none)
     return (matrix @ np.concatenate([velocity.ravel(), np.zeros(discretisation.numbering.vertices)]))[velocity.size :]
 
 

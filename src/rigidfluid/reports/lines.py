@@ -122,6 +122,7 @@ def energy_plot(results: Results) -> Figure:
     supplied = initial + energy["gravity"] + energy["boundary"] + energy["control"]
     shares = {
         "dissipated": (energy["dissipation"], ORANGE),
+        "taken by stabilisation": (energy["grad_div_loss"], SKY),
         "kinetic": (energy["kinetic"], BLUE),
         "in contacts": (energy["contact"], GREEN),
         "lost in transfer": (energy["transfer_loss"], PURPLE),

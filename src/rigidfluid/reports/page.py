@@ -18,6 +18,7 @@ _ENERGIES = {
     "boundary": "supplied through the faces",
     "control": "supplied by what drives controlled bodies",
     "dissipation": "dissipated by viscosity",
+    "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
     "transfer_loss": "lost in transfers between meshes",
     "kinetic": "kinetic, at the end",
     "contact": "stored in contacts, at the end",
@@ -33,6 +34,7 @@ _ENERGIES = {
 _SHARES = {
     "created": "created from nowhere at most, by any time",
     "lost": "lost at most, by any time, beyond friction of impacts",
+    "grad_div": "taken by grad-div stabilisation, until the end",
     "unaccounted": "not accounted for, at the end",
 }
 

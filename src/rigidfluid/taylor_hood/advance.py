@@ -11,8 +11,10 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_leak, face_power, pressure_load
+from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
+from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
@@ -77,6 +79,7 @@ def advance(
         ),
         link_force=link_force,
         leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
+        grad_div=grad_div_dissipation(discretisation, matrix, velocity),
     )
 
 
@@ -91,6 +94,9 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     points = present if step.points is None else step.points
     expected = e0 * present + e1 * before if step.points is None else points
     node_points, flow = numbering.node_points(points), density * extrapolated(fluid, step.extrapolation)
+    frame = np.zeros(problem.dimension)
+    if density > 0.0:
+        frame = container_velocity(discretisation.surfaces, step.time, node_points)
     mesh_velocity = numbering.node_points(d0 * expected + d1 * present + d2 * before)
     matrix = CoupledMatrix(
         points=points,
@@ -98,10 +104,11 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         inertia=density * d0,
         viscosity=problem.dynamic_viscosity,
         advection=flow - density * mesh_velocity,
-        flow=flow,
+        flow=flow - density * frame,
         position=step.pose.position if step.kinematics is None else step.kinematics.centre,
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
+        frame=frame,
     )
     if density == 0.0 or d0 == 0.0:
         return matrix
@@ -109,7 +116,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     if matrix.at_once is None or not step.turning.any():
         return matrix
     turned = density * discretisation.velocity_by(matrix.at_once, step.turning, _TURNING_TOLERANCE)
-    return replace(matrix, advection=matrix.advection + turned, flow=flow + turned)
+    return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned)
 
 
 def _system(
@@ -119,7 +126,8 @@ def _system(
     node_points, controlled = matrix.node_points, matrix.controlled
     _, d1, d2 = step.derivative
     e0, e1 = step.extrapolation
-    density_of_load = -problem.inert_density * (d1 * fluid["velocity"] + d2 * fluid["velocity_previous"])
+    history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
+    density_of_load = -problem.inert_density * history - matrix.inertia * matrix.frame
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
     expected = motion_twist(step.kinematics, e0 * fluid["twist"] + e1 * fluid["twist_previous"])

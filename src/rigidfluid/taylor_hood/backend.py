@@ -43,8 +43,8 @@ class TaylorHoodBackend(FluidBackend):
 
     Each step solves
 
-    ρ(d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, v) + ρ(((u* - w)·∇)uⁿ⁺¹ + ½(∇·u*)uⁿ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) - (p, ∇·v) = (f, v),
-    (∇·u, q) = 0
+    ρ(d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, v) + ρ(((u* - w)·∇)uⁿ⁺¹ + ½(∇·u*)uⁿ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) + (γ∇·u, ∇·v) - (p, ∇·v)
+    = (f, v), (∇·u, q) = 0
 
     on the new mesh, with u* extrapolated and w the mesh velocity by the same derivative weights, for velocities that
     move rigidly with each body (Maury 1999, doi:10.1006/jcph.1999.6342), plus the bodies' own inertia.

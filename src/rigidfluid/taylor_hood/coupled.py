@@ -13,13 +13,14 @@ from rigidfluid.core.model.types import BoolArray, FloatArray
 class CoupledMatrix:
     """Of u and p on the nodes and vertices of one process' part, and of the twists of the bodies that are free:
 
-    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q)
+    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q)
 
-    for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies.
+    for velocities that move rigidly with each body, plus ``mass_matrix`` · twist on the bodies; γ follows from c, see
+    `grad_div`. All this is of u - ``frame`` (d,), the container's velocity; its inertia is in the load.
 
     ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
-    (nodes, d), already hold the density: c is what flows, a is c less the mesh's motion; the term of ∇·c keeps
-    convection from making energy.
+    (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
+    ∇·c keeps convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
     the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
     """
@@ -33,6 +34,7 @@ class CoupledMatrix:
     position: FloatArray
     mass_matrix: FloatArray
     controlled: BoolArray
+    frame: FloatArray
     at_once: CoupledMatrix | None = None
 
 
@@ -41,6 +43,7 @@ def with_masses(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
     still = np.zeros_like(matrix.advection)
     masses = replace(
         matrix,
+        frame=np.zeros_like(matrix.frame),
         inertia=matrix.inertia / d0,
         viscosity=0.0,
         advection=still,

@@ -38,6 +38,7 @@ class CoupledProjection:
             position=position,
             mass_matrix=np.zeros((motions, width, width)),
             controlled=np.ones(motions, dtype=bool),
+            frame=np.zeros(numbering.dimension),
         )
 
     def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:

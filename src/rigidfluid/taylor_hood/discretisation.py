@@ -45,6 +45,9 @@ class Discretisation(Protocol):
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
 
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        """∫ w (∇·u)² over this process' cells, ``weight`` w (M,) of each."""
+
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """To a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
 

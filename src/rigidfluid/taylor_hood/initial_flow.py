@@ -11,6 +11,7 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twis
 from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.taylor_hood.advance import centred
 from rigidfluid.taylor_hood.boundary import pressure_load
+from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.state import at_rest
@@ -42,7 +43,8 @@ def formula_flow(
 def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
     """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow:
 
-    ρ((uᵏ·∇)uᵏ⁺¹ + ½(∇·uᵏ)uᵏ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) - (p, ∇·v) = (f, v), (∇·uᵏ⁺¹, q) = 0, with the values at time 0.
+    ρ((uᵏ·∇)uᵏ⁺¹ + ½(∇·uᵏ)uᵏ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) + (γ∇·u, ∇·v) - (p, ∇·v) = (f, v), (∇·uᵏ⁺¹, q) = 0, with the
+    values at time 0.
 
     Raises
     ------
@@ -66,7 +68,9 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
         position=pose.position,
         mass_matrix=np.zeros((*bodies.shape, bodies.shape[1])),
         controlled=np.ones(len(bodies), dtype=bool),
+        frame=np.zeros(problem.dimension),
     )
+    frame = container_velocity(target.surfaces, 0.0, node_points)
     given = _given(target, node_points, state)
     jump = target.surfaces.pressure_jump(0.0, mesh.points)
     system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies, jump)
@@ -78,7 +82,7 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
             raise _not_steady(target, node_points, system.velocity, str(error)) from None
         change = _relative(target, mesh.geometry, solution.velocity - system.velocity, solution.velocity)
         flow = problem.inert_density * solution.velocity
-        matrix = replace(matrix, advection=flow, flow=flow)
+        matrix = replace(matrix, advection=flow, flow=flow - problem.inert_density * frame, frame=frame)
         system = replace(system, matrix=matrix, velocity=solution.velocity, pressure=solution.pressure, again=True)
         if change < STEADY or problem.inert_density == 0.0:
             break

@@ -15,8 +15,8 @@ from rigidfluid.taylor_hood.constraint import Constraint
 class Parts:
     """Of Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the free motions.
 
-    ``points`` (vertices, d) of the mesh; weights ``inertia`` of (u, v) and ``viscosity`` of (∇u + ∇uᵀ, ∇v) in K;
-    ``reduced()``: the matrix itself.
+    ``points`` (vertices, d) of the mesh; weights ``inertia`` of (u, v), ``viscosity`` of (∇u + ∇uᵀ, ∇v) and
+    ``grad_div`` (M,) of (∇·u, ∇·v) in K; ``reduced()``: the matrix itself.
     """
 
     constraint: Constraint
@@ -25,4 +25,5 @@ class Parts:
     points: FloatArray
     inertia: float
     viscosity: float
+    grad_div: FloatArray
     reduced: Callable[[], sparse.csr_array]

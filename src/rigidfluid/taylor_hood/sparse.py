@@ -13,6 +13,7 @@ from scipy import sparse
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.pardiso import Orderings
@@ -25,7 +26,7 @@ _OUTDATED = 0.1
 """Relative difference of the BDF weights of two steps, from which on the factors of one serve the other badly: with
 those of BDF1 a step of BDF2 takes 5 to 7 iterations."""
 
-_ORIGIN = ("points", "inertia", "viscosity", "advection", "flow", "position", "mass_matrix")
+_ORIGIN = ("points", "inertia", "viscosity", "advection", "flow", "position", "mass_matrix", "frame")
 """Fields of a `CoupledMatrix` that the others follow from."""
 
 _NAMES = {True: "step", False: "masses"}
@@ -37,11 +38,20 @@ class Assembly(Protocol):
     numbering: Numbering
 
     def matrix(
-        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+        self,
+        points: FloatArray,
+        inertia: float,
+        viscosity: float,
+        advection: FloatArray,
+        flow: FloatArray,
+        grad_div: FloatArray,
     ) -> sparse.csr_array:
-        """K: inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+        """Matrix K of
 
-        ``advection`` a and ``flow`` c, (nodes, d), already hold the density. All have one sparsity pattern, zeros kept.
+        inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q).
+
+        ``advection`` a and ``flow`` c, (nodes, d), already hold the density. ``grad_div`` γ (M,) [viscosity] is zero
+        where ``viscosity`` is. All matrices have one sparsity pattern, zeros kept.
         """
 
     def masses(self, points: FloatArray) -> Masses:
@@ -52,6 +62,9 @@ class Assembly(Protocol):
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ)."""
+
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        """∫ w (∇·u)², ``weight`` w (M,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,13 +144,17 @@ class SparseDiscretisation:
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return self._assembly.strain_square(points, velocity)
 
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        return self._assembly.divergence_square(points, velocity, weight)
+
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
-        """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
+        """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
         assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
         given, load = np.concatenate([s.given.ravel(), s.pressure_jump]), np.concatenate([s.load.ravel(), zero])
-        known = assembled.stiffness @ given if given.any() else 0.0
+        frame = np.concatenate([np.broadcast_to(s.matrix.frame, s.given.shape).ravel(), zero])
+        known = assembled.stiffness @ (given - frame) if given.any() or frame.any() else 0.0
         right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
@@ -151,7 +168,7 @@ class SparseDiscretisation:
         twist = s.twist.copy()
         twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
         velocity, pressure = np.split(everything, [s.given.size])
-        reaction = (assembled.stiffness @ everything - load)[: s.given.size]
+        reaction = (assembled.stiffness @ (everything - frame) - load)[: s.given.size]
         jump_load = None
         if s.pressure_jump.any():
             of_jump = assembled.stiffness @ np.concatenate([np.zeros(s.given.size), s.pressure_jump])
@@ -199,6 +216,7 @@ class SparseDiscretisation:
             position=memory["position"],
             mass_matrix=memory["mass_matrix"],
             controlled=self._constraint.controlled,
+            frame=memory["frame"],
         )
 
     def _answers(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
@@ -217,7 +235,8 @@ class SparseDiscretisation:
         return self._latest[viscous]
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
-        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow)
+        grad_div = grad_div_coefficient(self.numbering, m)
+        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow, grad_div)
         self._constraint.place(m.node_points, m.position)
         return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled])
 
@@ -229,7 +248,8 @@ class SparseDiscretisation:
         def reduced() -> sparse.csr_array:
             return self._reduced_matrix(stiffness).filled(stiffness, masses)
 
-        return Parts(self._constraint, stiffness, masses, m.points, m.inertia, m.viscosity, reduced)
+        grad_div = grad_div_coefficient(self.numbering, m)
+        return Parts(self._constraint, stiffness, masses, m.points, m.inertia, m.viscosity, grad_div, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
         """Whether its factors are of a step of another length or order, which serve badly."""

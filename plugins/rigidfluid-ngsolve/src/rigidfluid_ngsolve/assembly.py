@@ -31,7 +31,7 @@ class FormAssembly:
     numbering : Numbering
         The topology.
     convection : bool
-        Whether there is any; without it ``advection`` and ``flow`` are not read.
+        Whether there is any; without it ``advection``, ``flow`` and ``grad_div`` are not read.
     """
 
     def __init__(self, numbering: Numbering, convection: bool) -> None:
@@ -42,6 +42,7 @@ class FormAssembly:
         velocities = ngs.VectorNodalFESpace(self._mesh.ngsolve, order=2)
         space = velocities * ngs.H1(self._mesh.ngsolve, order=1)
         self._field, self._flow = ngs.GridFunction(velocities), ngs.GridFunction(velocities)
+        self._weight = ngs.GridFunction(ngs.L2(self._mesh.ngsolve, order=0))
         self._inertia, self._viscosity = ngs.Parameter(0.0), ngs.Parameter(0.0)
         (u, p), (v, q) = space.TnT()
         # One integral each: NGSolve multiplies all functions of an integral with each other.
@@ -53,15 +54,24 @@ class FormAssembly:
         if convection:
             convected = ngs.grad(u) * self._field + 0.5 * ngs.div(self._flow) * u
             self._form += over(convected * v, _ORDER_OF_FIELD)
+            self._form += over(self._weight * ngs.div(u) * ngs.div(v))
         self._load = ngs.LinearForm(over(self._field * velocities.TestFunction(), _ORDER_OF_FIELD))
         square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
         self._strain_square = over(square, _ORDER_OF_STRAIN_SQUARE)
+        self._divergence_square = over(self._weight * ngs.div(self._field) ** 2, _ORDER_OF_STRAIN_SQUARE)
         self._order: IntArray | None = None
 
     def matrix(
-        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+        self,
+        points: FloatArray,
+        inertia: float,
+        viscosity: float,
+        advection: FloatArray,
+        flow: FloatArray,
+        grad_div: FloatArray,
     ) -> sparse.csr_array:
         self._take(points, advection)
+        self._weight.vec.FV().NumPy()[:] = grad_div
         _nodal(self._flow.vec, flow.shape[1])[:] = flow
         self._inertia.Set(inertia)
         self._viscosity.Set(viscosity)
@@ -75,7 +85,7 @@ class FormAssembly:
     def masses(self, points: FloatArray) -> Masses:
         n, d = self.numbering, self.numbering.dimension
         still, velocities = np.zeros((n.nodes, d)), n.nodes * d
-        whole = self.matrix(points, 1.0, 0.0, still, still)
+        whole = self.matrix(points, 1.0, 0.0, still, still, np.zeros(len(n.cells)))
         return Masses(whole[:velocities:d, :velocities:d], whole[velocities:, :velocities])
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
@@ -88,6 +98,13 @@ class FormAssembly:
 
         self._take(points, velocity)
         return float(Integrate(self._strain_square, self._mesh.ngsolve))
+
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        from ngsolve import Integrate
+
+        self._take(points, velocity)
+        self._weight.vec.FV().NumPy()[:] = weight
+        return float(Integrate(self._divergence_square, self._mesh.ngsolve))
 
     def _take(self, points: FloatArray, field: FloatArray) -> None:
         self._mesh.move(points)

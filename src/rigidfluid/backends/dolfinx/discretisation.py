@@ -17,6 +17,7 @@ from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
+from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
@@ -96,21 +97,26 @@ class PetscDiscretisation:
         self._topology.space.move(points)
         return self._topology.forms.strain_square(velocity)
 
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        self._topology.space.move(points)
+        return self._topology.forms.divergence_square(velocity, weight)
+
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
-        """Solve Pᵀ(K(P x + given) - load) + (M x - L on the twists) = 0 from the guess onwards."""
+        """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
         s, space, constraint = system, self._topology.space, self._constraint
         reduced, free = self._reduced(s.matrix), ~s.matrix.controlled
         none = np.zeros(len(space.owned_vertices))
         given = np.concatenate([s.given[space.owned_nodes].ravel(), none])
+        frame = np.concatenate([np.tile(s.matrix.frame, len(space.owned_nodes)), none])
         load = np.concatenate([space.owned_sums(s.load), none])
-        right_side = reduced.collect(load - reduced.times(given))
+        right_side = reduced.collect(load - reduced.times(given - frame))
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
         scale = max(self._solver.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
         enough = tolerance * scale
         correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
-        return self._solution(s, reduced, guess + correction, given, load)
+        return self._solution(s, reduced, guess + correction, given, frame, load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
@@ -138,10 +144,12 @@ class PetscDiscretisation:
         m, topology, constraint = matrix, self._topology, self._constraint
         topology.clean()
         topology.space.move(m.points)
-        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection, m.flow)
+        grad_div = grad_div_coefficient(self.numbering, m)
+        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection, m.flow, grad_div)
         operator = constraint.operator(m.node_points, m.position)
         inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
-        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, m.inertia, m.viscosity)
+        weights = m.inertia, m.viscosity, grad_div
+        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, *weights)
         return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:
@@ -150,13 +158,20 @@ class PetscDiscretisation:
         return float(self.surfaces.ranks.sum(own))
 
     def _solution(
-        self, system: CoupledSystem, reduced: Reduced, x: FloatArray, given: FloatArray, load: FloatArray
+        self,
+        system: CoupledSystem,
+        reduced: Reduced,
+        x: FloatArray,
+        given: FloatArray,
+        frame: FloatArray,
+        load: FloatArray,
     ) -> Solution:
         space, constraint, ranks = self._topology.space, self._constraint, self.surfaces.ranks
         everything = reduced.expand(x) + given
         size = space.owned_nodes.size * space.numbering.dimension
         reaction = np.zeros_like(system.given)
-        reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
+        missing = reduced.times(everything - frame) - load
+        reaction[space.owned_nodes] = missing[:size].reshape(-1, system.given.shape[1])
         twist = system.twist.copy()
         free = ~system.matrix.controlled
         twist[free] = ranks.bcast(x[constraint.twist_slice]).reshape(-1, twist.shape[1])

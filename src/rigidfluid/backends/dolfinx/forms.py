@@ -32,6 +32,7 @@ class Forms:
         u, v = ufl.TrialFunction(space.velocity), ufl.TestFunction(space.velocity)
         p, q = ufl.TrialFunction(space.pressure), ufl.TestFunction(space.pressure)
         self._field, self._flow = fem.Function(space.velocity), fem.Function(space.velocity)
+        self._weight = fem.Function(fem.functionspace(space.mesh, ("DG", 0)))
         self._inertia, self._viscosity = (fem.Constant(space.mesh, default_scalar_type(0.0)) for _ in range(2))
         over = _over_cells(space)
         convected = ufl.dot(ufl.grad(u), self._field) + 0.5 * ufl.div(self._flow) * u
@@ -39,28 +40,46 @@ class Forms:
         inertia = over(self._inertia * ufl.inner(u, v), 4)
         stress = over(self._viscosity * ufl.inner(ufl.grad(u) + ufl.grad(u).T, ufl.grad(v)), 2)
         pressure, divergence = over(-p * ufl.div(v), 2), over(-q * ufl.div(u), 2)
-        self._matrix = _compiled([[inertia + convection + stress, pressure], [divergence, None]])
+        grad_div = over(self._weight * ufl.div(u) * ufl.div(v), 2)
+        self._matrix = _compiled([[inertia + convection + stress + grad_div, pressure], [divergence, None]])
         self._without_convection = _compiled([[inertia + stress, pressure], [divergence, None]])
         self._mass = _compiled(over(ufl.inner(self._field, v), 4))
         strain = ufl.sym(ufl.grad(self._field))
         self._strain_square = _compiled(over(2 * ufl.inner(strain, strain), 2))
-        self.pressure_mass = _compiled(over(p * q, 2))
+        self._divergence_square = _compiled(over(self._weight * ufl.div(self._field) ** 2, 2))
+        self._pressure_mass = _compiled(over(self._weight * p * q, 2))
         self.pressure_laplacian = _compiled(over(ufl.inner(ufl.grad(p), ufl.grad(q)), 0))
 
     def new_matrix(self) -> Any:
         """A PETSc matrix for `assemble`: the rows of each process' velocities, then of its pressures."""
         return compat.create_block_matrix(self._matrix)
 
-    def assemble(self, matrix: Any, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray) -> None:
-        """Overwrite it by inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+    def assemble(
+        self,
+        matrix: Any,
+        inertia: float,
+        viscosity: float,
+        advection: FloatArray,
+        flow: FloatArray,
+        grad_div: FloatArray,
+    ) -> None:
+        """Overwrite it by that of
 
-        ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
+        inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q).
+
+        ``advection`` a and ``flow`` c, (nodes, d), already hold the density; ``grad_div`` γ (M,) is zero without them.
         """
         self._inertia.value, self._viscosity.value = inertia, viscosity
         self._space.set(self._field, advection)
         self._space.set(self._flow, flow)
+        self._space.set_cells(self._weight, grad_div)
         moving = advection.any() or flow.any()
         compat.assemble_block_matrix(matrix, self._matrix if moving else self._without_convection)
+
+    def pressure_mass(self, weight: FloatArray) -> Any:
+        """The form of (w p, q), ``weight`` w (M,), until the weight is set again."""
+        self._space.set_cells(self._weight, weight)
+        return self._pressure_mass
 
     def mass_times(self, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
@@ -71,6 +90,12 @@ class Forms:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
         self._space.set(self._field, velocity)
         return float(fem.assemble_scalar(self._strain_square))
+
+    def divergence_square(self, velocity: FloatArray, weight: FloatArray) -> float:
+        """∫ w (∇·u)² over this process' cells, ``weight`` w (M,)."""
+        self._space.set(self._field, velocity)
+        self._space.set_cells(self._weight, weight)
+        return float(fem.assemble_scalar(self._divergence_square))
 
 
 def _over_cells(space: Space) -> Callable[[Any, int], Any]:

@@ -11,47 +11,51 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray
+from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 @dataclass(frozen=True)
 class SchurData:
-    """What the Schur complement is made of at present: weights ``inertia`` of (u, v) and ``viscosity`` of
-    (∇u + ∇uᵀ, ∇v), the matrices' forms.
+    """What the Schur complement is made of at present: weights ``inertia`` of (u, v), ``viscosity`` of
+    (∇u + ∇uᵀ, ∇v) and ``grad_div`` (M,) of (∇·u, ∇·v), the matrices' forms.
 
     ``open`` (owned vertices,): where a pressure is prescribed; ``enclosed``: nowhere.
     """
 
     inertia: float
     viscosity: float
+    grad_div: FloatArray
     forms: Forms
     open: BoolArray
     enclosed: bool
 
 
-def schur_data(space: Space, forms: Forms, surfaces: Surfaces, inertia: float, viscosity: float) -> SchurData:
+def schur_data(
+    space: Space, forms: Forms, surfaces: Surfaces, inertia: float, viscosity: float, grad_div: FloatArray
+) -> SchurData:
     """For the mesh where it is now."""
     numbering = space.numbering
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
         if face.condition.type == "pressure":
             is_open[face.nodes[face.nodes < numbering.vertices]] = True
-    return SchurData(inertia, viscosity, forms, is_open[space.owned_vertices], surfaces.enclosed)
+    return SchurData(inertia, viscosity, grad_div, forms, is_open[space.owned_vertices], surfaces.enclosed)
 
 
 class CahouetChabard:
-    """S⁻¹ ≈ -(2 μ M⁻¹ + inertia L⁻¹), M the mass and L the Laplace matrix of the pressures.
+    """S⁻¹ ≈ -(M⁻¹ + inertia L⁻¹), M the pressures' mass matrix weighted by 1/(2 μ + γ), L their Laplace matrix.
 
-    Exact for A = inertia I - 2 μ ∇∇· on a whole space: what ∇u + ∇uᵀ makes of gradients (Cahouet and Chabard 1988,
-    doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
+    Exact for A = inertia I - (2 μ + γ) ∇∇· on a whole space: what ∇u + ∇uᵀ and grad-div make of gradients (Cahouet and
+    Chabard 1988, doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
     """
 
     def __init__(self, data: SchurData) -> None:
         self._data = data
         self._mass = self._laplacian = None
         if data.viscosity > 0.0:
-            self._mass = _solver(_assembled(data.forms.pressure_mass), "jacobi", 1e-2)
+            mass = data.forms.pressure_mass(1.0 / (2.0 * data.viscosity + data.grad_div))
+            self._mass = _solver(_assembled(mass), "jacobi", 1e-2)
         if data.inertia > 0.0:
             matrix = _assembled(data.forms.pressure_laplacian)
             first = matrix.getOwnershipRange()[0]
@@ -73,7 +77,7 @@ class CahouetChabard:
             source.shift(-source.sum() / source.getSize())
         if self._mass is not None:
             self._mass.solve(source, y)
-            y.scale(-2.0 * self._data.viscosity)
+            y.scale(-1.0)
         if self._laplacian is not None:
             self._laplacian.solve(source, self._image)
             y.axpy(-self._data.inertia, self._image)

@@ -45,6 +45,7 @@ class Space:
         self.curved: BoolArray | None = np.isin(cell_nodes, numbering.on_curves).max(axis=1) if curved else None
         self.node_of_dof = _inverse(self.velocity.dofmap.list, cell_nodes, numbering.nodes)
         self.vertex_of_dof = _inverse(self.pressure.dofmap.list, corners, numbering.vertices)
+        self._cell_of_made = _match_cells(corners, numbering.cells)
         self._nodal = la.vector(self.velocity.dofmap.index_map, d)
         self._scalar = la.vector(self.pressure.dofmap.index_map, 1)
 
@@ -66,6 +67,10 @@ class Space:
     def set(self, function: fem.Function, field: FloatArray) -> None:
         """Give a function of the velocity space the values of a nodal field."""
         function.x.array[:] = field[self.node_of_dof].ravel()
+
+    def set_cells(self, function: fem.Function, values: FloatArray) -> None:
+        """Give a function that is constant in each cell its ``values`` (M,), in the order of ``numbering``."""
+        function.x.array[:] = values[self._cell_of_made]
 
     def as_nodal(self, dofs: FloatArray) -> FloatArray:
         """A nodal field (nodes, d) from its values at all local degrees of freedom."""
@@ -139,6 +144,18 @@ def _corners(mesh: Mesh, made: Any) -> IntArray:
         return np.asarray(number, dtype=np.int64)
     order = np.argsort(mesh.part.vertices)
     return np.asarray(order[np.searchsorted(mesh.part.vertices, number, sorter=order)])
+
+
+def _match_cells(theirs: IntArray, ours: IntArray) -> IntArray:
+    """Our number (M,) of each of their cells, from the vertices of both (M, d+1)."""
+    result = np.empty(len(ours), dtype=np.int64)
+    result[_sort_rows(theirs)] = _sort_rows(ours)
+    return result
+
+
+def _sort_rows(cells: IntArray) -> IntArray:
+    """Order (M,) of cells by their sorted vertices."""
+    return np.asarray(np.lexsort(np.sort(cells, axis=1).T))
 
 
 def _inverse(theirs: Any, ours: IntArray, count: int) -> IntArray:

@@ -110,11 +110,18 @@ class CompiledAssembly:
         self._build_sparsity()
 
     def matrix(
-        self, points: FloatArray, inertia: float, viscosity: float, advection: FloatArray, flow: FloatArray
+        self,
+        points: FloatArray,
+        inertia: float,
+        viscosity: float,
+        advection: FloatArray,
+        flow: FloatArray,
+        grad_div: FloatArray,
     ) -> sparse.csr_array:
         n, cells = self.numbering, self._cells(points)
         data = np.zeros(len(self._indices))  # by NumPy, whose large pages cost a tenth of Numba's small ones
-        kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, self._tables)
+        ratio = grad_div / viscosity if viscosity > 0.0 else grad_div
+        kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, ratio, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
 
     def masses(self, points: FloatArray) -> Masses:
@@ -136,6 +143,9 @@ class CompiledAssembly:
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return float(kernels.strain_square(points, self._cells(points), self._tables, velocity))
+
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        return float(kernels.divergence_square(points, self._cells(points), self._tables, velocity, weight))
 
     def _cells(self, points: FloatArray) -> Cells:
         n = self.numbering

@@ -179,8 +179,9 @@ def add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes):
 
 
 @njit(cache=True)
-def scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes):
-    """Add one cell's matrix to the entries ``data``: ``scalar`` and the stress of ∇u + ∇uᵀ, and the pressures'."""
+def scatter(data, sparsity, cell, nodes, scalar, stress, grad_div, divergence, sizes):
+    """Add one cell's matrix to the entries ``data``: ``scalar``, the stress of ∇u + ∇uᵀ, ``grad_div`` times that of
+    (∇·u) 1, and the pressures'."""
     b, d = len(sizes.basis), len(sizes.axes)
     ranks = sparsity.ranks[cell]
     for i in range(b):
@@ -194,7 +195,8 @@ def scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes):
             for j in range(b):
                 place = first + d * ranks[i, j]
                 for c in range(d):
-                    data[place + c] += stress[i * d + c, j * d + a] + (scalar[i, j] if a == c else 0.0)
+                    entry = stress[i * d + c, j * d + a] + grad_div * stress[i * d + a, j * d + c]
+                    data[place + c] += entry + (scalar[i, j] if a == c else 0.0)
             place = last - sparsity.vertices_around[nodes[i]]
             for k in range(d + 1):
                 data[place + ranks[i, k]] += divergence[i * d + a, k]
@@ -207,12 +209,12 @@ def scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes):
 
 
 @njit(cache=True)
-def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow, tables):
+def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow, grad_div, tables):
     """Add to the entries ``data``, in the order of ``sparsity``, those of the matrix of
 
-    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) - (p, ∇·v) - (∇·u, q).
+    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity ((∇u + ∇uᵀ, ∇v) + (r ∇·u, ∇·v)) - (p, ∇·v) - (∇·u, q).
 
-    ``advection`` a and ``flow`` c, (nodes, d), already hold the density.
+    ``advection`` a and ``flow`` c, (nodes, d), already hold the density; ``grad_div`` r (M,).
     """
     sizes = tables.sizes
     b, d = len(sizes.basis), len(sizes.axes)
@@ -240,7 +242,7 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
         for q in range(len(rule.weight)):
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, rule.weight[q] * det, sizes)
-        scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
+        scatter(data, sparsity, cell, nodes, scalar, stress, grad_div[cell], divergence, sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         nodes = cells.nodes[cell]
@@ -259,7 +261,7 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
                 add_convection(scalar, rule, q, dx, advected, flowing, room, sizes)
             physical_gradients(rule, q, inverse, gradient, sizes)
             add_stress(stress, divergence, rule, q, gradient, viscosity, dx, sizes)
-        scatter(data, sparsity, cell, nodes, scalar, stress, divergence, sizes)
+        scatter(data, sparsity, cell, nodes, scalar, stress, grad_div[cell], divergence, sizes)
 
 
 @njit(cache=True)
@@ -374,6 +376,40 @@ def strain_square(points, cells, tables, velocity):
             dx = rule.weight[q] * inverted(jacobian, inverse)
             physical_gradients(rule, q, inverse, gradient, tables.sizes)
             total += dx * strain_square_at(velocity, cells.nodes[cell], gradient, slope, tables.sizes)
+    return total
+
+
+@njit(cache=True)
+def divergence_square(points, cells, tables, velocity, weight):
+    """∫ w (∇·u)² over the mesh, with the ``weight`` w (M,) of each cell."""
+    d = points.shape[1]
+    jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((cells.nodes.shape[1], d))
+    total = 0.0
+    rule = tables.flat
+    for cell in cells.straight:
+        nodes = cells.nodes[cell]
+        straight_jacobian(points, nodes, jacobian, tables.sizes)
+        dx = weight[cell] * inverted(jacobian, inverse)
+        for q in range(len(rule.weight)):
+            physical_gradients(rule, q, inverse, gradient, tables.sizes)
+            total += dx * rule.weight[q] * divergence_at(velocity, nodes, gradient, tables.sizes) ** 2
+    rule = tables.curved
+    for number, cell in enumerate(cells.curved):
+        for q in range(len(rule.weight)):
+            curved_jacobian(cells.curved_points[number], rule.gradient[q], jacobian, tables.sizes)
+            dx = weight[cell] * rule.weight[q] * inverted(jacobian, inverse)
+            physical_gradients(rule, q, inverse, gradient, tables.sizes)
+            total += dx * divergence_at(velocity, cells.nodes[cell], gradient, tables.sizes) ** 2
+    return total
+
+
+@njit(cache=True)
+def divergence_at(velocity, nodes, gradient, sizes):
+    """∇·u at one quadrature point of a cell."""
+    total = 0.0
+    for i in range(len(sizes.basis)):
+        for a in range(len(sizes.axes)):
+            total += velocity[nodes[i], a] * gradient[i, a]
     return total
 
 

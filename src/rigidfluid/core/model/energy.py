@@ -19,7 +19,7 @@ class Cause(StrEnum):
 class Power:
     """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
     viscous dissipation, also ``dissipation_midway`` through the step that led there, of what the dampers of joints
-    take, and of what convection takes through faces that let nothing pass."""
+    take, of what convection takes through faces that let nothing pass, and of grad-div stabilisation."""
 
     boundary: float = 0.0
     control: float = 0.0
@@ -27,6 +27,7 @@ class Power:
     dissipation_midway: float = 0.0
     damping: float = 0.0
     leak: float = 0.0
+    grad_div: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +48,8 @@ class Ledger:
     """Sums since the start [energy], and what is stored now.
 
     Stored: ``kinetic`` (fluid and bodies), ``contact`` (and springs). In: ``gravity``, ``boundary``, ``control``. Out:
-    ``dissipation``, ``contact_loss`` (by dampers of contacts and joints), ``transfer_loss`` (by re-meshing).
+    ``dissipation``, ``grad_div_loss`` (by stabilisation), ``contact_loss`` (by dampers of contacts and joints),
+    ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
     step explains so much at most, since the fluid's own solutions see some of it.
     The residual has five parts. ``residual_mesh``: what leaked through faces. The rest of each step's is in
@@ -64,6 +66,7 @@ class Ledger:
     boundary: float = 0.0
     control: float = 0.0
     dissipation: float = 0.0
+    grad_div_loss: float = 0.0
     contact_loss: float = 0.0
     transfer_loss: float = 0.0
     path_friction: float = 0.0
@@ -85,7 +88,7 @@ class Ledger:
     def residual(self) -> float:
         """What the balance does not account for: in - out - (stored now - stored at the start)."""
         incoming = self.gravity + self.boundary + self.control
-        outgoing = self.dissipation + self.contact_loss + self.transfer_loss
+        outgoing = self.dissipation + self.grad_div_loss + self.contact_loss + self.transfer_loss
         return incoming - outgoing - (self.kinetic + self.contact - self.initial)
 
     @property
@@ -121,6 +124,7 @@ class Ledger:
             boundary=total("boundary", self.boundary),
             control=total("control", self.control) + work.control,
             dissipation=self.dissipation + step * dissipated + work.drag_loss,
+            grad_div_loss=total("grad_div", self.grad_div_loss),
             contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
             residual_mesh=total("leak", self.residual_mesh),

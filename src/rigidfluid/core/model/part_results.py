@@ -44,7 +44,7 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, moti
     ):
         refuse_shape(key, quantity, values, shape, "body")
         _refuse_lost_bodies(names, quantity, values, key)
-    for quantity in ("kinetic_energy", "dissipation", "dissipation_midway", "boundary_power", "leak"):
+    for quantity in ("kinetic_energy", "dissipation", "dissipation_midway", "boundary_power", "leak", "grad_div"):
         refuse_no_number("fluid", quantity, getattr(advance, quantity), key)
 
 

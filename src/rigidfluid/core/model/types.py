@@ -326,6 +326,8 @@ class Advance:
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
     ``link_force`` (c,): of the step's links; None without any [force | force·length].
     ``leak``: kinetic energy that convection takes through faces that let none pass, an error of the mesh [energy/time].
+    ``grad_div``: what stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow
+    [energy/time].
     """
 
     fluid: FluidState
@@ -337,6 +339,7 @@ class Advance:
     boundary_power: float
     link_force: FloatArray | None = None
     leak: float = 0.0
+    grad_div: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,9 @@ Table = Mapping[str, NDArray[Any]]
 NOTICEABLE, SERIOUS = 0.01, 0.05
 """From these shares on, energy created, lost or unaccounted for is worth a warning and a serious one."""
 
+STABILISED = 0.05
+"""From this share of what was put in on, what grad-div stabilisation took is worth a warning."""
+
 _TOLD = 0.1
 """A cause of less than this part of what was created or lost is not told."""
 
@@ -61,7 +64,7 @@ class EnergyAccount:
     driven bodies had. What is wrong at a time is the residual and what re-meshing took. ``created``: the lowest that it
     was after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction
     between the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction,
-    until the end.
+    until the end. ``grad_div``: what stabilisation took until the end, no part of the others.
     """
 
     put_in: float
@@ -69,6 +72,7 @@ class EnergyAccount:
     lost: float
     unaccounted: float
     path_friction: float
+    grad_div: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +99,13 @@ def energy_account(energy: Table) -> EnergyAccount:
         share(float(_excess(lost - friction).max())),
         share(float(energy["residual"][-1])),
         share(float(friction[-1])),
+        share(float(energy["grad_div_loss"][-1])),
     )
 
 
 def energy_warnings(energy: Table) -> list[EnergyWarning]:
-    """Of energy created, of energy lost, and of energy unaccounted for at the end that is neither; where noticeable.
+    """Of energy created, of energy lost, of energy unaccounted for at the end that is neither, and of energy that
+    stabilisation took; where noticeable.
 
     Parameters
     ----------
@@ -121,6 +127,10 @@ def energy_warnings(energy: Table) -> list[EnergyWarning]:
     if abs(account.unaccounted) >= NOTICEABLE > told:
         at_end = {name: float(np.sign(account.unaccounted) * energy[name][-1]) / account.put_in for name in PARTS}
         warnings.append(_warning(account.unaccounted, "is unaccounted for at the end", at_end))
+    if account.grad_div >= STABILISED:
+        taken = f"{per_cent(account.grad_div)} of the energy put in was taken by stabilisation"
+        text = f"{taken}, in cells too coarse for the flow"
+        warnings.append(EnergyWarning(False, text, "Make cells finer: mesh.size_body, or mesh.wake behind bodies."))
     return warnings
 
 

@@ -18,7 +18,7 @@ Records = dict[str, list[Row]]
 
 LEDGER_COLUMNS = (
     *("kinetic", "contact", "gravity", "boundary", "control"),
-    *("dissipation", "contact_loss", "transfer_loss", "path_friction", "residual"),
+    *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
 

@@ -34,7 +34,7 @@ FIGURES = (
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
-ACCOUNT = ("put_in", "created", "lost", "unaccounted")
+ACCOUNT = ("put_in", "created", "lost", "unaccounted", "grad_div")
 ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 """Keys of its table ``energy`` that hold numbers."""
 

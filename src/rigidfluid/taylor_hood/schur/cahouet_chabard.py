@@ -13,11 +13,11 @@ from rigidfluid.taylor_hood.parts import Parts
 
 
 class CahouetChabard:
-    """S⁻¹ ≈ -(2 μ M⁻¹ + inertia L⁻¹), M the mass and L the Laplace matrix of the pressures.
+    """S⁻¹ ≈ -(M⁻¹ + inertia L⁻¹), M the pressures' mass matrix weighted by 1/(2 μ + γ), L their Laplace matrix.
 
-    Exact for A = inertia I - 2 μ ∇∇· on a whole space: what ∇u + ∇uᵀ makes of gradients (Cahouet and Chabard 1988,
-    doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal. Both have as
-    many rows as the mesh has vertices, a twentieth of the unknowns in 3D, and are factorised.
+    Exact for A = inertia I - (2 μ + γ) ∇∇· on a whole space: what ∇u + ∇uᵀ and grad-div make of gradients (Cahouet and
+    Chabard 1988, doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
+    Both have as many rows as the mesh has vertices, a twentieth of the unknowns in 3D, and are factorised.
 
     Parameters
     ----------
@@ -30,11 +30,13 @@ class CahouetChabard:
         self._which, self._count = _pressures(constraint)
         self._pin = constraint.pressure_pin
         numbering = constraint.surfaces.numbering
-        mass, laplacian = _integrals(numbering.cells, parts.points[: numbering.vertices], self._which, self._count)
+        resisted = 2.0 * parts.viscosity + parts.grad_div
+        points = parts.points[: numbering.vertices]
+        mass, laplacian = _integrals(numbering.cells, points, self._which, self._count, resisted)
         self._terms: list[Factors] = []
         orderings = Orderings()  # both have the same pattern
         if parts.viscosity > 0.0:
-            self._terms.append(factorise(sparse.csr_array(mass / (2.0 * parts.viscosity)), None, orderings))
+            self._terms.append(factorise(mass, None, orderings))
         if parts.inertia > 0.0:
             held = _open_vertices(constraint)
             grounded = _decoupled(laplacian, np.unique(self._which[held]))
@@ -75,9 +77,9 @@ def _open_vertices(constraint: Constraint) -> IntArray:
 
 
 def _integrals(
-    cells: IntArray, points: FloatArray, number: IntArray, count: int
+    cells: IntArray, points: FloatArray, number: IntArray, count: int, resisted: FloatArray
 ) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """(p, q) and (∇p, ∇q) of linear functions, numbered by ``number`` of each vertex."""
+    """(p/c, q) with c ``resisted`` (M,), and (∇p, ∇q), of linear functions, numbered by ``number`` of each vertex."""
     d = points.shape[1]
     corners = points[cells]
     jacobian = np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2)
@@ -85,7 +87,8 @@ def _integrals(
     slopes = np.linalg.inv(jacobian)
     gradient = np.concatenate([-slopes.sum(axis=1, keepdims=True), slopes], axis=1)
     laplacian = volume[:, None, None] * (gradient @ np.moveaxis(gradient, 1, 2))
-    mass = volume[:, None, None] * (np.ones((d + 1, d + 1)) + np.eye(d + 1)) / ((d + 1) * (d + 2))
+    share = np.divide(volume, resisted, out=np.zeros_like(volume), where=resisted > 0.0)
+    mass = share[:, None, None] * (np.ones((d + 1, d + 1)) + np.eye(d + 1)) / ((d + 1) * (d + 2))
     place = np.broadcast_arrays(number[cells][:, :, None], number[cells][:, None, :])
     rows, columns = (each.ravel() for each in place)
     found = (

@@ -218,11 +218,13 @@ class BalancesContract(FluidContract):
         self.assert_close(none, 0.0, scale=flow.advance.kinetic_energy)
 
     def test_convection_makes_no_energy(self, dimension: int) -> None:
-        """A lid drives a fast flow that the cells do not resolve: in steady steps all that it gives is dissipated."""
+        """A lid drives a fast flow that the cells do not resolve: in steady steps all that it gives is dissipated, by
+        viscosity or by stabilisation."""
         flow = self.empty(enclosed(dimension, _lid), box(dimension, 4 if dimension == 2 else 3))
         for _ in range(3):
             flow = flow.after(None)
-        self.assert_close(flow.advance.boundary_power, flow.advance.dissipation, scale=flow.advance.dissipation)
+        dissipated = flow.advance.dissipation + flow.advance.grad_div
+        self.assert_close(flow.advance.boundary_power, dissipated, scale=dissipated)
 
 
 def _lid(_time: float, points: FloatArray) -> FloatArray:

@@ -1,0 +1,46 @@
+"""The frame in which convection keeps energy: that of the container."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.surfaces import Surfaces
+
+_ROUND_OFF = 1e-9
+"""Of the fastest prescribed velocity: a container that is slower rests. Walls may slide and turn in themselves."""
+
+
+def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray) -> FloatArray:
+    r"""Velocity V (d,) of the walls as one rigid container: Σ ∫ (n·(u - V))² over them is least [length/time].
+
+    Where there is no wall, faces of prescribed velocity are the container: a uniform stream is seen from the fluid far
+    away. Of several such V it is the slowest.
+
+    Parameters
+    ----------
+    surfaces : Surfaces
+        The faces and what is prescribed there.
+    time : float
+        The time [time].
+    node_points : (nodes, d) array
+        Where the nodes are [length].
+    """
+    d = node_points.shape[1]
+    kinds = [face.condition.type for face in surfaces.faces]
+    faces = [face for face in surfaces.faces if face.condition.type == ("wall" if "wall" in kinds else "velocity")]
+    if all(face.condition.value is None for face in faces):
+        return np.zeros(d)
+    normals, outflow, fastest = np.zeros((d, d)), np.zeros(d), 0.0
+    with surfaces.ranks.raise_on_all():
+        for face in faces:
+            area = face.area_vectors(node_points).reshape(-1, d)
+            size = np.maximum(np.linalg.norm(area, axis=1, keepdims=True), np.finfo(float).tiny)
+            normals += (area / size).T @ area
+            if face.condition.value is not None:
+                velocity = face.condition.value(time, node_points[face.facet_nodes.ravel()])
+                outflow += (area / size).T @ np.sum(area * velocity, axis=1)
+                fastest = max(fastest, float(np.abs(velocity).max(initial=0.0)))
+    whole = surfaces.ranks.sum(np.concatenate([normals.ravel(), outflow]))
+    found = np.linalg.pinv(whole[: d * d].reshape(d, d), hermitian=True, rcond=_ROUND_OFF) @ whole[d * d :]
+    return found if np.abs(found).max() > _ROUND_OFF * float(surfaces.ranks.greatest(fastest)) else np.zeros(d)
