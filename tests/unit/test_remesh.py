@@ -19,6 +19,7 @@ from mesh_tools import (
 
 from rigidfluid.core.mesh import refine_surface as surface
 from rigidfluid.core.mesh import remesh as module
+from rigidfluid.core.mesh.boundary_layer import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
@@ -55,7 +56,7 @@ def drive(bodies, poses, gap, sizes, upper=UPPER):
         assert quality > 0.05
         if quality < 0.3 or (gap(pose) < 0.5 * made[-1][2] and gap(pose) < sizes.cells_per_gap * sizes.size_body):
             moved = Mesh(points, mesh.cells, mesh.facets, mesh.markers)
-            mesh = remesh(moved, bodies, pose, domain, walls, sizes)
+            mesh = remesh(moved, bodies, pose, domain, walls, sizes, LAYERS)
             assert_valid(mesh, bodies, pose, LOWER, upper)
             unsplit = refine_surface(moved, bodies, pose, domain, walls, sizes)
             assert body_facets(mesh, len(bodies)) == body_facets(unsplit, len(bodies))

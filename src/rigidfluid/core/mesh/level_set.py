@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fill import fill_between
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.mmg import as_mmg, from_mmg, run_mmg, with_kept_facets
+from rigidfluid.core.mesh.mmg import as_mmg, from_mmg, keep_facets, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import on_surface
 from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
@@ -118,7 +118,7 @@ def level_set_mesh(
         found = f"vertices up to {off.max():.3g} off the shape after cutting"
         raise MeshError(f"body.{body}", found, "all on it", "Use mesh.inserter = 'fill'.")
     mesh = replace(mesh, points=_on_shapes(mesh, bodies, pose, domain))
-    kept = np.ones(len(background.facets), dtype=bool)
+    kept = keep_facets(background, np.ones(len(background.facets), dtype=bool))
     mesh = orient(with_kept_facets(mesh, mesh.markers < len(bodies), background, kept, background.points))
     _refuse_chords(mesh, bodies, pose)
     check_mesh(mesh, quality=0.0)
@@ -127,13 +127,13 @@ def level_set_mesh(
 
 def _improved(mesh: Mesh, metric: FloatArray) -> Mesh:
     """What MMG makes of a mesh with all its facets kept."""
-    return run_mmg(mesh, np.ones(len(mesh.facets), dtype=bool), 0, metric, GRADATION)
+    return run_mmg(mesh, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric, GRADATION)
 
 
 def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, deviation: float) -> Mesh:
     """The fluid's part of a mesh that is cut along the bodies, facets there marked by the nearest body."""
     shifted, d = replace(mesh, markers=mesh.markers + CUT + 1), mesh.points.shape[1]
-    mmg = as_mmg(shifted, np.ones(len(mesh.facets), dtype=bool), 0, metric)
+    mmg = as_mmg(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric)
     mmg.set_multi_materials([{"ref": 0, "split": 1, "ref_minus": SOLID, "ref_plus": FLUID}])
     level = _distances(mesh.points, bodies, pose).min(axis=0)
     try:

@@ -12,6 +12,7 @@ from itertools import chain
 
 import numpy as np
 
+from rigidfluid.core.mesh.boundary_layer import LAYERS
 from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_cells import CurvedCells
@@ -149,7 +150,7 @@ class MeshUpdater:
                 domain = s.meshed(pose)
                 if domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
                     present = coarsen_surface(present, s.bodies, pose, s.walls, sizes)
-                made = self._curved(remesh(present, s.bodies, pose, domain, s.walls, sizes), pose)
+                made = self._curved(remesh(present, s.bodies, pose, domain, s.walls, sizes, LAYERS), pose)
         return distributed(made, ranks)
 
     def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:

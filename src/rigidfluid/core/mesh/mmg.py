@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,20 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.errors import MeshError
 
 
-def run_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
-    """What MMG makes of a mesh when the ``kept`` facets (F,) and the corners of the domain are required to stay."""
+class Kept(NamedTuple):
+    """Which ``facets`` (F,) and ``cells`` (M,) of a mesh MMG has to keep."""
+
+    facets: BoolArray
+    cells: BoolArray
+
+
+def keep_facets(mesh: Mesh, facets: BoolArray) -> Kept:
+    """Keep these ``facets`` (F,) of a mesh and none of its cells."""
+    return Kept(facets, np.zeros(len(mesh.cells), dtype=bool))
+
+
+def run_mmg(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
+    """Re-mesh by MMG, which has to keep what is ``kept`` and the corners of the domain."""
     try:
         mmg = as_mmg(mesh, kept, bodies, metric)
         with kept_signals():
@@ -23,7 +35,7 @@ def run_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray, gradat
     return from_mmg(mmg, mesh.points.shape[1])
 
 
-def as_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray) -> Any:
+def as_mmg(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray) -> Any:
     """MMG's mesh with its wanted size ``metric`` (N,); its references are the markers and 1."""
     import mmgpy
 
@@ -35,14 +47,18 @@ def as_mmg(mesh: Mesh, kept: BoolArray, bodies: int, metric: FloatArray) -> Any:
         mmg = mmgpy.MmgMesh2D()
         mmg.set_mesh_size(vertices=len(mesh.points), triangles=len(cells), edges=len(facets))
         put_cells, put_facets, require = mmg.set_triangles, mmg.set_edges, mmg.set_required_edges
+        require_cells = mmg.set_required_triangles
     else:
         mmg = mmgpy.MmgMesh3D()
         mmg.set_mesh_size(vertices=len(mesh.points), tetrahedra=len(cells), triangles=len(facets))
         put_cells, put_facets, require = mmg.set_tetrahedra, mmg.set_triangles, mmg.set_required_triangles
+        require_cells = mmg.set_required_tetrahedra
     mmg.set_vertices(mesh.points)
     put_cells(cells)
     put_facets(facets, references)
-    require(np.flatnonzero(kept).astype(np.int32))
+    require(np.flatnonzero(kept.facets).astype(np.int32))
+    if kept.cells.any():
+        require_cells(np.flatnonzero(kept.cells).astype(np.int32))
     mmg.set_corners(corners.astype(np.int32))
     mmg.set_required_vertices(corners.astype(np.int32))
     mmg["metric"] = metric[:, None]
@@ -54,7 +70,9 @@ def from_mmg(mmg: Any, dimension: int) -> Mesh:
     cells = mmg.get_triangles() if dimension == 2 else mmg.get_tetrahedra()
     facets, references = mmg.get_edges_with_refs() if dimension == 2 else mmg.get_triangles_with_refs()
     points = np.ascontiguousarray(mmg.get_vertices())
-    return Mesh(points, cells.astype(np.int64), facets.astype(np.int64), references.astype(np.int64) - 1)
+    marked = references > 0  # the facets of required cells come back too
+    facets, references = facets[marked].astype(np.int64), references[marked].astype(np.int64)
+    return Mesh(points, cells.astype(np.int64), facets, references - 1)
 
 
 def domain_corners(mesh: Mesh, bodies: int) -> IntArray:
@@ -65,15 +83,15 @@ def domain_corners(mesh: Mesh, bodies: int) -> IntArray:
     return corners
 
 
-def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: BoolArray, given: FloatArray) -> Mesh:
-    """The ``outer`` facets of ``new`` and the ``kept`` facets and exact coordinates of ``old``.
+def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: Kept, given: FloatArray) -> Mesh:
+    """Put the ``kept`` facets of ``old`` to the ``outer`` ones of ``new``, with exact coordinates, also in kept cells.
 
     MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
     nearness.
     """
     from scipy.spatial import cKDTree
 
-    old_vertices = np.unique(old.facets[kept])
+    old_vertices = np.union1d(old.facets[kept.facets], old.cells[kept.cells])
     found = cKDTree(new.points).query(given[old_vertices])
     distance, place = np.asarray(found[0]), np.asarray(found[1])
     shortest = 1e-9 * np.ptp(old.points, axis=0).max()
@@ -83,5 +101,5 @@ def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: BoolArray, gi
     number[old_vertices] = place
     points = new.points.copy()
     points[place] = old.points[old_vertices]
-    facets = np.concatenate([number[old.facets[kept]], new.facets[outer]])
-    return Mesh(points, new.cells, facets, np.concatenate([old.markers[kept], new.markers[outer]]))
+    facets = np.concatenate([number[old.facets[kept.facets]], new.facets[outer]])
+    return Mesh(points, new.cells, facets, np.concatenate([old.markers[kept.facets], new.markers[outer]]))

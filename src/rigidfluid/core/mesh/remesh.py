@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
+from rigidfluid.core.mesh.boundary_layer import kept_cells
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.level_set import level_set_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh, put_back
-from rigidfluid.core.mesh.mmg import run_mmg, with_kept_facets
+from rigidfluid.core.mesh.mmg import Kept, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, distinct_edges, orient
@@ -103,7 +104,15 @@ def inserted_mesh(
     return mesh
 
 
-def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+def remesh(
+    mesh: Mesh,
+    bodies: Sequence[Body],
+    pose: Pose,
+    domain: Domain,
+    walls: Sequence[Wall],
+    sizes: Sizes,
+    layers: int = 0,
+) -> Mesh:
     """Re-mesh the fluid to the wanted size h(x); vertices on bodies and curved walls keep their coordinates to the last
     bit.
 
@@ -127,6 +136,8 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
         The walls whose gaps are resolved.
     sizes : Sizes
         The wanted size.
+    layers : int, optional
+        How many layers of cells next to bodies are kept, as far as they are good: the flow there stays as it is.
 
     Returns
     -------
@@ -142,12 +153,12 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
     check_mesh(mesh, quality=0.0)
     surroundings = bodies, pose, domain, walls, sizes
-    new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at)
+    new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at, layers)
     for _ in range(ROUNDS):
         well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
         if well_shaped and not len(long_edges(new, *surroundings, LONGEST)[0]):
             break
-        new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at)
+        new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at, layers)
     check_mesh(new, quality=WORST_QUALITY)
     excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
@@ -156,13 +167,18 @@ def remesh(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls
     return new
 
 
-def best_remeshed(mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray]) -> Mesh:
-    """What MMG makes of a mesh with the first gradation that gives good cells, else the best of all gradations."""
+def best_remeshed(
+    mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int
+) -> Mesh:
+    """What MMG makes of a mesh with the first gradation that gives good cells, else the best of all gradations.
+
+    Where none does with the ``layers`` of cells kept, they are given up.
+    """
     made: list[Mesh] = []
     failures: list[MeshError] = []
-    for gradation in GRADATIONS:
+    for kept, gradation in product(sorted({layers, 0}, reverse=True), GRADATIONS):
         try:
-            made.append(remeshed_once(mesh, bodies, domain, size_at, gradation))
+            made.append(remeshed_once(mesh, bodies, domain, size_at, kept, gradation))
         except MeshError as error:
             failures.append(error)
         else:
@@ -174,11 +190,11 @@ def best_remeshed(mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[Fl
 
 
 def remeshed_once(
-    mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], gradation: float
+    mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
 ) -> Mesh:
     """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
     given = replace(mesh, points=rounded_points(mesh))
-    kept = on_kept_surfaces(mesh, bodies, domain)
+    kept = Kept(on_kept_surfaces(mesh, bodies, domain), kept_cells(mesh, bodies, size_at, layers))
     made = run_mmg(given, kept, bodies, significant(size_at(given.points)), gradation)
     outer = ~on_kept_surfaces(made, bodies, domain)
     restored = with_kept_facets(made, outer, mesh, kept, given.points)

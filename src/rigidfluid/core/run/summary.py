@@ -18,6 +18,7 @@ from rigidfluid.core.output.energy_account import Table, energy_account, energy_
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.run.cycles import cycles
 from rigidfluid.core.run.process import peak_memory
+from rigidfluid.core.run.remesh_jumps import remesh_jumps
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.parts import known_parts
 
@@ -66,6 +67,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **_cycles(simulation),
+        **_remesh_jumps(simulation),
         "energy": energy_balance(state.ledger, simulation.history.energy),
         "auto_epsilon": chosen_strengths(system),
     }
@@ -76,6 +78,12 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
+
+
+def _remesh_jumps(simulation: Simulation) -> dict[str, Any]:
+    """Jumps of forces at new meshes, where there were any."""
+    found = remesh_jumps(simulation.history) if simulation.counts.remeshes else {}
+    return {"remesh_jumps": found} if found else {}
 
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:

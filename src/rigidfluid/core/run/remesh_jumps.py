@@ -1,0 +1,55 @@
+"""How far the fluid's forces on bodies jump where a new mesh is made."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
+
+_AFTER = 3
+"""Steps on a new mesh in which a jump is looked for."""
+
+_START = 5
+"""First steps of a run, whose forces are those of the start."""
+
+
+_COLUMNS = {"force": ("fx", "fy", "fz"), "torque": ("t", "tx", "ty", "tz")}
+
+
+def remesh_jumps(history: History) -> dict[str, dict[str, float]]:
+    """Largest jump of force and torque of each body at new meshes, over the range of each in the run [1].
+
+    A jump is the distance of one of the first steps on a new mesh from the line through the two steps before it. The
+    range is the largest less the smallest of a component after the first steps; of a vector the largest one counts.
+    Empty without new meshes.
+    """
+    steps = history.table("steps", ("time", "remeshes"))
+    first = np.flatnonzero(np.diff(steps["remeshes"]) > 0) + 1
+    first = first[first >= _START + 2]
+    if not len(first):
+        return {}
+    names = columns(history.dimension)["bodies"]
+    loads = {load: tuple(name for name in names if name in of_load) for load, of_load in _COLUMNS.items()}
+    bodies = history.table("bodies", ("time", "body", *loads["force"], *loads["torque"]))
+    found = {}
+    for name in dict.fromkeys(bodies["body"]):
+        mine = bodies["body"] == name
+        time = bodies["time"][mine]
+        rows = np.searchsorted(time, steps["time"][first] - 1e-9 * time[-1])
+        values = {load: np.column_stack([bodies[axis][mine] for axis in axes]) for load, axes in loads.items()}
+        found[str(name)] = {load: _largest_jump(time, each, rows) for load, each in values.items()}
+    return found
+
+
+def _largest_jump(time: FloatArray, values: FloatArray, first: IntArray) -> float:
+    """Largest jump of ``values`` (s, c) at the rows ``first``, over their range."""
+    extent = float(np.ptp(values[_START:], axis=0).max())
+    jump = 0.0
+    for row in first:
+        slope = (values[row - 1] - values[row - 2]) / (time[row - 1] - time[row - 2])
+        after = slice(row, row + _AFTER)
+        expected = values[row - 1] + np.multiply.outer(time[after] - time[row - 1], slope)
+        jump = max(jump, float(np.abs(values[after] - expected).max()))
+    return jump / extent if extent > 0.0 else 0.0
