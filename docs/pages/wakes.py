@@ -115,7 +115,7 @@ def cylinder_rows(run: Run) -> Iterable[tuple[str, ...]]:
 
 
 def vortex_figures(run: Run) -> tuple[float, float, float, float]:
-    """Greatest drag and lift coefficient, Strouhal number, and pressure difference half a period after the greatest lift.
+    """Greatest drag and lift coefficient, Strouhal number, pressure difference half a period after the greatest lift.
 
     Over the last two periods, with a mean speed of 1 m/s and a diameter of .1 m.
     """
