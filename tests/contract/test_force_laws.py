@@ -3,7 +3,8 @@ import pytest
 from touching import unstacked
 
 from rigidfluid.core.contact.repulsion import Repulsion
-from rigidfluid.core.contact.restitution import FilmLoss, Restitution
+from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -42,7 +43,7 @@ class TestRestitution(ForceLawContract):
 
     @pytest.fixture(params=["of its own", "by the Stokes number"])
     def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
-        film = Film(0.1, np.array([0.7, 0.4]), LOADS)
+        film = Film(0.1, np.array([0.7, 0.4]), LOADS, 0.01)
         return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film))
 
 

@@ -12,7 +12,8 @@ from touching import NORMAL, contact, unstacked
 
 from rigidfluid.api import Simulation
 from rigidfluid.core.contact.hunt_crossley import LEAST
-from rigidfluid.core.contact.restitution import FilmLoss, Restitution
+from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.contact.substep import _greatest
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -27,7 +28,7 @@ from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
 RANGE = 0.02
 EPSILON = {"normal": 1e-6, "centre": 1e-6, "contact": 1e-8, "barrier": 1e-4}
-FILM = Film(0.1, np.array([0.1, 0.1]), unstacked(np.array([2.0, 2.0]), np.zeros(2), np.zeros(2), 0.25 * RANGE))
+FILM = Film(0.1, np.array([0.1, 0.1]), unstacked(np.array([2.0, 2.0]), np.zeros(2), np.zeros(2), 0.25 * RANGE), np.inf)
 
 
 def law_table(law: str, restitution: float, **keys: Any) -> dict[str, Any]:
@@ -164,7 +165,7 @@ def test_slow_impacts_end_with_the_least_restitution() -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_at_a_wall_the_stokes_number_is_that_of_density_diameter_and_viscosity(dimension: int) -> None:
     volume = np.pi * 0.1**2 if dimension == 2 else 4.0 / 3.0 * np.pi * 0.1**3
-    film = Film(0.02, np.array([0.1]), unstacked(np.array([3.5 * volume]), np.zeros(1), np.zeros(1), 0.005))
+    film = Film(0.02, np.array([0.1]), unstacked(np.array([3.5 * volume]), np.zeros(1), np.zeros(1), 0.005), np.inf)
     found = film.stokes_number(contact(0.01, 0.1, np.inf, dimension))
     np.testing.assert_allclose(found, 3.5 * 0.2 / (9.0 * 0.02))
 

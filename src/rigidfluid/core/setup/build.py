@@ -192,9 +192,10 @@ def _loads(
 
 
 def _film(scene: Scene, parts: Parts, loads: Loads) -> Film | None:
-    if scene.fluid.viscosity is None or not parts.backend.part.needs_mesh:
+    if scene.fluid.viscosity is None or scene.mesh is None or not parts.backend.part.needs_mesh:
         return None
-    return Film(scene.fluid.viscosity, np.array([equal_volume_radius(body) for body in parts.bodies]), loads)
+    radius = np.array([equal_volume_radius(body) for body in parts.bodies])
+    return Film(scene.fluid.viscosity, radius, loads, scene.mesh.size_body / 2**scene.mesh.refinements)
 
 
 def _problem(
