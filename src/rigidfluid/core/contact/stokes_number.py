@@ -11,7 +11,7 @@ from rigidfluid.core.contact.loads import inverse_mass, of_both
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads
 
 
-FILM_EDGE = 0.5
+FILM_EDGE = 1.0
 """The film begins at a gap of this part of the radius; what the fluid does further out is drag."""
 
 
