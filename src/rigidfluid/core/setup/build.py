@@ -31,7 +31,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
-from rigidfluid.core.setup.impact import impact_speeds
+from rigidfluid.core.setup.impact import creeping_resistances, impact_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_linkage, joined_bodies
@@ -80,7 +80,9 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
     held = opened(conditions(scene, domain), window)
-    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried)
+    creeping = parts.backend.part.needs_mesh and scene.fluid.model == "stokes"
+    resistance = creeping_resistances(scene, domain, parts.bodies) if creeping else None
+    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried, resistance)
     if linkage is not None:
         started = linkage.fitting(start, started, 0.0)
     if carried is not None:
