@@ -2,11 +2,12 @@ import numpy as np
 import pytest
 from touching import unstacked
 
+from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.repulsion import Repulsion
-from rigidfluid.core.contact.restitution import FilmLoss, Restitution
-from rigidfluid.core.contact.stokes_number import Film
+from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Film
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.contact import ContactLaw
@@ -42,8 +43,8 @@ class TestRestitution(ForceLawContract):
 
     @pytest.fixture(params=["of its own", "by the Stokes number"])
     def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
-        film = Film(0.1, np.array([0.7, 0.4]), LOADS)
-        return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film))
+        film = Film(0.1, np.array([0.7, 0.4]), 0.01, True)
+        return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film, LOADS))
 
 
 class TestSpringDashpot(ForceLawContract):

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from touching import NORMAL, contact, unstacked
 
-from rigidfluid.core.contact.loads import work_to_stop
 from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.contact.work_to_stop import work_to_stop
 from rigidfluid.core.model.types import FloatArray, Loads
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.barrier import BarrierLaw

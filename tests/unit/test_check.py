@@ -615,6 +615,20 @@ def test_slow_impacts_in_a_liquid_do_not_come_back():
     assert "do not come back" in finding.text
 
 
+def test_a_law_that_gives_back_what_should_not_come_back_is_warned_of_with_a_range_that_mends_it():
+    contact = {"impact_speed": 1.0, "epsilon": "auto", "range": 0.07}
+    finding = only("rebound", contact=contact, **WET, **MESH)
+    assert finding.grade == "warning"
+    assert finding.found["stokes_number"] < 10.0
+    assert finding.found["comes_back"] > 0.1
+    assert finding.enough["restitution_stokes"] == 35.0
+    mended = only("rebound", contact=contact | {"range": finding.enough["range"]}, **WET, **MESH)
+    assert mended.grade == "note"
+    assert mended.found["comes_back"] < 0.1
+    unresolved = {"mesh": {"size": 0.2, "size_body": 0.03, "refinements": 0}}
+    assert "range" not in only("rebound", contact=contact, **WET, **unresolved).enough
+
+
 @pytest.mark.parametrize("contact", [{"restitution": 0.8}, {"restitution_stokes": 35.0}])
 def test_a_law_with_losses_is_told_nothing(contact):
     assert not found("rebound", contact=contact | {"impact_speed": 0.1}, **WET, **MESH)

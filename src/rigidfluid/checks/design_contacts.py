@@ -26,6 +26,7 @@ from rigidfluid.core.contact.representative_contacts import (
     wall_contacts,
 )
 from rigidfluid.core.contact.stiffness import greatest_stiffness
+from rigidfluid.core.contact.work_to_stop import share_left
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -42,8 +43,9 @@ class DesignContacts:
     """Contacts of bodies with walls, or with each other, as they are to be expected.
 
     ``weight`` (m,) presses the two together at rest [force], ``speed`` (m,) is that of the approach [length/time] and
-    ``pair_energy`` (m,) its energy [energy]; ``stacked_weight`` (m,) and ``energy`` (m,) are the same with the bodies
-    that may come to press on the contact. ``inverse_mass`` (m,) [1/mass]; ``kind`` is equal for bodies that are alike.
+    ``pair_energy`` (m,) the energy that the film leaves of it [energy]; ``stacked_weight`` (m,) and ``energy`` (m,) are
+    the same with the bodies that may come to press on the contact. ``inverse_mass`` (m,) [1/mass]; ``kind`` is equal
+    for bodies that are alike.
     The same ``interactions`` act in all of them, together as the ``law``.
     """
 
@@ -164,6 +166,8 @@ def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> Fl
 
 def _designed(system: System, law: ForceLaw, met: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
     loads, contacts = system.loads, met.contacts
+    nearest = [one.law.loads.smallest_gap for one in met.interactions if one.law.loads is not None]
+    share = share_left(contacts, loads, law.range, max(nearest, default=law.range))
     return DesignContacts(
         system=system,
         interactions=met.interactions,
@@ -172,8 +176,8 @@ def _designed(system: System, law: ForceLaw, met: RepresentativeContacts, kind: 
         contacts=contacts,
         weight=met.pressing * held_weight(contacts, loads),
         stacked_weight=met.pressing * stacked_weight(contacts, loads),
-        pair_energy=pair_energy(contacts, loads),
-        energy=impact_energy(contacts, loads),
+        pair_energy=share * pair_energy(contacts, loads),
+        energy=share * impact_energy(contacts, loads),
         speed=closing_speed(contacts, loads),
         inverse_mass=inverse_mass(contacts, loads),
         kind=kind,

@@ -74,6 +74,8 @@ def _springs(scene: Scene, system: System, linkage: Linkage) -> Finding:
     slowed = frequency / np.sqrt(1.0 + added / system.mass[linked].sum())
     found = {"frequency": frequency, "with_added_mass": slowed, "turn_per_step": frequency * step}
     text = f"the stiffest spring swings in {figure(2 * np.pi / frequency)}"
+    if system.quasi_steady:
+        text = f"the stiffest spring relaxes no faster than in {figure(1.0 / frequency)}"
     if added > 0.0:
         text += f", with added mass in about {figure(2 * np.pi / slowed)}"
     text += f"; frequency times step is {figure(frequency * step)}"
@@ -81,7 +83,7 @@ def _springs(scene: Scene, system: System, linkage: Linkage) -> Finding:
         return Finding("note", QUESTION, (), text, found=found)
     enough = {"time_step": _WELL_RESOLVED / frequency}
     remedy = f"Set time.step to {at_most(enough['time_step'])} or less."
-    return Finding("warning", QUESTION, (), f"{text}: few steps for a period", remedy, found, enough)
+    return Finding("warning", QUESTION, (), f"{text}: few steps for that", remedy, found, enough)
 
 
 def _clearance(parts: Parts, system: System, joint: Joint, second: int) -> Finding:

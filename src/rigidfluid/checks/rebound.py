@@ -8,11 +8,12 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.film import resolved_gap
-from rigidfluid.checks.finding import Finding, figure
+from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.core.contact.film_loss import braking
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
-from rigidfluid.core.contact.stokes_number import Film
-from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.model.types import FluidProblem
+from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.types import Contacts, Film, FloatArray
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "rebound"
@@ -20,24 +21,28 @@ REBOUND = 10.0
 """The Stokes number below which balls were not seen to rebound."""
 BALLS = 35.0
 """β of balls in liquids: they come back with exp(-β/St) of the speed of a dry rebound."""
+COMES_BACK = 0.1
+"""Where nothing should come back, a law that gives back more than that of the speed is warned of."""
+_HALVINGS = 50
 
 
-def in_a_film(met: DesignContacts, fluid: FluidProblem, mesh: MeshTable) -> Iterator[Finding]:
+def in_a_film(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
     """Say what a law without losses means at the Stokes number of the impact.
 
     Parameters
     ----------
     met : DesignContacts
         The bodies, with a wall or with each other.
-    fluid : FluidProblem
-        The fluid; without inertia it lets nothing rebound, and nothing is said.
+    film : Film
+        Of the fluid; without inertia it lets nothing rebound, and nothing is said.
     mesh : MeshTable
         Sizes of the cells, which may resolve the film before the law acts.
 
     Yields
     ------
     Finding
-        A note for each kind of pair that moves, where no law takes energy out.
+        For each kind of pair that moves, where no law takes energy out: a warning where nothing should come back and
+        something does, else a note.
 
     Notes
     -----
@@ -45,33 +50,62 @@ def in_a_film(met: DesignContacts, fluid: FluidProblem, mesh: MeshTable) -> Iter
     J. Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470; β: Legendre, Daniel and Guiraud, Phys. Fluids 17
     (2005) 097105, doi:10.1063/1.2010527.
     """
-    if met.law.dissipative or not fluid.inertia:
+    if met.law.dissipative or not film.inertia:
         return
-    radius = np.array([equal_volume_radius(body) for body in met.system.bodies])
-    film = Film(fluid.dynamic_viscosity, radius, met.system.loads)
-    struck = (met.speed > 0.0) & (met.inverse_mass > 0.0)
-    stokes = np.where(struck, met.speed * film.stokes_number(met.contacts), np.inf)
     system = met.system
+    struck = (met.speed > 0.0) & (met.inverse_mass > 0.0)
+    stokes = np.where(struck, met.speed * stokes_number(met.contacts, film, system.loads), np.inf)
     curved = with_effective_radii(met.contacts, system.bodies, system.walls, system.pose).effective_radius
     resolved = resolved_gap(mesh, curved)  # NaN is not: no film of facets is known
+    back = np.where(np.isnan(resolved), 1.0, _given_back(met, film, stokes))
     for row in met.worst(-stokes):
         if struck[row]:
-            yield _finding(met, row, float(stokes[row]), float(resolved[row]))
+            yield _finding(met, film, row, float(stokes[row]), float(resolved[row]), float(back[row]))
 
 
-def _finding(met: DesignContacts, row: int, stokes: float, resolved: float) -> Finding:
+def _given_back(met: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
+    """The part of its speed (m,) with which a body leaves range, by the film that the mesh resolves alone [1]."""
+    mass = np.divide(1.0, met.inverse_mass, out=np.ones_like(stokes), where=met.inverse_mass > 0.0)
+    brakes = braking(met.law, met.contacts, mass, film, met.system.loads)
+    left = np.maximum(1.0 - brakes.outside / stokes, 0.0)
+    within = brakes.within(np.maximum(met.speed * left, np.finfo(float).tiny ** 0.25))
+    return np.maximum(left - 2.0 * within / stokes, 0.0)
+
+
+def _finding(met: DesignContacts, film: Film, row: int, stokes: float, resolved: float, back: float) -> Finding:
     share = float(np.exp(-BALLS / stokes)) if stokes >= REBOUND else 0.0
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
     lossless = next(one for one in met.interactions if one.law.conservative)
+    field = lossless.field
     text = f"{' and '.join(met.names(row))}: the impact's Stokes number is {figure(stokes)}, where balls in liquids "
     text += f"{seen}, and the law gives back all that reaches its range; "
     if resolved <= lossless.law.range:
         text += f"before that the film takes its part, which the mesh resolves down to a gap of {figure(resolved)}"
-        text += f"; {lossless.field}.restitution takes some out of the rest" if share else ""
+        text += f", so that {figure(back)} of the speed comes back at range"
+        text += f"; {field}.restitution_stokes = {BALLS:g} counts it and takes the rest" if back > share else ""
     else:
-        field = lossless.field
-        text += f"{field}.restitution and {field}.restitution_stokes = {BALLS:g} take some out"
-    found = {"stokes_number": stokes, "rebound": share}
+        text += f"{field}.restitution_stokes = {BALLS:g} takes some out"
+    found = {"stokes_number": stokes, "rebound": share, "comes_back": back}
     if np.isfinite(resolved):
         found["resolved"] = resolved
-    return Finding("note", QUESTION, met.names(row), text, found=found)
+    if share or back <= COMES_BACK:
+        return Finding("note", QUESTION, met.names(row), text, found=found)
+    enough, remedy = {"restitution_stokes": BALLS}, f"Set {field}.restitution_stokes to {BALLS:g}"
+    thin = _range_that_stops(select(met.contacts, np.array([row])), film, stokes)
+    if thin is not None and thin > resolved:
+        remedy, enough["range"] = f"{remedy}, or {field}.range to {at_most(thin)}", thin
+    return Finding("warning", QUESTION, met.names(row), text, f"{remedy}.", found, enough)
+
+
+def _range_that_stops(contacts: Contacts, film: Film, stokes: float) -> float | None:
+    """The widest range [length] before which the film takes so much that COMES_BACK of the speed is left; None where
+    the mesh does not resolve it."""
+    wanted = (1.0 - COMES_BACK) * stokes
+    low, high = np.log(film.radius.max()) - 50.0, float(np.log(film.radius.max()))
+    if stokes_number_taken(contacts, film, float(np.exp(low)))[0] < wanted:
+        return None
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        enough = stokes_number_taken(contacts, film, float(np.exp(middle)))[0] >= wanted
+        low, high = (middle, high) if enough else (low, middle)
+    return float(np.exp(low))

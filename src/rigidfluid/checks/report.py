@@ -123,7 +123,8 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
             yield from in_the_gap(met, mesh)
         if mesh is not None and system.backend.problem is not None:
             yield from in_the_fluid(met, system.backend.problem, scene.time.step)
-            yield from in_a_film(met, system.backend.problem, mesh)
+        if mesh is not None and system.loads.film is not None:
+            yield from in_a_film(met, system.loads.film, mesh)
     for interaction in system.interactions:
         yield from at_the_start(system, interaction, start)
         yield from chain(between_walls(system, interaction), beside_sizes(system, interaction, mesh))

@@ -44,26 +44,6 @@ def require_loads(loads: Loads | None, law_range: float) -> Loads:
     return loads
 
 
-def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArray:
-    """What a head-on impact puts into each contact: its energy + W (range - smallest_gap), W the weight of a stack.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    loads : Loads
-        Loads of the bodies and the smallest gap.
-    law_range : float
-        The gap where the law begins [length].
-
-    Returns
-    -------
-    (m,) array
-        Work [energy].
-    """
-    return impact_energy(contacts, loads) + stacked_weight(contacts, loads) * (law_range - loads.smallest_gap)
-
-
 def impact_energy(contacts: Contacts, loads: Loads) -> FloatArray:
     """The energy of an approach: of the two bodies alone, or if it is more, of the bodies that come down together.
 

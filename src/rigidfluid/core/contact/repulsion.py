@@ -9,7 +9,8 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 
-from rigidfluid.core.contact.loads import require_loads, work_to_stop
+from rigidfluid.core.contact.loads import require_loads
+from rigidfluid.core.contact.work_to_stop import work_to_stop
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads
 
@@ -45,8 +46,8 @@ class RepulsionOptions(PartOptions):
 class Repulsion(ForceLaw):
     """F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
 
-    With ``auto``, ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a dry head-on impact
-    of the expected energy E, that the weight W still pushes on, ends at the smallest gap.
+    With ``auto``, ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a head-on impact of
+    the expected energy E, less what the film takes, that the weight W still pushes on, ends at the smallest gap.
 
     Parameters
     ----------

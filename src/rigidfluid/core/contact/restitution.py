@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
-from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray, Motion
 from rigidfluid.errors import SceneError
-
-
-@dataclass(frozen=True, slots=True)
-class FilmLoss:
-    """What a film that no mesh resolves takes: a ``decay`` β [1], where e falls as exp(-β/St), and the ``film``."""
-
-    decay: float
-    film: Film
 
 
 class Restitution(ForceLaw):
@@ -42,7 +33,8 @@ class Restitution(ForceLaw):
     restitution : float
         e, or with ``loss`` what it tends to in ever faster impacts, from LEAST to 1 [1].
     loss : FilmLoss, optional
-        With it e = restitution · exp(-β/St), but at least LEAST, St the Stokes number of the impact at the speed v.
+        With it a whole impact, the resolved film with it, ends with restitution · exp(-β/St) of the speed at the
+        film's edge, St the Stokes number there; e of the law is what that leaves, but at least LEAST.
 
     Raises
     ------
@@ -101,18 +93,19 @@ class Restitution(ForceLaw):
             force = np.maximum(np.sum(self.law.force(near) * near.normal, axis=1), 0.0)
             stored = np.maximum(2.0 * self.law.energy(near) / motion.mass[rows], 0.0)
             closing = -np.sum(motion.velocity[rows] * near.normal, axis=1)
-            damping[rows] = (force * self._excess(near, closing, stored))[:, None] * near.normal
+            excess = self._excess(near, closing, stored, motion.mass[rows])
+            damping[rows] = (force * excess)[:, None] * near.normal
         return damping
 
-    def _excess(self, contacts: Contacts, closing: FloatArray, stored: FloatArray) -> FloatArray:
-        """x ẇ/v (m,) [1] at ẇ (m,) [length/time] and 2U/m (m,) [length²/time²]."""
+    def _excess(self, contacts: Contacts, closing: FloatArray, stored: FloatArray, mass: FloatArray) -> FloatArray:
+        """x ẇ/v (m,) [1] at ẇ (m,) [length/time] and 2U/m (m,) [length²/time²], of effective masses (m,) [mass]."""
         if self.loss is None:
             whole = np.sqrt(closing**2 + stored)
             return excess(self.restitution, np.divide(closing, whole, out=np.zeros_like(whole), where=whole > 0.0))
-        decay = self.loss.decay / self.loss.film.stokes_number(contacts)
+        restitution = self.loss.restitution(self.restitution, self.law, contacts, mass)
 
         def at(speed: FloatArray) -> Hardening:
-            return hardening(np.maximum(self.restitution * np.exp(-decay / speed), LEAST))
+            return hardening(np.maximum(restitution(speed), LEAST))
 
         return excess_by_speed(closing, stored, at)
 

@@ -11,6 +11,7 @@ from rigidfluid.core.contact.loads import closing_speed, impact_energy, stacked_
 from rigidfluid.core.contact.representative_contacts import free, pair_contacts, representatives, wall_contacts
 from rigidfluid.core.contact.repulsion import AUTO, Repulsion
 from rigidfluid.core.contact.restitution import without_restitution
+from rigidfluid.core.contact.work_to_stop import share_left
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
@@ -54,7 +55,8 @@ def _extremes(system: System, law: Repulsion, loads: Loads, contacts: Contacts) 
     if len(contacts) == 0:
         return
     epsilon = law.epsilon(contacts)
-    speed, energy = closing_speed(contacts, loads), impact_energy(contacts, loads)
+    speed = closing_speed(contacts, loads)
+    energy = impact_energy(contacts, loads) * share_left(contacts, loads, law.range, loads.smallest_gap)
     work = stacked_weight(contacts, loads) * (law.range - loads.smallest_gap)
     for i in sorted({int(np.argmax(epsilon)), int(np.argmin(epsilon))}):
         yield {

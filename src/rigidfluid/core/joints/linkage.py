@@ -54,6 +54,8 @@ class JointLinkage:
         From a time to the twists (N, d+k) of given motions.
     mechanisms : Mechanisms, optional
         The motions that carry the bodies, where these do not all move by themselves.
+    resistance : (n, d+k) array, optional
+        Of a fluid without inertia, at least, to the velocities of each body [force·time/length | force·length·time].
 
     Raises
     ------
@@ -64,7 +66,8 @@ class JointLinkage:
     -----
     ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
     or to the ground alone, its own number. ``frequency`` is that of the springs on the masses without joints, at the
-    start: joints make motions heavier, so it bounds the frequencies with them in any pose.
+    start: joints make motions heavier, so it bounds the frequencies with them in any pose. In a fluid without inertia
+    it is the rate at which they relax against the ``resistance``, if less: a mass then follows without swinging.
     """
 
     def __init__(
@@ -77,6 +80,7 @@ class JointLinkage:
         controlled: BoolArray,
         controlled_twist: Callable[[float], FloatArray],
         mechanisms: Mechanisms | None = None,
+        resistance: FloatArray | None = None,
     ) -> None:
         self._mechanisms, self._controlled_twist = mechanisms, controlled_twist
         self._mass = mass if mechanisms is None else mechanisms.mass
@@ -102,7 +106,7 @@ class JointLinkage:
         start = pose if mechanisms is None else mechanisms.pose
         refuse_void(self._constraints, self._carrier, self._controlled)
         refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
-        self.frequency = self._greatest_frequency(start)
+        self.frequency = self._greatest_rate(start, resistance)
 
     def next_corner(self, time: float) -> float:
         """The first time after this at which rates of links jump; infinite if there is none [time]."""
@@ -250,13 +254,17 @@ class JointLinkage:
         root = np.linalg.cholesky(self._inverse_masses(motions, 0.0))
         return np.asarray(np.einsum("cni,nij->cnj", rows, root))
 
-    def _greatest_frequency(self, motions: Pose) -> float:
+    def _greatest_rate(self, motions: Pose, resistance: FloatArray | None) -> float:
         if not self._springs:
             return 0.0
         bodies, kinematics = self._bodies(motions, 0.0)
-        stretch = np.concatenate([spring.stretch(bodies) for spring in self._springs])
-        weighted = self._weighted(self._carried(stretch, kinematics), motions)
-        return float(np.linalg.norm(weighted.reshape(len(weighted), -1), ord=2))
+        stretch = self._carried(np.concatenate([spring.stretch(bodies) for spring in self._springs]), kinematics)
+        frequency = _norm(self._weighted(stretch, motions))
+        if resistance is None:
+            return frequency
+        carried = np.zeros(stretch.shape[1:])
+        np.add.at(carried, self._carrier, resistance)
+        return min(frequency, _norm(stretch / np.sqrt(carried)) ** 2)
 
     def _linked(self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]) -> tuple[BoolArray, IntArray]:
         """Which motions have links, and the lowest number of those that each is linked with."""
@@ -271,6 +279,11 @@ class JointLinkage:
         graph = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
         parts = connected_components(graph, directed=False)[1]
         return linked, np.unique(parts, return_index=True)[1][parts]
+
+
+def _norm(rows: FloatArray) -> float:
+    """The spectral norm of rows (c, N, d+k)."""
+    return float(np.linalg.norm(rows.reshape(len(rows), -1), ord=2))
 
 
 def _slices(parts: Sequence[LinkParts]) -> tuple[slice, ...]:

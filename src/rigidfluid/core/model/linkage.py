@@ -69,8 +69,8 @@ class Linkage(Protocol):
     """The joints of a system on its N motions.
 
     ``linked`` (N,): which motions have links at all. ``frequency``: of the stiffest spring with the masses that it
-    moves, without a fluid; 0 without springs [rad/time]. ``driven``: whether anything moves as it is told, so that
-    rates and the power of springs may not be zero.
+    moves, without a fluid, or its rate against a fluid without inertia; 0 without springs [rad/time]. ``driven``:
+    whether anything moves as it is told, so that rates and the power of springs may not be zero.
     """
 
     linked: BoolArray

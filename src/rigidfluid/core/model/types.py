@@ -96,13 +96,25 @@ class Motion:
 
 
 @dataclass(frozen=True, slots=True)
+class Film:
+    """The fluid between bodies near contact: ``viscosity``, dynamic [mass·length^(2-d)/time], and whether the fluid has
+    ``inertia``; ``radius`` (n,) of the balls of equal volume [length]; ``finest_cell`` of the mesh, which resolves the
+    film, infinite where it resolves none [length]."""
+
+    viscosity: float
+    radius: FloatArray
+    finest_cell: float
+    inertia: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Loads:
     """What the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
 
     Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
     submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
     ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
-    where its twist is given.
+    where its twist is given. ``film``: that which brakes them before, None without a fluid.
     """
 
     mass: FloatArray
@@ -111,6 +123,7 @@ class Loads:
     stacked_weight: FloatArray
     stacked_energy: FloatArray
     smallest_gap: float
+    film: Film | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -308,8 +308,8 @@ _RESTITUTION = Field(
 _RESTITUTION_STOKES = Field(
     default=None,
     gt=0,
-    description="β, with which the restitution is `restitution` · exp(-β/St), St the Stokes number of the impact; "
-    "balls in a liquid have 35 [1]",
+    description="β, with which an impact ends with `restitution` · exp(-β/St) of its speed, St its Stokes number, the "
+    "film that the mesh resolves included; balls in a liquid have 35 [1]",
 )
 
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.contact.stokes_number import Film
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
@@ -21,6 +20,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
     BoundaryCondition,
+    Film,
     FloatArray,
     FluidProblem,
     IntArray,
@@ -31,7 +31,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
-from rigidfluid.core.setup.impact import impact_speeds
+from rigidfluid.core.setup.impact import creeping_resistances, impact_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_linkage, joined_bodies
@@ -80,7 +80,9 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
     held = opened(conditions(scene, domain), window)
-    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried)
+    creeping = parts.backend.part.needs_mesh and scene.fluid.model == "stokes"
+    resistance = creeping_resistances(scene, domain, parts.bodies) if creeping else None
+    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried, resistance)
     if linkage is not None:
         started = linkage.fitting(start, started, 0.0)
     if carried is not None:
@@ -93,7 +95,7 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh, given)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
     surfaces = (*(body.name for body in scene.body), *domain.names)
-    interactions = build_interactions(scene, parts, surfaces, loads, _film(scene, parts, loads))
+    interactions = build_interactions(scene, parts, surfaces, loads)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
@@ -188,13 +190,16 @@ def _loads(
     radius = np.array([body.bounding_radius for body in parts.bodies])
     together = stacked(own, weight, position, radius, parts.domain.size)
     stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
-    return Loads(np.where(controlled, np.inf, mass), pull, speed, stacked_weight, stacked_energy, smallest)
+    mass = np.where(controlled, np.inf, mass)
+    return Loads(mass, pull, speed, stacked_weight, stacked_energy, smallest, _film(scene, parts))
 
 
-def _film(scene: Scene, parts: Parts, loads: Loads) -> Film | None:
-    if scene.fluid.viscosity is None or not parts.backend.part.needs_mesh:
+def _film(scene: Scene, parts: Parts) -> Film | None:
+    fluid, mesh = scene.fluid, scene.mesh
+    if fluid.viscosity is None or mesh is None or not parts.backend.part.needs_mesh:
         return None
-    return Film(scene.fluid.viscosity, np.array([equal_volume_radius(body) for body in parts.bodies]), loads)
+    radius = np.array([equal_volume_radius(body) for body in parts.bodies])
+    return Film(fluid.viscosity, radius, mesh.size_body / 2**mesh.refinements, fluid.model == "navier-stokes")
 
 
 def _problem(

@@ -113,12 +113,27 @@ def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: 
     assert viscosity is not None
     radius = _by_shape(equal_volume_radius, bodies)
     if scene.fluid.model == "stokes":
-        longest = float(np.max(domain.size))
-        resistance = 6.0 * np.pi * radius if scene.dimension == 3 else 4.0 * np.pi / np.log(longest / radius)
-        return np.asarray(pull / (viscosity * resistance))
+        return np.asarray(pull / creeping_resistances(scene, domain, bodies)[:, 0])
     per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
     reynolds = _reynolds(pull * density / viscosity**2 * per_pull, drag)
     return np.asarray(reynolds * viscosity / (2.0 * radius * density))
+
+
+def creeping_resistances(scene: Scene, domain: Domain, bodies: Sequence[Body]) -> FloatArray:
+    """What a fluid without inertia resists each velocity with, (n, d+k) [force·time/length | force·length·time].
+
+    Of a ball of equal volume far from walls, which nearly every shape and place exceeds: 6πμr and 8πμr³ in 3D, 4πμr² of
+    a rotation in 2D and, of a translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
+    """
+    viscosity = scene.fluid.viscosity
+    assert viscosity is not None
+    radius = _by_shape(equal_volume_radius, bodies)[:, None]
+    if scene.dimension == 3:
+        along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
+    else:
+        along, about = 4.0 * np.pi / np.log(float(np.max(domain.size)) / radius), 4.0 * np.pi * radius**2
+    spin = 1 if scene.dimension == 2 else 3
+    return viscosity * np.hstack([np.repeat(along, scene.dimension, axis=1), np.repeat(about, spin, axis=1)])
 
 
 def _reynolds(driving: FloatArray, drag: Callable[[FloatArray], FloatArray]) -> FloatArray:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rigidfluid.core.contact.restitution import FilmLoss, Restitution
-from rigidfluid.core.contact.stokes_number import Film
+from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Loads
@@ -74,7 +74,7 @@ def check_interactions(scene: Scene, domain: Domain) -> None:
 
 
 def build_interactions(
-    scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads, film: Film | None
+    scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads
 ) -> tuple[Interaction, ...]:
     """The laws, each with the contacts that it acts in.
 
@@ -88,8 +88,6 @@ def build_interactions(
         Names of the bodies, then of the faces.
     loads : Loads
         What contacts must hold; the smallest gap is each table's own.
-    film : Film or None
-        Of the fluid between the bodies, None without a fluid.
 
     Returns
     -------
@@ -104,7 +102,7 @@ def build_interactions(
     return tuple(
         Interaction(
             field=table.at,
-            law=_law(table, selected, loads, film),
+            law=_law(table, selected, loads),
             between=table.between,
             surfaces=tuple(surfaces.index(name) for name in table.names),
             smallest_gap=table.smallest_gap,
@@ -113,7 +111,7 @@ def build_interactions(
     )
 
 
-def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads, film: Film | None) -> ForceLaw:
+def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads) -> ForceLaw:
     own = replace(loads, smallest_gap=table.smallest_gap or SMALLEST_GAP * table.range)
     try:
         law = selected.part(selected.options, table.range, own)
@@ -121,7 +119,7 @@ def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads, film: Film
             table.restitution in (None, 1.0) or has_own_restitution(selected.part)
         ):
             return law
-        return Restitution(law, table.restitution or 1.0, _film_loss(table, selected.part, film))
+        return Restitution(law, table.restitution or 1.0, _film_loss(table, selected.part, own))
     except SceneError as error:  # a law does not know its table
         subject = f"{table.at}.{error.subject.removeprefix('contact.')}"
         allowed = error.allowed.replace("contact.range", f"{table.at}.range")
@@ -133,17 +131,17 @@ def has_own_restitution(law: type[ForceLaw]) -> bool:
     return "restitution" in law.Options.model_fields
 
 
-def _film_loss(table: LawTable, law: type[ForceLaw], film: Film | None) -> FilmLoss | None:
+def _film_loss(table: LawTable, law: type[ForceLaw], loads: Loads) -> FilmLoss | None:
     if table.restitution_stokes is None:
         return None
     given = f"{table.at}.restitution_stokes", table.restitution_stokes
     if has_own_restitution(law):
         allowed = f"a law whose restitution is not its own, as it is with {law.name!r}"
         raise SceneError(*given, allowed, "Remove it, or choose another law.")
-    if film is None:
+    if loads.film is None:
         allowed = "a fluid with a viscosity, which the Stokes number of an impact is made of"
         raise SceneError(*given, allowed, "Remove it, or choose a backend with a fluid.")
-    return FilmLoss(table.restitution_stokes, film)
+    return FilmLoss(table.restitution_stokes, loads.film, loads)
 
 
 def _check_names(scene: Scene, domain: Domain, table: LawTable) -> None:

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
 
 LONGEST_TURN = 0.5
-"""A spring's frequency times the step is at most that: Verlet's scheme then errs by a hundredth of the frequency."""
+"""A spring's frequency times the step is at most that: Verlet's scheme then errs by a hundredth of the frequency. Where
+it relaxes in a fluid without inertia, its rate times the step: half of what is still stable."""
 
 
 def build_linkage(
@@ -33,6 +34,7 @@ def build_linkage(
     controlled: BoolArray,
     controlled_twist: Callable[[float], FloatArray],
     mechanisms: Mechanisms | None,
+    resistance: FloatArray | None,
 ) -> JointLinkage | None:
     """What links the motions of a scene, None where nothing does.
 
@@ -50,6 +52,8 @@ def build_linkage(
         Of the N motions (N, d+k) at a time, where they are given.
     mechanisms : Mechanisms or None
         The motions that carry the bodies.
+    resistance : (n, d+k) array or None
+        Of a fluid without inertia, at least, to the velocities of each body [force·time/length | force·length·time].
 
     Returns
     -------
@@ -65,7 +69,7 @@ def build_linkage(
     if not scene.joint and not ground:
         return None
     joints = joints_of(scene, pose)
-    linkage = JointLinkage(pose, joints, ground, mass, inertia, controlled, controlled_twist, mechanisms)
+    linkage = JointLinkage(pose, joints, ground, mass, inertia, controlled, controlled_twist, mechanisms, resistance)
     _check_step(scene, linkage)
     return linkage
 

@@ -1,0 +1,86 @@
+"""What a law has to take of an impact in a fluid, beside what the resolved film takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Contacts, Film, FloatArray, Loads
+
+_PARTS = 12
+"""Of the way from range to contact, over which the film's part is summed."""
+
+_LEAST_TAKEN = 1e-9
+"""The least part of β that a film takes: below it 1/A - 1 in the marginal Stokes number has no digits left."""
+
+
+class Braking(NamedTuple):
+    """What the resolved film takes of an impact's Stokes number [1]: ``outside`` (m,) before the law's range is
+    reached, and ``within`` it on the way in, (m,) over the speed at range; ``per_speed`` (m,) St/v [time/length]."""
+
+    per_speed: FloatArray
+    outside: FloatArray
+    within: Callable[[FloatArray], FloatArray]
+
+
+def braking(law: ForceLaw, contacts: Contacts, mass: FloatArray, film: Film, loads: Loads) -> Braking:
+    """What the film takes where the law turns bodies of the effective ``mass`` (m,) [mass]: within range the film acts
+    at v √(1 - 2U/(m v²)), U the law's energy."""
+    edges = law.range * np.linspace(1.0, 0.0, _PARTS + 1)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    taken = np.array([stokes_number_taken(contacts, film, gap) for gap in edges[:-1]])
+    stored = np.array([law.energy(replace(contacts, gap=np.full(len(contacts), gap))) for gap in middles[:-1]])
+
+    def within(speed: FloatArray) -> FloatArray:
+        left = np.sqrt(np.clip(1.0 - 2.0 * stored / (mass * speed**2), 0.0, 1.0))
+        return np.asarray(np.sum(np.diff(taken, axis=0) * left, axis=0))
+
+    return Braking(stokes_number(contacts, film, loads), taken[0], within)
+
+
+@dataclass(frozen=True, slots=True)
+class FilmLoss:
+    """The loss of impacts in a fluid: e falls as exp(-β/St) with the ``decay`` β [1], whether the mesh resolves the
+    ``film`` or not; ``loads`` has the masses."""
+
+    decay: float
+    film: Film
+    loads: Loads
+
+    def restitution(
+        self, dry: float, law: ForceLaw, contacts: Contacts, mass: FloatArray
+    ) -> Callable[[FloatArray], FloatArray]:
+        """The restitution (m,) [1] of the law alone over the speed v (m,) at range [length/time].
+
+        The film takes A of St before range, and B within it on the way in; on the way out it takes both again. So
+        a body that reaches range at St has come with St + A, and comes back with e₀ exp(-β/(St + A)) of that where
+
+            e = [e₀ exp(-β/(St + A)) (St + A) + A + B]/(St - B),
+
+        e₀ the ``dry`` one. e never falls with v: impacts below its least value have that, and do not come back.
+        """
+        met = braking(law, contacts, mass, self.film, self.loads)
+
+        def at(speed: FloatArray) -> FloatArray:
+            both = met.outside + met.within(speed)
+            stokes = np.maximum(met.per_speed * speed + met.outside, self._marginal(dry, both))
+            whole = dry * np.exp(-self.decay / stokes)
+            return np.asarray(np.minimum((whole * stokes + both) / (stokes - both), dry))
+
+        return at
+
+    def _marginal(self, dry: float, taken: FloatArray) -> FloatArray:
+        """St (m,) at which e is least where the film takes ``taken`` (m,) of St: with s = β/St and a = taken/β,
+
+        exp(s)/e₀ + s = 1/a - 1.
+        """
+        from scipy.special import wrightomega
+
+        known = self.decay / np.maximum(taken, _LEAST_TAKEN * self.decay) - 1.0
+        ratio = known - wrightomega(known - np.log(dry)).real
+        return np.asarray(self.decay / np.maximum(ratio, _LEAST_TAKEN))

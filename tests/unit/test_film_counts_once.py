@@ -1,0 +1,132 @@
+"""Impacts in a fluid: the law and the resolved film together leave what the formula asks for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from touching import contact, unstacked
+
+import rigidfluid
+from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.loads import inverse_mass
+from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.contact.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.types import Film, Loads, Motion
+from rigidfluid.forces.normal import NormalLaw
+
+DRY, DECAY, RADIUS, VISCOSITY = 0.97, 35.0, 0.1, 0.1
+EDGE = FILM_EDGE * RADIUS
+LOADS = unstacked(np.array([2.0]), np.zeros(1), np.zeros(1), 1e-3)
+FILM = Film(VISCOSITY, np.array([RADIUS]), 0.0, True)
+
+
+def cylinder_resistance(gap: float) -> float:
+    """Exact in Stokes flow (Jeffrey and Onishi 1981)."""
+    alpha = np.arccosh(1.0 + max(gap, 1e-6) / RADIUS)  # trial steps of the integrator may overlap
+    return float(4.0 * np.pi * VISCOSITY / (alpha - np.tanh(alpha)))
+
+
+def sphere_resistance(gap: float) -> float:
+    return 6.0 * np.pi * VISCOSITY * RADIUS**2 / max(gap, 1e-6)
+
+
+class Impact(NamedTuple):
+    """``whole``: the speed at the film's edge on the way out over that on the way in, zero where none comes back;
+    ``fastest`` on the way out over the same; the smallest ``gap``."""
+
+    whole: float
+    fastest: float
+    gap: float
+
+
+def impact(law: ForceLaw, dimension: int, stokes: float) -> Impact:
+    """Of a ball with a law and the exact film."""
+    there = contact(EDGE, RADIUS, np.inf, dimension)
+    mass, normal = 1.0 / float(inverse_mass(there, LOADS)[0]), there.normal
+    speed = stokes / float(stokes_number(there, FILM, LOADS)[0])
+    resistance = cylinder_resistance if dimension == 2 else sphere_resistance
+
+    def rate(_: float, state: np.ndarray) -> list[float]:
+        there, motion = contact(state[0], RADIUS, np.inf, dimension), Motion(state[1] * normal, np.array([mass]))
+        force = float((law.force(there) + law.damping(there, motion))[0] @ normal[0])
+        return [state[1], (force - resistance(state[0]) * state[1]) / mass]
+
+    def out(_: float, state: np.ndarray) -> float:
+        return float(state[0] - EDGE)
+
+    out.terminal, out.direction = True, 1  # type: ignore[attr-defined]
+    start, longest = [EDGE * (1.0 - 1e-9), -speed], EDGE / speed
+    found = solve_ivp(rate, (0.0, 200.0 * longest), start, rtol=1e-5, atol=1e-9, events=out, max_step=longest)
+    whole = float(found.y_events[0][0, 1]) / speed if len(found.y_events[0]) else 0.0
+    return Impact(whole, float(found.y[1].max()) / speed, float(found.y[0].min()))
+
+
+def loads(dimension: int, stokes: float) -> Loads:
+    """Of a ball that arrives at the Stokes number."""
+    there = contact(EDGE, RADIUS, np.inf, dimension)
+    speed = np.array([stokes / float(stokes_number(there, FILM, LOADS)[0])])
+    return replace(unstacked(LOADS.mass, np.zeros(1), speed, LOADS.smallest_gap), film=FILM)
+
+
+def whole_rebound(dimension: int, law_range: float, stokes: float) -> float:
+    held = replace(loads(dimension, stokes), smallest_gap=0.25 * law_range)
+    law = NormalLaw(NormalLaw.Options(epsilon="auto"), law_range, held)
+    return impact(Restitution(law, DRY, FilmLoss(DECAY, FILM, held)), dimension, stokes).whole
+
+
+@pytest.mark.parametrize(("dimension", "law_range"), [(2, 0.03), (2, 0.01), (3, 0.03), (3, 0.002)])
+@pytest.mark.parametrize("stokes", [30.0, 100.0, 1000.0])
+def test_law_and_film_together_leave_the_formula(dimension: int, law_range: float, stokes: float) -> None:
+    assert whole_rebound(dimension, law_range, stokes) == pytest.approx(DRY * np.exp(-DECAY / stokes), abs=0.05)
+
+
+@pytest.mark.parametrize(("dimension", "law_range"), [(2, 0.03), (2, 0.01), (3, 0.03), (3, 0.002)])
+def test_slow_impacts_in_a_resolved_film_do_not_come_back(dimension: int, law_range: float) -> None:
+    assert whole_rebound(dimension, law_range, 7.0) == 0.0
+
+
+@pytest.mark.parametrize(("dimension", "stokes"), [(2, 8.0), (3, 4.0), (3, 6.0)])
+def test_auto_lets_the_film_stop_what_it_can(dimension: int, stokes: float) -> None:
+    """It counts on the speed that the film leaves, so that the ball comes near and next to nothing comes back."""
+    law_range, held = 0.1 * RADIUS, loads(dimension, stokes)
+    held = replace(held, smallest_gap=0.25 * law_range)
+    found, dry = (
+        impact(NormalLaw(NormalLaw.Options(epsilon="auto"), law_range, one), dimension, stokes)
+        for one in (held, replace(held, film=None))
+    )
+    assert found.whole == 0.0
+    assert held.smallest_gap < found.gap < 0.85 * dry.gap
+    assert found.fastest < 0.75 * dry.fastest
+
+
+def test_the_cylinders_film_takes_what_its_exact_resistance_does() -> None:
+    gaps = np.geomspace(0.02 * RADIUS, EDGE, 2001)
+    lost = np.trapezoid([cylinder_resistance(gap) for gap in gaps], gaps)
+    there = contact(EDGE, RADIUS, np.inf)
+    exact = lost * float(inverse_mass(there, LOADS)[0] * stokes_number(there, FILM, LOADS)[0])
+    assert stokes_number_taken(there, FILM, gaps[0])[0] == pytest.approx(exact, rel=0.02)
+    assert stokes_number_taken(there, FILM, 2.0 * EDGE)[0] == 0.0
+
+
+def test_a_film_that_cells_do_not_resolve_takes_nothing() -> None:
+    films = [Film(VISCOSITY, np.array([RADIUS]), cell, True) for cell in (0.0, 0.02, 0.1)]
+    taken = [float(stokes_number_taken(contact(0.001, RADIUS, np.inf), film, 0.001)[0]) for film in films]
+    assert taken[0] > taken[1] > taken[2] == 0.0
+
+
+def test_a_disk_in_a_fluid_comes_back_as_the_formula_says() -> None:
+    """Speeds at a gap of half a radius, at St = 44."""
+    overrides = ["fluid.viscosity=0.035", "contact.restitution=0.97", "contact.restitution_stokes=35"]
+    overrides += ["mesh.size_body=0.04", "body.0.position=[0.3, 0.4]", "time.step=0.001", "time.end=0.05"]
+    bodies = rigidfluid.run(rigidfluid.load_scene("scenes/rebound.toml", overrides)).bodies
+    gap, speed = bodies["gap"], bodies["vx"]
+    turn = int(np.argmin(gap))
+    came = -float(np.interp(0.05, gap[: turn + 1][::-1], speed[: turn + 1][::-1]))
+    gone = float(np.interp(0.05, gap[turn:], speed[turn:]))
+    stokes = 9.0 * 0.2 * came / (9.0 * 0.035)
+    assert gone / came == pytest.approx(0.97 * np.exp(-35.0 / stokes), abs=0.04)
