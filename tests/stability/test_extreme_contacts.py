@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from extreme_cases import CASES, ENDS, Case, Finding, findings, surprises
+from extreme_cases import CASES, ENDS, Case, Demand, Finding, findings, held_against, surprises
 from extreme_scenes import three_disks
 from fluid_contacts import created_and_lost
 
@@ -23,7 +25,7 @@ LIGHT_AND_HEAVY = [
     pytest.param(case, id=case.name, marks=[pytest.mark.validation] if is_long(case) else []) for case in CASES
 ]
 GAINED = "energy created"
-HOLDS, FAILS = (Finding(GAINED, "energy created at most 0.01", "0.02", passed) for passed in (True, False))
+KNOWN = Demand(GAINED, at_most=0.03)
 
 
 @pytest.mark.parametrize("case", LIGHT_AND_HEAVY)
@@ -35,17 +37,19 @@ def test_cases_have_names_of_their_own() -> None:
     assert len({case.name for case in CASES}) == len(CASES)
 
 
-def test_a_mark_of_failure_is_for_what_fails() -> None:
-    marked, unmarked = _case(GAINED), _case()
-    assert surprises(marked, [FAILS]) == surprises(unmarked, [HOLDS]) == []
-    assert surprises(marked, [HOLDS]) == ["energy created: holds now, take it out of `fails`"]
-    assert surprises(unmarked, [FAILS]) == ["energy created at most 0.01; found: 0.02"]
+def test_a_mark_of_failure_is_for_what_fails_and_gets_no_worse() -> None:
+    marked, unmarked = _case(KNOWN), _case()
+    assert _surprises(marked, 0.02) == _surprises(unmarked, 0.005) == []
+    assert _surprises(marked, 0.005) == ["energy created: holds now, take it out of what fails"]
+    assert _surprises(unmarked, 0.02) == ["energy created at most 0.01; found: 0.02"]
+    assert _surprises(marked, 0.04) == ["energy created at most 0.03 is known; found: 0.04"]
 
 
 def test_a_case_that_stops_does_not_fail_in_another_way() -> None:
-    stopped = Finding(ENDS, ENDS, "stops: too much", False)
-    assert surprises(_case(GAINED), [stopped]) != []
-    assert surprises(_case(ENDS), [stopped]) == []
+    stopped, other = Finding(ENDS, ENDS, "stops: too much", False), "too little is known; found: stops: too much"
+    assert surprises(_case(KNOWN), [stopped]) != []
+    assert surprises(replace(_case(), fails_by="too little"), [stopped]) == [other]
+    assert surprises(replace(_case(), fails_by="too much"), [replace(stopped, known=True)]) == []
 
 
 def test_what_viscosity_took_hides_nothing() -> None:
@@ -57,5 +61,9 @@ def test_what_viscosity_took_hides_nothing() -> None:
     assert (created, lost) == pytest.approx((0.2, 0.0))
 
 
-def _case(*fails: str) -> Case:
+def _case(*fails: Demand) -> Case:
     return Case("three disks", lambda: three_disks({}), (), fails=fails)
+
+
+def _surprises(case: Case, created: float) -> list[str]:
+    return surprises(case, [held_against(case, Demand(GAINED, at_most=0.01), created)])

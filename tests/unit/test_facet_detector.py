@@ -80,6 +80,13 @@ def test_blocks_that_overhang_each_other_touch_at_a_corner_of_each() -> None:
     np.testing.assert_allclose(contacts.normal, [[0.0, 1.0]] * 2, atol=1e-12)
 
 
+@pytest.mark.parametrize("shift", [0.0, 1e-16, -1e-15, 1e-12, 1e-9])
+def test_squares_with_corner_over_corner_touch_as_often_as_those_beside(shift: float) -> None:
+    """Twice at each end: rounding may say that a foot is the end of a side, and also an inside of the next one."""
+    contacts = found([polygon(SQUARE), polygon(SQUARE)], pose((2.7 + shift, 1.36, 0.0), (2.7, 0.35, 0.0)), reach=0.1)
+    np.testing.assert_allclose(contacts.gap, [0.01] * 4, rtol=1e-9)
+
+
 def test_a_ball_in_the_corner_of_an_l_touches_both_arms() -> None:
     shape = polygon(L_SHAPE)
     corner = shape.facets.points[3]

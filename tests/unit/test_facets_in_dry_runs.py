@@ -16,6 +16,8 @@ from rigidfluid.core.setup.load import scene_from_dict
 
 ELASTIC = {"law": "contact", "epsilon": "auto", "range": 0.02}
 BOX = (0.2 * np.array(SQUARE)).tolist()
+TOOTH = ((0.0, 0.12), (0.25, 0.12), (0.35, 0.17), (0.65, 0.17), (0.75, 0.12))
+"""Corners of a tooth: part of the turn to the next, and radius."""
 
 
 def block(corners: Any, position: list[float], angle: float = 0.0) -> dict[str, Any]:
@@ -77,6 +79,32 @@ def test_a_pile_of_several_shapes_keeps_its_energy() -> None:
     simulation, energy, most = energies(dry_scene(ELASTIC, *bodies, end=0.8, step=0.01, gravity=[0, -1.0]))
     assert np.ptp(energy) < 1e-3 * most
     assert simulation.state.contacts.gap.min() > 0
+
+
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+def test_squares_that_lie_on_each_other_create_no_energy(stepping: str) -> None:
+    law = {"law": "barrier", "range": 0.02, "epsilon": 1e-3, "stepping": stepping}
+    squares = block(BOX, [0.5, 0.11]), block(BOX, [0.5, 0.32])
+    _, energy, most = energies(dry_scene(law, *squares, end=0.05, step=0.004, gravity=[0.0, -9.81]))
+    assert np.ptp(energy) < 1e-3 * most
+
+
+def gear(teeth: int) -> list[list[float]]:
+    """Corners of a wheel with teeth that narrow outwards."""
+    corners = [(tooth + turn, radius) for tooth in range(teeth) for turn, radius in TOOTH]
+    turned = [(2.0 * np.pi * turn / teeth, radius) for turn, radius in corners]
+    return [[radius * float(np.cos(angle)), radius * float(np.sin(angle))] for angle, radius in turned]
+
+
+def test_gears_keep_their_energy_in_implicit_steps_of_any_length() -> None:
+    """A tooth meets several sides, and a step that loses sight of one, or turns too far for one force, is shortened."""
+    law = {"law": "normal", "range": 0.02, "epsilon": 1e-7, "stepping": "implicit"}
+    turning = {"free": ["rotation"], "density": 1.0}
+    first = block(gear(6), [0.35, 0.5]) | turning | {"angular_velocity": [20.0]}
+    second = block(gear(6), [0.66, 0.5], 0.5) | turning
+    simulation, energy, most = energies(dry_scene(law, first, second, end=0.06, step=0.004))
+    assert abs(simulation.state.twist.angular_velocity[1, 0]) > 1.0
+    assert np.ptp(energy) < 1e-4 * most
 
 
 def test_a_cube_dropped_flat_lies_on_four_corners(tmp_path: Path) -> None:

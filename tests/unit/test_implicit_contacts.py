@@ -130,16 +130,13 @@ def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
     assert residual > 0.01
 
 
-def test_an_ellipsoid_keeps_its_energy_to_second_order():
-    body = {"type": "ellipsoid", "semi_axes": [0.1, 0.06, 0.04], "density": 1.0, "position": [0.5, 0.5, 0.3]}
+def test_an_ellipsoid_that_turns_about_any_axis_keeps_its_energy():
+    body = {"type": "ellipsoid", "semi_axes": [0.1, 0.06, 0.04], "density": 1.0, "position": [0.5, 0.5, 0.15]}
     body |= {"angular_velocity": [3.0, 1.0, 2.0]}
-    law = {"law": "normal", "epsilon": 1e-4}
-    residuals = []
-    for step in (2e-3, 1e-3, 5e-4):
-        history = rigidfluid.run(implicit(law, body, end=0.4, step=step, gravity=[0.0, 0.0, -5.0]))
-        residuals.append(abs(history.summary["energy"]["relative_residual"]))
-    assert residuals[-1] < 1e-4
-    assert residuals[0] / residuals[-1] > 10.0
+    law = {"law": "normal", "epsilon": 1e-6}
+    history = rigidfluid.run(implicit(law, body, end=0.3, step=4e-3, gravity=[0.0, 0.0, -5.0]))
+    assert np.ptp(history.bodies["wy"]) > 3.0
+    assert abs(history.summary["energy"]["relative_residual"]) < 1e-7
 
 
 @pytest.mark.parametrize("restitution", [0.7, 0.2])

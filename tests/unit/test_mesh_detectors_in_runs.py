@@ -1,10 +1,12 @@
 """Scenes whose detector reads the mesh, from start to end."""
 
+import numpy as np
 import pytest
 from mesh_tools import ball, box, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.run.run import run
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import cheapest_detector
@@ -13,18 +15,19 @@ from rigidfluid.errors import SceneError
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}
 DISK = {"type": "sphere", "radius": 0.08, "density": 1.25, "position": [0.3, 0.105]}
 BOX = box([0.0, 0.0], [0.6, 0.8])
+COARSE = {"size_body": 0.06, "quality": 0.01, "cells_per_gap": 1}
 LAW = {"law": "centre", "range": 0.03, "epsilon": 5e-6}
 
 
-def scene(body, contact, backend="scikit-fem"):
+def scene(body, contact, backend="scikit-fem", **more):
     return scene_from_dict(
         {
             "scene": {"name": "fall", "dimension": 2},
             "fluid": {"backend": backend, "density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},
             "domain": {"lower": [0.0, 0.0], "upper": [0.6, 0.8]},
-            "body": [body],
+            "body": [body, *more.get("others", [])],
             "contact": contact,
-            "mesh": {"size": 0.08, "size_body": 0.02},
+            "mesh": {"size": 0.08, "size_body": 0.02} | more.get("mesh", {}),
             "time": {"end": 0.02, "step": 0.002},
             "output": {"every": 0.02},
         }
@@ -37,6 +40,22 @@ def test_a_disk_is_held_off_a_wall_as_by_the_closed_form(detector):
     closed = run(scene(DISK, {"detector": "sphere", **LAW}))
     assert marched.summary["smallest_gap"] == pytest.approx(closed.summary["smallest_gap"], rel=0.02)
     assert marched.summary["rejected_steps"] == closed.summary["rejected_steps"]
+
+
+def test_forces_on_balls_pass_through_their_centres_however_coarse_the_mesh():
+    """On a mesh a disk is a polygon, whose lowest corner is beside its centre: a force there would turn the disk."""
+    other = DISK | {"position": [0.431, 0.2]}
+    run = Simulation(scene(DISK, {"detector": "narrow_band", **LAW}, others=[other], mesh=COARSE), None, False)
+    contacts, centre = run.state.contacts, run.state.pose.position
+    assert contacts.body_b.tolist() == [1, 4]
+    arm = contacts.point_a - centre[contacts.body_a]
+    np.testing.assert_allclose(arm, -0.08 * contacts.normal, atol=1e-15)
+    np.testing.assert_allclose(contacts.normal[1], [0.0, 1.0], atol=1e-15)
+    away = np.linalg.norm(centre[1] - centre[0])
+    np.testing.assert_allclose(contacts.gap, [away - 0.16, 0.025], atol=1e-15)
+    np.testing.assert_allclose(
+        contacts.point_b, contacts.point_a - contacts.gap[:, None] * contacts.normal, atol=1e-15
+    )
 
 
 def test_an_ellipse_falls_and_its_gap_is_recorded_within_the_band():

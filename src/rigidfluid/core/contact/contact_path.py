@@ -11,7 +11,7 @@ import numpy as np
 
 from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.implicit_contacts import implicit_contact_step
+from rigidfluid.core.contact.implicit_contacts import KEPT, implicit_contact_step
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
@@ -239,12 +239,10 @@ def _implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: 
 def _implicit_or_free(
     system: System, law: ForceLaw, movement: BodyDynamics, size: float
 ) -> tuple[BodyStep, BodyDynamics]:
-    """Contacts are foreseen at four times the fastest speed, as impacts may double that of both."""
-    reach = law.range + 4.0 * _fastest(system, movement, size) * size
-    contacts = TrackedPairs(system, movement.pose, reach)
+    contacts = _foreseen(system, law, movement, size, 0.0)
     if len(contacts.start) == 0:
         return _free_flight(system, movement, size), movement
-    return _implicit_step(system, law, movement, contacts.start, contacts.at, size)
+    return _implicit_step(system, law, movement, contacts.start, contacts, size)
 
 
 def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
@@ -254,18 +252,15 @@ def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, nea
     be too great for the fluid's mass.
     """
     part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
-    followed = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    on_mesh = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
     reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
     for _ in range(IMPLICIT_PARTS):
-        if followed is not None:
-            start, contacts_at = followed.at(movement.pose), followed.at
-        else:
-            contacts = TrackedPairs(system, movement.pose, reach)
-            start, contacts_at = contacts.start, contacts.at
+        followed = on_mesh or _foreseen(system, law, movement, part, reach)
+        start = followed.start if isinstance(followed, TrackedPairs) else followed.at(movement.pose)
         if len(start) == 0:
             _free_flight(system, movement, part)
             continue
-        path, movement = _implicit_step(system, law, movement, start, contacts_at, part)
+        path, movement = _implicit_step(system, law, movement, start, followed, part)
         impulse = _added(impulse, path.impulse, 1.0)
         lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
     return _arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS, movement.friction_loss)
@@ -276,11 +271,14 @@ def _implicit_step(
     law: ForceLaw,
     movement: M,
     start: Contacts,
-    contacts_at: Callable[[Pose], Contacts],
+    followed: TrackedPairs | ExtrapolatedContacts,
     size: float,
 ) -> tuple[BodyStep, M]:
     """One implicit step, and the movement at its end."""
-    end, wrench, lost, driven = implicit_contact_step(law, movement, start, contacts_at, size, system.wall_velocity)
+    crossing = implicit_contact_step(law, movement, start, followed.at, size, system.wall_velocity)
+    end, wrench, lost, driven, stored = crossing
+    if isinstance(followed, TrackedPairs):
+        _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     before, after = _given_twist(system, movement), _given_twist(system, end)
     mean = Twist(
@@ -289,6 +287,38 @@ def _implicit_step(
     )
     actuator_work = driven - float(power(impulse, mean)[_driven(system)].sum())
     return _arrived(end, impulse, lost, actuator_work, 1), end
+
+
+def _foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float, reach: float) -> TrackedPairs:
+    """The contacts that a step of this ``size`` may bring into range, at least those in ``reach`` [length].
+
+    At four times the fastest speed, as impacts may double that of both, and at what bodies that stand still, pressed
+    together, may get from their contacts.
+    """
+    reach = max(reach, law.range + 4.0 * _fastest(system, movement, size) * size)
+    contacts = TrackedPairs(system, movement.pose, reach)
+    released = _released(system, law, movement, contacts.start)
+    if released > 0.0:
+        contacts = TrackedPairs(system, movement.pose, reach + 2.0 * released * size)
+    return contacts
+
+
+def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
+    """The speed of any surface if a body had all energy that its contacts store [length/time]."""
+    energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
+    np.add.at(stored, contacts.body_a, energy)
+    np.add.at(stored, contacts.body_b, energy)
+    straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
+    lightness = straight + arms(system) ** 2 * turning
+    return float(np.sqrt(2.0 * np.max(stored[: len(lightness)] * lightness)))
+
+
+def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: float) -> None:
+    """Raise StepRejected if contacts that came or went unseen hold more energy than ``allowed``."""
+    missed = followed.missed(law, end)
+    if abs(missed) > allowed:
+        found = f"contacts of a pair that came or went within it, with an energy of {missed:.1e}"
+        raise StepRejected("the implicit contact step", found, "contacts that last through it", "Shorten the step.")
 
 
 def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:

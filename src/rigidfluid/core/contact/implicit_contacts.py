@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -10,12 +10,12 @@ import numpy as np
 
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
-from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.contact.substep import relative_motion, relative_velocity
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
-from rigidfluid.core.model.contacts import middle
+from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Wrench
+from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Twist, Wrench
 from rigidfluid.core.model.wall import WallVelocities
 from rigidfluid.errors import StepRejected
 
@@ -29,6 +29,10 @@ range, or a way that is nearly none, may have no value that fits."""
 TOLERANCE = 1e-10
 """How far, over the range, the surfaces may end from where the forces take them."""
 
+KEPT = 1e-5
+"""What a step may create or lose where bodies turn too far in it for one force in each contact, over the energy that it
+has."""
+
 _SCALES = 0.5, 2.0
 _STILL = 1e-6
 _ROUNDING = 1e-14
@@ -38,13 +42,14 @@ M = TypeVar("M", bound=BodyDynamics)
 
 
 class Crossing(NamedTuple, Generic[M]):
-    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, and what
-    sliding walls have ``driven`` into the bodies [energy]."""
+    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, what
+    sliding walls have ``driven`` into the bodies, and what bodies and contacts ``store`` [energy]."""
 
     movement: M
     wrench: Wrench
     lost: float
     driven: float
+    stored: float
 
 
 def implicit_contact_step(
@@ -58,10 +63,10 @@ def implicit_contact_step(
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
 
     f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
-    the way of the surfaces past each other, n and the points are those in mid-step. Dampers act with the mean velocity,
-    across the surfaces implicitly, along them with that of the iteration before. Second order where the step resolves
-    the contact. The energy is kept in steps of any length, but for bodies in 3D that are no balls: there to second
-    order.
+    the way of the surfaces past each other by their mean velocity in both kicks, n and the points are those in
+    mid-step. Dampers act with the mean velocity, across the surfaces implicitly, along them with that of the iteration
+    before. Second order where the step resolves the contact. The energy is kept in steps of any length; those in which
+    bodies turn too far for that are rejected.
 
     Parameters
     ----------
@@ -86,7 +91,7 @@ def implicit_contact_step(
     Raises
     ------
     StepRejected
-        If bodies would overlap, or no forces are found.
+        If bodies would overlap, no forces are found, or the forces do not keep the energy.
 
     Notes
     -----
@@ -115,8 +120,10 @@ def implicit_contact_step(
         if _converged(law, iterate, gap, wanted - push):
             driven = 0.0
             if wall_velocity is not None:
-                driven = size * float(np.sum(push * wall_velocity(start.body_b, middle(iterate.middle))))
-            return _crossing(iterate, used, size, driven)
+                driven = size * float(np.sum(push * wall_velocity(start.body_b, centre(iterate.middle))))
+            stored = _stored(law, movement, start)
+            _refuse_to_create(law, start, iterate, before.scale * spring, stored)
+            return _crossing(iterate, used, size, driven, stored)
         gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
@@ -171,11 +178,18 @@ def _evaluate(
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
+    kicked = trial.twist
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
+    drifted = trial.twist
     trial.kick(wrench, 0.5 * size, place)
+    twist = _mean((movement.twist, kicked, drifted, trial.twist))
+    velocity = relative_velocity(middle, pose, twist)
+    if wall_velocity is not None:
+        velocity -= wall_velocity(middle.body_b, centre(middle))
+    motion = replace(motion, velocity=velocity)
     gap = contacts_at(trial.pose).gap
     if np.any(gap <= 0.0):
         raise _rejected("an overlap where they take the bodies")
@@ -208,12 +222,41 @@ def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: Fl
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float) -> Crossing[M]:
+def _mean(twists: Sequence[Twist]) -> Twist:
+    return Twist(
+        np.mean([twist.velocity for twist in twists], axis=0),
+        np.mean([twist.angular_velocity for twist in twists], axis=0),
+    )
+
+
+def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
+    """Kinetic energy of free bodies and what the contacts store [energy]."""
+    twist, energy = movement.twist, float(law.energy(contacts).sum())
+    for velocity, inverse in (
+        (twist.velocity, movement.mobility),
+        (twist.angular_velocity, movement.inverse_inertia),
+    ):
+        free = inverse.any(axis=(1, 2))
+        energy += 0.5 * float(np.einsum("ni,nij,nj->", velocity[free], np.linalg.inv(inverse[free]), velocity[free]))
+    return energy
+
+
+def _refuse_to_create(law: ForceLaw, start: Contacts, iterate: _Iterate[M], force: FloatArray, stored: float) -> None:
+    """Raise StepRejected if the springs' ``force`` (m,) does another work than their energy loses."""
+    end = replace(start, gap=iterate.gap)
+    created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
+    if abs(created) > KEPT * stored:
+        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far,")
+
+
+def _crossing(
+    iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float, stored: float
+) -> Crossing[M]:
     """The step is done, unless dampers that were not renewed to the end would give energy."""
     lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
     if lost < 0.0:
         raise _rejected("dampers that would give energy")
-    return Crossing(iterate.movement, iterate.wrench, lost, driven)
+    return Crossing(iterate.movement, iterate.wrench, lost, driven, stored)
 
 
 def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:

@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.proximity import detect, interacting, travel
+from rigidfluid.core.contact.proximity import arms, detect, interacting, travel
 from rigidfluid.core.model.contacts import joined, select
+from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose
 from rigidfluid.errors import StepRejected
 
 SAME_PLACE = 4.0
 """A contact is the one before if its points are no farther from those carried along than this times the way."""
+
+SLIDING = 0.01
+"""How much the farther of the two points counts beside the nearer one."""
 
 
 class TrackedPairs:
@@ -53,6 +57,12 @@ class TrackedPairs:
             return select(found, np.searchsorted(numbers, self._pairs))
         return self._matched(found, numbers, ExtrapolatedContacts(self.start, self._pose).at(pose), SAME_PLACE * moved)
 
+    def missed(self, law: ForceLaw, pose: Pose) -> float:
+        """Energy of the contacts at ``pose`` less that of those followed there: of what came, or went, unseen."""
+        if _all_different(self._pairs) and not arms(self._system).any():
+            return 0.0  # two balls have one contact, and others are refused
+        return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.at(pose)).sum())
+
     def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
         """Of each contact ``carried`` along the one ``found`` at its place."""
         from scipy.optimize import linear_sum_assignment
@@ -92,8 +102,8 @@ def _all_different(numbers: IntArray) -> bool:
 
 
 def _apart(first: Contacts, rows: IntArray, second: Contacts, others: IntArray) -> FloatArray:
-    """Sum of the distances of both points, of each of some contacts to each of others [length]."""
-    total = np.zeros((len(rows), len(others)))
-    for one, other in ((first.point_a, second.point_a), (first.point_b, second.point_b)):
-        total += np.linalg.norm(one[rows][:, None] - other[others][None], axis=2)
-    return total
+    """The distance of the nearer points and a little of that of the others, of each of some contacts to each of others
+    [length]: a corner goes with its body, while the point that faces it slides."""
+    points = (first.point_a, second.point_a), (first.point_b, second.point_b)
+    a, b = (np.linalg.norm(one[rows][:, None] - other[others][None], axis=2) for one, other in points)
+    return np.asarray(np.minimum(a, b) + SLIDING * np.maximum(a, b))

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.model.facet_faces import Faces, faces_of
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.surface import Plane, Surface
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
@@ -154,6 +154,7 @@ class FacetSurface(Surface):
             points[query[row]], others[row], their_bits[row], their_weights[row][:, : points.shape[1]]
         )
         ahead = np.flatnonzero(self._side(points[query[row]], others[row], their_bits[row]) > 0)
+        ahead = ahead[_distinct(query[row][ahead], more.foot[ahead], first.foot, _TOUCHING * self._size)]
         near = np.flatnonzero(first.distance <= reach)
         return Nearby(
             np.concatenate([near, query[row][ahead]]),
@@ -198,6 +199,16 @@ class FacetSurface(Surface):
     @cached_property
     def _faces(self) -> Faces:
         return faces_of(self._points, self._vertices)
+
+
+def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: float) -> BoolArray:
+    """Which places (m,) are farther than ``touching`` [length] from the first of their point, and from those before.
+
+    Where a point stands over an end of facets, rounding may say that it is an inside of one and the end of another.
+    """
+    apart = np.linalg.norm(foot - first[query], axis=1) > touching
+    same = (query[:, None] == query) & (np.linalg.norm(foot[:, None] - foot, axis=2) <= touching)
+    return np.asarray(apart & ~np.tril(same, -1).any(axis=1))
 
 
 def plane_of(facets: Facets, tolerance: float) -> Plane | None:
