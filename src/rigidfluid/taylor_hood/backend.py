@@ -90,12 +90,21 @@ class TaylorHoodBackend(FluidBackend):
         target = self._for_steady(_given(mesh)) if start == "steady" else self._for_projection(_given(mesh))
         given = target, self.options.tolerance, _given(mesh), pose, twist
         if start == "rest":
-            made = initial(*given)
+            made = initial(*given, faces=self.problem.inertia)
         else:
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given, start)
             made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
         self.drop_factors()
         return made
+
+    @final
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> Twist:
+        from rigidfluid.taylor_hood.transfer import initial
+
+        target = self._for_projection(mesh)
+        fluid, _ = initial(target, self.options.tolerance, mesh, pose, twist, faces=False)
+        self.drop_factors()
+        return self.advance(fluid, mesh, step).twist
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

@@ -67,15 +67,22 @@ def transfer(
     return moved
 
 
-def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
-    """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
+def initial(
+    target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist, faces: bool
+) -> tuple[FluidState, float]:
+    """Fluid that was at rest when its bodies were set in motion, and with ``faces`` they too; and its kinetic energy.
 
-    An impact on the bodies sends a wave of pressure through the fluid, which is projection: the flow is potential.
+    A motion that begins at once sends a wave of pressure through the fluid, which is projection: the flow is potential,
+    that of the least kinetic energy (Kelvin).
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
-    if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
-        projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
-        state["velocity"] = state["velocity_previous"] = projected
+    held = state["velocity"]
+    if faces:
+        node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
+        held = target.surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
+    if target.surfaces.ranks.greatest(bool(held.any())):
+        projection, enough = target.projection(mesh.geometry, pose.position), _of_start(tolerance)
+        state["velocity"] = state["velocity_previous"] = projection.nearest(np.zeros_like(held), enough, held, held)
     return state, kinetic_energy(target, mesh.geometry, state["velocity"])
 
 
@@ -87,8 +94,11 @@ def project(
 
     ``target`` takes all bodies as controlled.
     """
-    enough = max(_TIGHTER * tolerance, _TIGHTEST)
-    return target.projection(points, position).nearest(velocity, enough, velocity)
+    return target.projection(points, position).nearest(velocity, _of_start(tolerance), velocity)
+
+
+def _of_start(tolerance: float) -> float:
+    return max(_TIGHTER * tolerance, _TIGHTEST)
 
 
 def _beside(

@@ -305,8 +305,14 @@ class FluidBackend(Part):
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """The fluid at the start, as `FluidProblem.initial` says, and its kinetic energy.
 
-        At "rest" it was so when its bodies were set in motion with ``twist``.
+        At "rest" it was so when its bodies were set in motion with ``twist``, and, where it has inertia, its faces with
+        the velocities that they have at time 0.
         """
+
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> Twist | None:
+        """Twists of the motions after faces of a fluid at rest were set in motion at once, in a ``step`` so short that
+        masses alone answer; before it the bodies have ``twist``. None where a backend leaves them as they were."""
+        return None
 
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

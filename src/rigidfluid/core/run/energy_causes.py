@@ -24,7 +24,9 @@ def with_cause(system: System, clock: Clock, state: State, candidate: State) -> 
 
 
 def _cause(system: System, clock: Clock, state: State, candidate: State) -> Cause | None:
-    if state.past is None:
+    """What begins at once is unresolved in steps as long as all the time before them."""
+    assert candidate.past is not None
+    if state.past is None or candidate.past.step >= state.ledger.since_start:
         return Cause.START
     if _is_remeshed(clock, state):
         return Cause.REMESHING
