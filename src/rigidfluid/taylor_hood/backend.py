@@ -10,6 +10,7 @@ from typing import ClassVar, final
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
 from rigidfluid.core.model.types import (
     Advance,
@@ -90,7 +91,7 @@ class TaylorHoodBackend(FluidBackend):
         target = self._for_steady(_given(mesh)) if start == "steady" else self._for_projection(_given(mesh))
         given = target, self.options.tolerance, _given(mesh), pose, twist
         if start == "rest":
-            made = initial(*given, faces=self.problem.inertia)
+            made = initial(*given)
         else:
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given, start)
             made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
@@ -98,13 +99,18 @@ class TaylorHoodBackend(FluidBackend):
         return made
 
     @final
-    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> Twist:
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
         from rigidfluid.taylor_hood.transfer import initial
 
-        target = self._for_projection(mesh)
-        fluid, _ = initial(target, self.options.tolerance, mesh, pose, twist, faces=False)
+        given = self.options.tolerance, mesh, pose
+        motions = Twist(*np.split(step.controlled_twist, [self.problem.dimension], axis=1))
+        if not step.controlled.all():
+            fluid, _ = initial(self._for_projection(mesh), *given, twist)
+            motions = self.advance(fluid, mesh, step).twist
+        bodies = component_twist(step.kinematics, motions)
+        fluid, kinetic = initial(self._for_projection(mesh), *given, bodies, with_faces=True)
         self.drop_factors()
-        return self.advance(fluid, mesh, step).twist
+        return fluid, kinetic, motions
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

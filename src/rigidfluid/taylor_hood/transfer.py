@@ -68,16 +68,16 @@ def transfer(
 
 
 def initial(
-    target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist, faces: bool
+    target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist, with_faces: bool = False
 ) -> tuple[FluidState, float]:
-    """Fluid that was at rest when its bodies were set in motion, and with ``faces`` they too; and its kinetic energy.
+    """Fluid that was at rest when its bodies were set in motion, or bodies and ``with_faces`` these; and its kinetic energy.
 
     A motion that begins at once sends a wave of pressure through the fluid, which is projection: the flow is potential,
     that of the least kinetic energy (Kelvin).
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
     held = state["velocity"]
-    if faces:
+    if with_faces:
         node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
         held = target.surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
     if target.surfaces.ranks.greatest(bool(held.any())):

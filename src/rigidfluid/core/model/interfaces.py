@@ -305,13 +305,16 @@ class FluidBackend(Part):
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """The fluid at the start, as `FluidProblem.initial` says, and its kinetic energy.
 
-        At "rest" it was so when its bodies were set in motion with ``twist``, and, where it has inertia, its faces with
-        the velocities that they have at time 0.
+        At "rest" it was so when its bodies were set in motion with ``twist``.
         """
 
-    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> Twist | None:
-        """Twists of the motions after faces of a fluid at rest were set in motion at once, in a ``step`` so short that
-        masses alone answer; before it the bodies have ``twist``. None where a backend leaves them as they were."""
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
+        """The same for a fluid at rest when faces were set in motion as well, with what they have at time 0; and the
+        twists of the motions then, free ones by their masses and the fluid's.
+
+        Before, the bodies had ``twist``; the ``step`` is so short that masses alone answer. Without this method such
+        a fluid is set in motion by its first step.
+        """
         return None
 
     @abstractmethod

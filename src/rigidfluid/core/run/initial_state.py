@@ -48,16 +48,20 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
 
 def _with_flow(system: System, clock: Clock, state: State) -> State:
     """The state with the fluid as it starts, bodies that it sets in motion, and what they store."""
-    faces, problem = _faces_start_at_once(system, state), system.backend.problem
-    if faces and problem is not None and problem.inertia and not system.controlled_motions.all():
-        state = struck(system, state, clock.step)
-    fluid, kinetic = system.backend.initial(state.mesh, state.pose, state.twist)
+    problem, faces = system.backend.problem, _faces_start_at_once(system, state)
+    after = struck(system, state, clock.step) if faces and problem is not None and problem.inertia else None
+    if after is None:
+        faces = faces and problem is not None and not problem.inertia
+        fluid, kinetic = system.backend.initial(state.mesh, state.pose, state.twist)
+        state = replace(state, fluid=fluid)
+    else:
+        state, kinetic = after
     kinetic += bodies_energy(system, state.pose, state.twist)
     stored = state.ledger.contact
     ledger = Ledger(kinetic, stored, kinetic + stored, power=_power(system, state, faces))
     if _starts_at_once(system, state, faces):
-        state, ledger = replace(state, level=start_level(clock)), replace(ledger, since_start=0.0)
-    return replace(state, fluid=fluid, ledger=ledger)
+        return replace(state, level=start_level(clock), ledger=replace(ledger, since_start=0.0))
+    return replace(state, ledger=ledger)
 
 
 def _faces_start_at_once(system: System, state: State) -> bool:

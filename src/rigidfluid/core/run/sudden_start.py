@@ -32,13 +32,15 @@ def _given(problem: FluidProblem, mesh: Mesh) -> Iterator[tuple[BoundaryConditio
             yield condition, np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
 
 
-def struck(system: System, state: State, time_step: float) -> State:
-    """A state before the first step after the impulse of faces that start at once: free bodies go with the fluid."""
+def struck(system: System, state: State, time_step: float) -> tuple[State, float] | None:
+    """A state before the first step after the impulse of faces that start at once, by which free bodies go with the
+    fluid; and the fluid's kinetic energy. None where the backend leaves that to the first step."""
     assert state.mesh is not None
     size = VANISHING * time_step
     step = step_to(system, state, size, size, state.free_pose, nothing(state.free_pose), state.mesh)
-    motions = system.backend.struck(state.mesh, state.pose, state.twist, step)
-    if motions is None:
-        return state
+    after = system.backend.struck(state.mesh, state.pose, state.twist, step)
+    if after is None:
+        return None
+    fluid, kinetic, motions = after
     free = None if state.free is None else replace(state.free, twist=motions)
-    return replace(state, twist=component_twist(step.kinematics, motions), free=free)
+    return replace(state, fluid=fluid, twist=component_twist(step.kinematics, motions), free=free), kinetic
