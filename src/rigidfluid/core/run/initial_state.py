@@ -60,7 +60,8 @@ def _with_flow(system: System, clock: Clock, state: State) -> State:
     stored = state.ledger.contact
     ledger = Ledger(kinetic, stored, kinetic + stored, power=_power(system, state, faces))
     if _starts_at_once(system, state, faces):
-        return replace(state, level=start_level(clock), ledger=replace(ledger, since_start=0.0))
+        ledger = ledger if system.quasi_steady else replace(ledger, since_start=0.0)
+        return replace(state, level=start_level(clock), ledger=ledger)
     return replace(state, ledger=ledger)
 
 
