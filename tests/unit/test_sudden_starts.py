@@ -81,7 +81,7 @@ def test_a_free_body_goes_with_a_stream_that_begins_at_once(density: float) -> N
     ids=["inflow", "lid", "pressures", "moved", "turned"],
 )
 def test_one_step_without_inertia_balances_exactly(tables: dict[str, Any]) -> None:
-    """What comes in is dissipated at each moment, from the first on: there is no state before it to take a mean with."""
+    """What comes in is dissipated at each moment, and there is no state before the first to take a mean with."""
     history = started(0.05, 0.05, fluid={"model": "stokes"}, **tables)
     assert history.energy["dissipation"][-1] > 0.0
     error = 1e-9 if "boundary" in tables else 1e-5  # bodies in motion have flows that change

@@ -70,7 +70,7 @@ def transfer(
 def initial(
     target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist, with_faces: bool = False
 ) -> tuple[FluidState, float]:
-    """Fluid that was at rest when its bodies were set in motion, or bodies and ``with_faces`` these; and its kinetic energy.
+    """Fluid that was at rest when its bodies, or bodies and faces, were set in motion, and its kinetic energy.
 
     A motion that begins at once sends a wave of pressure through the fluid, which is projection: the flow is potential,
     that of the least kinetic energy (Kelvin).

@@ -55,7 +55,7 @@ class Ledger:
     ``residual_start``, ``residual_remeshing`` or ``residual_contacts`` where a `Cause` is named for it, and else in
     ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step, and ``smooth_rate`` is
     how fast the residual grew in the latest step without a cause [energy/time].
-    ``since_start``: time since the motion of a fluid with inertia last began at once, infinite where it never did [time].
+    ``since_start``: time since a fluid with inertia was last set in motion at once, infinite where it never was [time].
     ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
     """
 

@@ -20,7 +20,9 @@ VANISHING = 1e-3
 
 def faces_start_at_once(problem: FluidProblem, mesh: Mesh) -> bool:
     """Whether faces give the fluid a velocity at time 0; without inertia pressures do so too."""
-    found = any(condition.value(0.0, points).any() for condition, points in _given(problem, mesh) if condition.value)
+    with mesh.ranks.raise_on_all():
+        given = _given(problem, mesh)
+        found = any(condition.value(0.0, points).any() for condition, points in given if condition.value)
     return bool(mesh.ranks.greatest(found))
 
 
