@@ -100,15 +100,14 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
-        from rigidfluid.taylor_hood.transfer import initial
+        from rigidfluid.taylor_hood.transfer import initial, struck
 
         given = self.options.tolerance, mesh, pose
         motions = Twist(*np.split(step.controlled_twist, [self.problem.dimension], axis=1))
         if not step.controlled.all():
             fluid, _ = initial(self._for_projection(mesh), *given, twist)
             motions = self.advance(fluid, mesh, step).twist
-        bodies = component_twist(step.kinematics, motions)
-        fluid, kinetic = initial(self._for_projection(mesh), *given, bodies, with_faces=True)
+        fluid, kinetic = struck(self._for_projection(mesh), *given, component_twist(step.kinematics, motions))
         self.drop_factors()
         return fluid, kinetic, motions
 

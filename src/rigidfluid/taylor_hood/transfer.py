@@ -67,23 +67,28 @@ def transfer(
     return moved
 
 
-def initial(
-    target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist, with_faces: bool = False
-) -> tuple[FluidState, float]:
-    """Fluid that was at rest when its bodies, or bodies and faces, were set in motion, and its kinetic energy.
+def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
 
-    A motion that begins at once sends a wave of pressure through the fluid, which is projection: the flow is potential,
-    that of the least kinetic energy (Kelvin).
+    An impact on the bodies sends a wave of pressure through the fluid, which is projection: the flow is potential.
     """
     state = dict(at_rest(target.surfaces, mesh, pose, twist))
-    held = state["velocity"]
-    if with_faces:
-        node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
-        held = target.surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
-    if target.surfaces.ranks.greatest(bool(held.any())):
-        projection, enough = target.projection(mesh.geometry, pose.position), _of_start(tolerance)
-        state["velocity"] = state["velocity_previous"] = projection.nearest(np.zeros_like(held), enough, held, held)
+    if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
+        projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
+        state["velocity"] = state["velocity_previous"] = projected
     return state, kinetic_energy(target, mesh.geometry, state["velocity"])
+
+
+def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """The same where faces were set in motion as well: of all flows with their values that of least kinetic energy
+    (Kelvin)."""
+    state, surfaces = dict(at_rest(target.surfaces, mesh, pose, twist)), target.surfaces
+    node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
+    held = surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
+    projection = target.projection(mesh.geometry, pose.position)
+    least = projection.nearest(np.zeros_like(held), _of_start(tolerance), held, held)
+    state["velocity"] = state["velocity_previous"] = least
+    return state, kinetic_energy(target, mesh.geometry, least)
 
 
 def project(

@@ -15,7 +15,8 @@ from rigidfluid.core.run.step import bodies_energy, stored_energy
 from rigidfluid.core.run.sudden_start import faces_start_at_once, struck
 
 START_LEVEL = 6
-"""In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
+"""In a fluid in motion the first step is the step halved so many times, each later one at most twice the last, and
+after a start at once at most half of the time since."""
 
 
 def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, starts_short: bool = False) -> State:
@@ -48,10 +49,10 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
 
 def _with_flow(system: System, clock: Clock, state: State) -> State:
     """The state with the fluid as it starts, bodies that it sets in motion, and what they store."""
-    problem, faces = system.backend.problem, _faces_start_at_once(system, state)
-    after = struck(system, state, clock.step) if faces and problem is not None and problem.inertia else None
+    faces = _faces_start_at_once(system, state)
+    after = struck(system, state, clock.step) if faces and not system.quasi_steady else None
     if after is None:
-        faces = faces and problem is not None and not problem.inertia
+        faces = faces and system.quasi_steady
         fluid, kinetic = system.backend.initial(state.mesh, state.pose, state.twist)
         state = replace(state, fluid=fluid)
     else:
