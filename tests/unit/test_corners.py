@@ -48,7 +48,7 @@ def test_a_step_ends_at_a_corner_and_the_next_ones_are_short():
     corner = next(number for number, time in enumerate(times) if time == pytest.approx(0.06))
     steps = np.diff(times)
     assert steps[corner - 1] == pytest.approx(0.02)
-    np.testing.assert_allclose(steps[corner : corner + 4], 0.02 / np.array([64, 64, 32, 16]))
+    np.testing.assert_allclose(steps[corner : corner + 8], 0.02 / np.array([64, 64, 64, 64, 32, 32, 16, 16]))
 
 
 def test_what_an_impulse_at_a_corner_gives_back_is_in_the_balance():

@@ -10,6 +10,7 @@ from typing import ClassVar, final
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
 from rigidfluid.core.model.types import (
     Advance,
@@ -96,6 +97,19 @@ class TaylorHoodBackend(FluidBackend):
             made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
         self.drop_factors()
         return made
+
+    @final
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
+        from rigidfluid.taylor_hood.transfer import initial, struck
+
+        given = self.options.tolerance, mesh, pose
+        motions = Twist(*np.split(step.controlled_twist, [self.problem.dimension], axis=1))
+        if not step.controlled.all():
+            fluid, _ = initial(self._for_projection(mesh), *given, twist)
+            motions = self.advance(fluid, mesh, step).twist
+        fluid, kinetic = struck(self._for_projection(mesh), *given, component_twist(step.kinematics, motions))
+        self.drop_factors()
+        return fluid, kinetic, motions
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:

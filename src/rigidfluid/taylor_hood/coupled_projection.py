@@ -41,7 +41,9 @@ class CoupledProjection:
             frame=np.zeros(numbering.dimension),
         )
 
-    def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
+    def nearest(
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+    ) -> FloatArray:
         target, matrix = self._target, self._matrix
         none, still = np.zeros(matrix.mass_matrix.shape[:2]), np.zeros(target.numbering.vertices)
         of_guess = target.mass_times(matrix.points, guess)
@@ -49,7 +51,7 @@ class CoupledProjection:
             matrix,
             load=target.mass_times(matrix.points, velocity),
             body_load=none,
-            given=target.surfaces.held_part(velocity),
+            given=target.surfaces.held_part(velocity if held is None else held),
             velocity=guess,
             pressure=still,
             twist=none,

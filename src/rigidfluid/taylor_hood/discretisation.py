@@ -13,12 +13,15 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 class Projection(Protocol):
-    """Onto velocities without divergence on one geometry, unchanged on bodies and prescribed faces."""
+    """Onto velocities without divergence on one geometry, with values held on bodies and prescribed faces."""
 
-    def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
+    def nearest(
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+    ) -> FloatArray:
         """That nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards, (nodes, d).
 
-        To a relative residual of ``tolerance``; raises StepRejected.
+        On bodies and prescribed faces it is that of ``held`` (nodes, d), by default ``velocity`` too. To a relative
+        residual of ``tolerance``; raises StepRejected.
         """
 
     def product(self, first: FloatArray, second: FloatArray) -> float:

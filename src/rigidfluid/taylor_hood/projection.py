@@ -64,13 +64,15 @@ class SparseProjection:
         """(first, second) of two velocities (nodes, d)."""
         return float(np.sum(first * times(self._mass, second)))
 
-    def nearest(self, velocity: FloatArray, tolerance: float, guess: FloatArray) -> FloatArray:
-        """The velocity (nodes, d) without divergence nearest to ``velocity``, which it equals where that is held.
+    def nearest(
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+    ) -> FloatArray:
+        """The velocity (nodes, d) without divergence nearest to ``velocity``, and equal to ``held`` where it is held.
 
         To a residual of ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
-        held = surfaces.held_part(velocity)
+        held = surfaces.held_part(velocity if held is None else held)
         x = surfaces.frames.into(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
         x = self._without_divergence(held, x)
         enough = tolerance * float(np.linalg.norm(self._load(self._whole(held, x))))

@@ -79,6 +79,18 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
     return state, kinetic_energy(target, mesh.geometry, state["velocity"])
 
 
+def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """The same where faces were set in motion as well: of all flows with their values that of least kinetic energy
+    (Kelvin)."""
+    state, surfaces = dict(at_rest(target.surfaces, mesh, pose, twist)), target.surfaces
+    node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
+    held = surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
+    projection = target.projection(mesh.geometry, pose.position)
+    least = projection.nearest(np.zeros_like(held), _of_start(tolerance), held, held)
+    state["velocity"] = state["velocity_previous"] = least
+    return state, kinetic_energy(target, mesh.geometry, least)
+
+
 def project(
     target: Discretisation, tolerance: float, velocity: FloatArray, points: FloatArray, position: FloatArray
 ) -> FloatArray:
@@ -87,8 +99,11 @@ def project(
 
     ``target`` takes all bodies as controlled.
     """
-    enough = max(_TIGHTER * tolerance, _TIGHTEST)
-    return target.projection(points, position).nearest(velocity, enough, velocity)
+    return target.projection(points, position).nearest(velocity, _of_start(tolerance), velocity)
+
+
+def _of_start(tolerance: float) -> float:
+    return max(_TIGHTER * tolerance, _TIGHTEST)
 
 
 def _beside(

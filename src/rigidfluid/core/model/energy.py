@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
@@ -56,6 +57,7 @@ class Ledger:
     ``residual_start``, ``residual_remeshing`` or ``residual_contacts`` where a `Cause` is named for it, and else in
     ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step, and ``smooth_rate`` is
     how fast the residual grew in the latest step without a cause [energy/time].
+    ``since_start``: time since a fluid with inertia was last set in motion at once, infinite where it never was [time].
     ``initial`` was stored at the start; ``power`` is now's, None where a flow in motion starts and nobody knows it yet.
     """
 
@@ -76,6 +78,7 @@ class Ledger:
     residual_mesh: float = 0.0
     in_impact: bool = False
     smooth_rate: float = 0.0
+    since_start: float = math.inf
     power: Power | None = Power()
 
     @property
@@ -128,6 +131,7 @@ class Ledger:
             contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
             residual_mesh=total("leak", self.residual_mesh),
+            since_start=self.since_start + step,
             power=power,
         )
 

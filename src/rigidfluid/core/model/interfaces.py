@@ -308,6 +308,15 @@ class FluidBackend(Part):
         At "rest" it was so when its bodies were set in motion with ``twist``.
         """
 
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
+        """The same for a fluid at rest when faces were set in motion as well, with what they have at time 0; and the
+        twists of the motions then, free ones by their masses and the fluid's.
+
+        Before, the bodies had ``twist``; the ``step`` is so short that masses alone answer. Without this method such
+        a fluid is set in motion by its first step.
+        """
+        return None
+
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
         """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""

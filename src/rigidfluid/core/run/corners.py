@@ -30,7 +30,9 @@ def begun_anew(system: System, clock: Clock, state: State) -> State:
         return state
     if _is_corner(system, clock, state.tick):
         level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
-        return replace(state, past=None, level=level, estimate=state.estimate and state.estimate.restarted)
+        estimate = state.estimate and state.estimate.restarted
+        ledger = state.ledger if system.quasi_steady else replace(state.ledger, since_start=0.0)
+        return replace(state, past=None, level=level, estimate=estimate, ledger=ledger)
     if _is_corner(system, clock, state.tick - clock.tick_from(state.past.step)):
         return replace(state, past=None)
     return state

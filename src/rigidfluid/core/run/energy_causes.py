@@ -11,6 +11,9 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.masses import Masses
 
+_OF_START = 0.3
+"""Of the time since a start at once: its layer is as young as that, and steps so long or longer do not resolve it."""
+
 
 def with_cause(system: System, clock: Clock, state: State, candidate: State) -> State:
     """The candidate, with what the residual has grown by in the step from ``state`` put to its cause.
@@ -24,7 +27,8 @@ def with_cause(system: System, clock: Clock, state: State, candidate: State) -> 
 
 
 def _cause(system: System, clock: Clock, state: State, candidate: State) -> Cause | None:
-    if state.past is None:
+    assert candidate.past is not None
+    if state.past is None or candidate.past.step >= _OF_START * state.ledger.since_start:
         return Cause.START
     if _is_remeshed(clock, state):
         return Cause.REMESHING

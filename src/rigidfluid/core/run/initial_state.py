@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
@@ -10,9 +12,11 @@ from rigidfluid.core.model.state import FreeMotions, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.step import bodies_energy, stored_energy
+from rigidfluid.core.run.sudden_start import faces_start_at_once, struck
 
 START_LEVEL = 6
-"""In a fluid in motion the first step is the step halved so many times, and each later one at most twice the last."""
+"""In a fluid in motion the first step is the step halved so many times, each later one at most twice the last, and
+after a start at once at most half of the time since."""
 
 
 def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, starts_short: bool = False) -> State:
@@ -20,34 +24,61 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
-    fluid, kinetic = system.backend.initial(mesh, system.pose, system.twist)
-    kinetic += bodies_energy(system, system.pose, system.twist)
     motions = system.pose if system.mechanisms is None else system.mechanisms.pose
     stored = stored_energy(system, contacts, motions, 0.0)
-    return State(
+    state = State(
         tick=0,
         count=0,
-        level=start_level(clock) if starts_short else _level(system, clock, stored),
+        level=start_level(clock) if starts_short else None,
         pose=system.pose,
         twist=system.twist,
         past=None,
         mesh=mesh,
         reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
-        fluid=fluid,
+        fluid={},
         contacts=contacts,
         coupling=None,
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
-        ledger=Ledger(kinetic, stored, kinetic + stored, power=_power(system)),
+        ledger=Ledger(0.0, stored, stored),
         free=_free_motions(system),
     )
+    return _with_flow(system, clock, state)
 
 
-def _power(system: System) -> Power | None:
+def _with_flow(system: System, clock: Clock, state: State) -> State:
+    """The state with the fluid as it starts, bodies that it sets in motion, and what they store."""
+    faces = _faces_start_at_once(system, state)
+    after = struck(system, state, clock.step) if faces and not system.quasi_steady else None
+    if after is None:
+        faces = faces and system.quasi_steady
+        fluid, kinetic = system.backend.initial(state.mesh, state.pose, state.twist)
+        state = replace(state, fluid=fluid)
+    else:
+        state, kinetic = after
+    kinetic += bodies_energy(system, state.pose, state.twist)
+    stored = state.ledger.contact
+    ledger = Ledger(kinetic, stored, kinetic + stored, power=_power(system, state, faces))
+    if _starts_at_once(system, state, faces):
+        ledger = ledger if system.quasi_steady else replace(ledger, since_start=0.0)
+        return replace(state, level=start_level(clock), ledger=ledger)
+    return replace(state, ledger=ledger)
+
+
+def _faces_start_at_once(system: System, state: State) -> bool:
+    """Whether faces drive a fluid at once that was at rest."""
+    problem = system.backend.problem
+    if problem is None or state.mesh is None or problem.initial != "rest":
+        return False
+    return faces_start_at_once(problem, state.mesh)
+
+
+def _power(system: System, state: State, faces: bool) -> Power | None:
     """None where the fluid starts in motion: nobody has solved for its stresses yet."""
     problem = system.backend.problem
-    return Power() if problem is None or problem.initial == "rest" else None
+    at_rest = problem is None or (problem.initial == "rest" and not faces and not _bodies_move(state))
+    return Power() if at_rest or state.mesh is None else None
 
 
 def _free_motions(system: System) -> FreeMotions | None:
@@ -57,19 +88,24 @@ def _free_motions(system: System) -> FreeMotions | None:
     return FreeMotions(motions.pose, motions.twist, nothing(motions.pose), nothing(motions.pose))
 
 
-def _level(system: System, clock: Clock, stored: float) -> int | None:
-    """The level that the first step may be twice as long as; any where the motion starts smoothly.
+def _starts_at_once(system: System, state: State, faces: bool) -> bool:
+    """Whether the motion does not start smoothly.
 
-    Bodies that start with a velocity set the fluid in motion at once, but for a layer on them that spreads fast; so do
-    contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that hold it.
+    Bodies or faces that start with a velocity set the fluid in motion at once, but for a layer on them that spreads
+    fast; so do contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that
+    hold it. Without inertia free bodies alone take time to follow the faces.
     """
     problem = system.backend.problem
-    if not system.backend.needs_mesh or problem is None:
-        return None
-    moves = system.twist.velocity.any() or system.twist.angular_velocity.any()
+    if state.mesh is None or problem is None:
+        return False
     given = not isinstance(problem.initial, str)
-    at_once = moves or given or stored > 0.0 or (not problem.inertia and system.weight.any())
-    return start_level(clock) if at_once else None
+    driven = faces and (problem.inertia or not system.controlled_motions.all())
+    released = state.ledger.contact > 0.0 or (not problem.inertia and system.weight.any())
+    return bool(_bodies_move(state) or given or driven or released)
+
+
+def _bodies_move(state: State) -> bool:
+    return bool(state.twist.velocity.any() or state.twist.angular_velocity.any())
 
 
 def start_level(clock: Clock) -> int:

@@ -69,6 +69,10 @@ def attempt(
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
     twist = component_twist(step.kinematics, advance.twist)
     link = _link_load(system, path, step, advance)
+    ledger = _ledger_at_start(system, state, advance, step, time - size)
+    power = _power(system, advance, step, path.free_pose)
+    if system.quasi_steady and ledger.power is None:  # a fluid that forgets: its velocity before says nothing
+        power = replace(power, dissipation_midway=power.dissipation)
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
@@ -84,9 +88,9 @@ def attempt(
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         contact_wrench=_mean(path.impulse, size),
-        ledger=_ledger_at_start(system, state, advance, step, time - size).after(
+        ledger=ledger.after(
             size,
-            _power(system, advance, step, path.free_pose),
+            power,
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
             stored_energy(system, contacts, path.free_pose, time),
@@ -161,10 +165,13 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
     """Where a step begins anew at a corner of a stroke, with the power of its own forces at its start: half of an
-    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps."""
+    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps. Without
+    inertia there is no impulse, and the rates after the corner are unknown until the step is made."""
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger
+    if system.quasi_steady:
+        return replace(ledger, power=None)
     motions, held = state.free_pose, system.controlled_twist(time)
     links = None if step.links is None or system.linkage is None else system.linkage.links(motions, time)
     before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)

@@ -77,8 +77,12 @@ class Stepper:
         self.propose: Callable[[State], int] = self._controller.propose if self._controller else self.longest
 
     def longest(self, state: State) -> int:
-        """The level of the longest step on the clock's grid, at most twice the last."""
-        return self._clock.longest_level(state.tick, state.level)
+        """The level of the longest step on the clock's grid, at most twice the last, and after a start at once at most
+        half of the time since."""
+        level = self._clock.longest_level(state.tick, state.level)
+        if state.past is not None and self._clock.size(level) > 0.5 * state.ledger.since_start:
+            return max(level, state.level or 0)
+        return level
 
     def after(self, state: State) -> State:
         """The next accepted state; raises StepError where even the shortest step is rejected."""
