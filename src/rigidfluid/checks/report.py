@@ -116,7 +116,7 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     if mesh is not None:
-        yield from chain(in_memory(system, mesh), counted_once(system, mesh))
+        yield from chain(in_memory(parts, system, mesh, scene.time), counted_once(system, mesh))
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
         if mesh is not None:

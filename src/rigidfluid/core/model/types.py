@@ -294,13 +294,15 @@ class SolverCost:
     """What the steps of a run are expected to take.
 
     ``method``: of solution, as the scene's keys name it; ``unknowns`` of a step; ``memory`` of the process [byte]; CPU
-    ``seconds`` that factors take, or what else preconditions, each time it is made.
+    ``seconds`` that factors take, or what else preconditions, each time it is made, and ``step_seconds`` of a step far
+    from contacts.
     """
 
     method: str
     unknowns: float
     memory: float
     seconds: float
+    step_seconds: float
 
 
 @dataclass(frozen=True, slots=True)
