@@ -462,6 +462,9 @@ def _print_end(history: History, folder: Path) -> None:
             "yellow",
         )
     _print_energy(summary["energy"])
+    for remark in summary["remarks"]:
+        style = "yellow" if remark["grade"] == "warning" else ""
+        _print(f"{remark['grade']}: {remark['text']}. {remark['remedy']}", style)
     if summary["unknowns"]:
         _print(_of_stages(summary["wall_time_per_stage"], summary["wall_time"]))
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import time
 
-import numpy as np
-
 _POINTS = 96
 _REFERENCE = 0.060
 """CPU seconds of the factors below on the machine of the fits in `rigidfluid.taylor_hood.predicted_cost`."""
@@ -22,7 +20,7 @@ def _trial() -> float:
     from scipy.sparse import diags_array, eye_array, kron
     from scipy.sparse.linalg import splu
 
-    line = diags_array([-np.ones(_POINTS - 1), 2.0 * np.ones(_POINTS), -np.ones(_POINTS - 1)], offsets=[-1, 0, 1])
+    line = diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(_POINTS, _POINTS))
     matrix = (kron(line, eye_array(_POINTS)) + kron(eye_array(_POINTS), line)).tocsc()
     begun = time.thread_time()
     splu(matrix)

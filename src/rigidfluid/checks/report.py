@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.checks.boundary_layer import in_the_layer
 from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
@@ -116,7 +117,8 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     if mesh is not None:
-        yield from chain(in_memory(parts, system, mesh, scene.time), counted_once(system, mesh))
+        yield from chain(in_memory(parts, system, mesh, scene.time), in_the_layer(system, mesh))
+        yield from counted_once(system, mesh)
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
         if mesh is not None:

@@ -102,7 +102,8 @@ class Loads:
     Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
     submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
     ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
-    where its twist is given.
+    where its twist is given. In a fluid ``travel_speed`` (n,) is the highest expected between body and fluid, and
+    ``flow_speed`` that of the fluid as it is given on the boundary and at the start [length/time].
     """
 
     mass: FloatArray
@@ -111,6 +112,8 @@ class Loads:
     stacked_weight: FloatArray
     stacked_energy: FloatArray
     smallest_gap: float
+    travel_speed: FloatArray | None = None
+    flow_speed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

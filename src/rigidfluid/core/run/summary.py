@@ -16,8 +16,9 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
-from rigidfluid.core.run.cycles import cycles
+from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.core.run.process import peak_memory
+from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.parts import known_parts
 
@@ -42,6 +43,11 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
+    mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.backend.problem
+    length = max(body.bounding_radius for body in system.bodies)
+    remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
+    inertia = system.backend.needs_mesh and problem is not None and problem.inertia
+    remarks += start_remarks(found.get("cycles", {}), inertia, length)
     return {
         "status": status,
         "scene": simulation.scene.to_dict(),
@@ -65,7 +71,8 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        **_cycles(simulation),
+        **found,
+        "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy),
         "auto_epsilon": chosen_strengths(system),
     }
