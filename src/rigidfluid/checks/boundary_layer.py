@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rigidfluid.checks.finding import Finding, at_most, figure
-from rigidfluid.core.mesh.layer_cells import CELLS_WANTED, FEWEST_CELLS, thinnest_layer
+from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
+from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import MeshTable
 

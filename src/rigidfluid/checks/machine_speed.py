@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 _POINTS = 96
-_REFERENCE = 0.060
+_REFERENCE = 0.025
 """CPU seconds of the factors below on the machine of the fits in `rigidfluid.taylor_hood.predicted_cost`."""
 _REPEATS = 3
 

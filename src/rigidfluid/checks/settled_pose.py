@@ -11,8 +11,11 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.setup.boundary import surfaces_of
 
-_MOST_BODIES = 200
-"""Of more bodies the start stands for every moment: they are not followed one by one."""
+_MOST_BODIES = 60
+"""More bodies stay where they start: they are not followed one by one."""
+
+_SLOW = "brute_force"
+"""A detector that takes minutes for the gaps between shapes of facets and walls of any shape."""
 
 _MOST_ADVANCES = 500
 _TOLERANCE = 0.05
@@ -24,7 +27,8 @@ _ALONG = 1e-9
 def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     """The pose with each free body moved along its weight, the foremost first, until a ``gap`` [length] is left ahead.
 
-    Bodies without weight, of given motion, and all that mechanisms or joints hold stay where they start.
+    Bodies without weight, of given motion, and all that mechanisms or joints hold stay where they start; so do all
+    where there are very many, or only a slow detector knows their gaps.
 
     Parameters
     ----------
@@ -42,7 +46,8 @@ def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     """
     pose, weight = system.pose, system.weight
     count = len(system.bodies)
-    if system.mechanisms is not None or system.linkage is not None or count > _MOST_BODIES:
+    together = system.mechanisms is not None or system.linkage is not None
+    if together or count > _MOST_BODIES or detector.name == _SLOW:
         return pose
     pulled = np.flatnonzero(~system.controlled & np.any(weight != 0.0, axis=1))
     down = weight[pulled] / np.linalg.norm(weight[pulled], axis=1, keepdims=True)

@@ -24,12 +24,13 @@ _SECONDS = {2: (2.35e-6, 1.1), 3: (9.75e-9, 1.84)}
 _BLOCKS = {2: Cost(1.0e3, 2.2e-6), 3: Cost(1.8e3, 6.0e-6)}
 """For each unknown."""
 
-_PROCESS = 3e8
-_BESIDE = {"lu": {2: 1.8e3, 3: 4.4e3}, "schur": {2: 1.1e3, 3: 2.4e3}}
-"""Memory of a process and its libraries, and beside for each unknown: matrices, meshes, states [byte]."""
+_PROCESS = {2: 3.4e8, 3: 6.4e8}
+_BESIDE = {"lu": {2: 1.8e3, 3: 3.7e3}, "schur": {2: 1.1e3, 3: 1.0e3}}
+"""Memory of a process with interpreter, libraries, compiled kernels and meshers, and beside for each unknown: matrices,
+meshes, states [byte]."""
 
-_STEP_SECONDS = {"lu": {2: 1.2e-6, 3: 2e-5}, "schur": {2: 5e-6, 3: 1.3e-5}}
-"""CPU seconds of one core for each unknown and step."""
+_STEP_SECONDS = {"lu": {2: (4e-3, 1.8e-6), 3: (1e-2, 9e-6)}, "schur": {2: (4e-3, 5e-6), 3: (1e-2, 1.1e-5)}}
+"""CPU seconds of one core for each step, and for each unknown of it."""
 
 
 def predicted_unknowns(cells: float, facets: float, dimension: int) -> float:
@@ -89,6 +90,7 @@ def predicted_run(method: Literal["lu", "schur"], unknowns: float, dimension: in
     sphere took 5.5 GB by LU and 1.3 GB by blocks with 248,705 unknowns, far from contacts.
     """
     cost = (predicted_factors if method == "lu" else predicted_blocks)(unknowns, dimension)
-    beside = _PROCESS + _BESIDE[method][dimension] * unknowns
+    beside = _PROCESS[dimension] + _BESIDE[method][dimension] * unknowns
     memory = beside + (2 if inertia else 1) * cost.bytes
-    return SolverCost(method, unknowns, memory, cost.seconds, _STEP_SECONDS[method][dimension] * unknowns)
+    of_step, of_unknown = _STEP_SECONDS[method][dimension]
+    return SolverCost(method, unknowns, memory, cost.seconds, of_step + of_unknown * unknowns)

@@ -13,9 +13,6 @@ from rigidfluid.core.mesh.made_size import facet_edge
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
-CELLS_WANTED = 2.0
-"""With so many cells across a layer forces and torques differ by about a tenth at a new mesh."""
-
 FEWEST_CELLS = 0.95
 """With fewer a torque was eight times as large, or of the other sign, for some twenty steps after each new mesh."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remarks import Remark
@@ -66,7 +67,7 @@ def start_remarks(found: Mapping[str, Mapping[str, Any]], inertia: bool, length:
             off = float(np.linalg.norm(np.subtract(*mine[figure][:2])))
             if off > _SAME * sizes[1] and off > least:
                 text = f"{begins}: its {figure} is {sizes[0]:.3g}, that of the second {sizes[1]:.3g}"
-                text += f", {100.0 * off / sizes[1]:.2g} % off" if sizes[1] > least else ""
+                text += f", {per_cent(off / sizes[1])} off" if sizes[1] > least else ""
                 remarks.append(Remark("note", text, remedy))
     return remarks
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.boundary_layer import boundary_layers
+from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.mesh.layer_cells import CELLS_WANTED
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
