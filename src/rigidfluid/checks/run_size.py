@@ -87,7 +87,8 @@ def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
     impact = _least([(met, met.turning_gaps()) for met in contacts])
     if rest is None or impact is None:
         return max(rest or impact or 0.0, finest)
-    return max(rest**_SHARE_OF_REST * min(impact, rest) ** (1.0 - _SHARE_OF_REST), finest)
+    mean = float(rest**_SHARE_OF_REST * min(impact, rest) ** (1.0 - _SHARE_OF_REST))
+    return max(mean, finest)
 
 
 def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
