@@ -87,6 +87,17 @@ def test_a_run_is_judged_by_its_highest_speed(cells: float, grades: list[str]) -
     assert layer_remarks(system, speeds_for(scene, cells), None) == []
 
 
+@pytest.mark.parametrize(("size_body", "grade"), [(0.015, "warning"), (0.0075, "note")])
+def test_a_layer_beside_which_torques_jumped_is_a_warning(size_body: float, grade: str) -> None:
+    """With a layer of .012 beside cells of .015 a light disk's torque jumped eightfold, with half the cell by 12 %."""
+    scene = falling_disk()
+    assert scene.fluid.viscosity is not None
+    speed = np.array([0.25 * scene.fluid.viscosity / 0.012**2])  # the density is 1
+    (remark,) = layer_remarks(build_system(scene), speed, size_body)
+    assert remark.grade == grade
+    assert "0.012" in remark.text
+
+
 def test_a_run_tells_it_in_its_summary_and_report(tmp_path: Path) -> None:
     fluid = {"viscosity": 0.001}
     settings = {"time": {"end": 0.02, "step": 0.01}, "output": {"every": 0.02}}
