@@ -461,21 +461,13 @@ def _print_end(history: History, folder: Path) -> None:
             f"The latest failure, {summary['latest_failed_remesh']}",
             "yellow",
         )
-    if summary.get("remesh_jumps"):
-        _print_remesh_jumps(summary["remesh_jumps"])
     _print_energy(summary["energy"])
+    for remark in summary["remarks"]:
+        style = "yellow" if remark["grade"] == "warning" else ""
+        _print(f"{remark['grade']}: {remark['text']}. {remark['remedy']}", style)
     if summary["unknowns"]:
         _print(_of_stages(summary["wall_time_per_stage"], summary["wall_time"]))
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
-
-
-def _print_remesh_jumps(jumps: Mapping[str, Mapping[str, float]]) -> None:
-    """Name the body whose force jumps most at new meshes, and that whose torque does."""
-    from rigidfluid.core.output.energy_account import per_cent
-
-    worst = [max((jump[load], load, name) for name, jump in jumps.items()) for load in ("force", "torque")]
-    told = ", ".join(f"{load} of {name} by {per_cent(jump)}" for jump, load, name in worst)
-    _print(f"jumps at new meshes, at most, over the range in the run: {told}")
 
 
 def _print_positions(position: Mapping[str, Sequence[float]]) -> None:

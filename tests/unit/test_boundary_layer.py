@@ -1,59 +1,143 @@
-"""Cells next to bodies come through a re-meshing as they were."""
+"""Cells across boundary layers: what the check and a run's summary say, and what "auto" makes of them."""
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
-from mesh_tools import ball, box, box_walls, upright
+from falling import SCENES, falling_disk
 
-from rigidfluid.core.mesh.boundary_layer import LAYERS, kept_cells
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+import rigidfluid
+from rigidfluid.checks import Finding, check
+from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
+from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS
+from rigidfluid.core.run.remarks import layer_remarks
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import load_scene
+from rigidfluid.errors import SceneError
+from rigidfluid.reports.report import report
 
-
-def meshed(dimension, height):
-    """A ball in a box, meshed for where it is, and what goes with it."""
-    lower, upper = np.zeros(dimension), np.full(dimension, 2.0)
-    place = np.full(dimension, 1.0)
-    place[-1] = height
-    body, pose = ball(0.25, dimension), upright(place)
-    sizes = Sizes(0.4, 0.08 if dimension == 2 else 0.15)
-    surroundings = [body], pose, box(lower, upper), box_walls(lower, upper, 1), sizes
-    return initial_mesh(*surroundings), surroundings
+COARSE = {"size": 0.4, "size_body": 0.06}
 
 
-def cells_at(mesh, chosen):
-    """The chosen cells as sorted sets of the coordinates of their corners."""
-    return {tuple(sorted(map(tuple, corners))) for corners in mesh.points[mesh.cells[chosen]].tolist()}
+def layers(scene: Scene) -> list[Finding]:
+    return [one for one in check(scene).findings if one.question == "layer"]
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_good_cells_near_a_body_are_kept_to_the_last_bit(dimension):
-    mesh, surroundings = meshed(dimension, 1.0)
-    bodies, pose, _, walls, sizes = surroundings
-
-    def size_at(points):
-        return wanted_size(points, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
-
-    squeezed = mesh.points + 0.02 * np.sin(9.0 * mesh.points[:, ::-1]) * ~_near(mesh)[:, None]
-    inside = np.setdiff1d(np.arange(len(mesh.points)), np.unique(mesh.facets))
-    points = mesh.points.copy()
-    points[inside] = squeezed[inside]
-    moved = type(mesh)(points, mesh.cells, mesh.facets, mesh.markers)
-    kept = kept_cells(moved, 1, size_at, LAYERS)
-    assert kept.sum() > 20
-    made = remesh(moved, *surroundings, LAYERS)
-    assert cells_at(moved, kept) <= cells_at(made, slice(None))
-    assert len(made.cells) != len(moved.cells), "MMG has done something elsewhere"
+def test_a_layer_is_a_diameter_over_the_root_of_its_reynolds_number() -> None:
+    bodies = build_system(falling_disk(), to_run=False).bodies
+    np.testing.assert_allclose(boundary_layers(bodies, np.array([4.0]), 0.01), [0.25 / np.sqrt(0.25 * 4.0 / 0.01)])
+    assert boundary_layers(bodies, np.array([0.0]), 0.01)[0] == np.inf
 
 
-@pytest.mark.parametrize("wanted", [0.02, 0.4])
-def test_cells_of_another_size_than_wanted_are_not_kept(wanted):
-    """Gaps ask for shorter edges; where a gap has opened longer ones do."""
-    mesh, _ = meshed(2, 1.0)
-    assert kept_cells(mesh, 1, lambda points: np.full(len(points), 0.09), LAYERS).any()
-    assert not kept_cells(mesh, 1, lambda points: np.full(len(points), wanted), LAYERS).any()
+@pytest.mark.parametrize(
+    ("viscosity", "size_body", "grade", "told"),
+    [(0.1, 0.01, "note", False), (0.1, 0.05, "note", True), (0.01, 0.05, "warning", True)],
+)
+def test_the_check_counts_cells_across_the_layer(viscosity: float, size_body: float, grade: str, told: bool) -> None:
+    fluid = {"viscosity": viscosity}
+    (finding,) = layers(falling_disk(fluid=fluid, mesh={"size": 0.4, "size_body": size_body}))
+    assert finding.grade == grade
+    thickness = float(finding.found["thickness"] or 0.0)
+    assert thickness == pytest.approx(0.25 / np.sqrt(float(finding.found["reynolds"] or 0.0)))
+    assert bool(finding.enough) == told
+    if told:
+        enough = float(finding.enough["size_body"] or 0.0)
+        (finer,) = layers(falling_disk(fluid=fluid, mesh={"size": 0.4, "size_body": 0.99 * enough}))
+        assert finer.grade == "note"
+        assert not finer.enough
 
 
-def _near(mesh):
-    return np.linalg.norm(mesh.points - 1.0, axis=1) < 0.6
+def test_a_flow_past_a_fixed_body_has_a_layer_too() -> None:
+    (finding,) = layers(load_scene(SCENES / "dfg_cylinder.toml"))
+    assert finding.found["reynolds"] == pytest.approx(30.0)  # by the peak of the inflow, 1.5 times the mean
+
+
+def test_the_impact_speed_of_a_scene_is_not_that_of_its_fall() -> None:
+    slow, fast = (layers(falling_disk(contact={"impact_speed": speed}))[0] for speed in (0.1, 100.0))
+    assert slow.found == fast.found
+
+
+@pytest.mark.parametrize("scene", ["swimmer", "dry_bounce", "periodic_channel"])
+def test_stokes_flow_dry_scenes_and_rest_have_none(scene: str) -> None:
+    assert layers(load_scene(SCENES / f"{scene}.toml")) == []
+
+
+def speeds_for(scene: Scene, cells: float) -> np.ndarray:
+    """The speed at which so many mean edges of .9 size_body lie across the disk's layer."""
+    assert scene.mesh is not None
+    assert scene.fluid.viscosity is not None
+    assert scene.fluid.density is not None
+    return np.array([0.25 * scene.fluid.viscosity / scene.fluid.density / (0.9 * cells * scene.mesh.size_body) ** 2])
+
+
+@pytest.mark.parametrize(
+    ("cells", "grades"), [(1.01 * CELLS_WANTED, []), (1.2, ["note"]), (0.99 * FEWEST_CELLS, ["warning"])]
+)
+def test_a_run_is_judged_by_its_highest_speed(cells: float, grades: list[str]) -> None:
+    scene = falling_disk()
+    system = build_system(scene)
+    assert scene.mesh is not None
+    found = layer_remarks(system, speeds_for(scene, cells), scene.mesh.size_body)
+    assert [remark.grade for remark in found] == grades
+    assert all("mesh.size_body" in remark.remedy for remark in found)
+    assert layer_remarks(system, speeds_for(scene, cells), None) == []
+
+
+@pytest.mark.parametrize(("size_body", "grade"), [(0.015, "warning"), (0.0075, "note")])
+def test_a_layer_beside_which_torques_jumped_is_a_warning(size_body: float, grade: str) -> None:
+    """With a layer of .012 beside cells of .015 a light disk's torque jumped eightfold, with half the cell by 12 %."""
+    scene = falling_disk()
+    assert scene.fluid.viscosity is not None
+    speed = np.array([0.25 * scene.fluid.viscosity / 0.012**2])  # the density is 1
+    (remark,) = layer_remarks(build_system(scene), speed, size_body)
+    assert remark.grade == grade
+    assert "0.012" in remark.text
+
+
+def test_a_run_tells_it_in_its_summary_and_report(tmp_path: Path) -> None:
+    fluid = {"viscosity": 0.001}
+    settings = {"time": {"end": 0.02, "step": 0.01}, "output": {"every": 0.02}}
+    rigidfluid.run(falling_disk(body={"velocity": [0.0, -2.0]}, fluid=fluid, mesh=COARSE, **settings), tmp_path)
+    (remark,) = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["remarks"]
+    assert remark["grade"] == "warning"
+    assert "boundary layer of 'disk'" in remark["text"]
+    report(tmp_path)
+    assert "Warning: the boundary layer" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["falling_disk", "drafting_kissing_tumbling", "falling_ellipsoid", "rebound"])
+def test_auto_resolves_the_layer_and_the_body(name: str) -> None:
+    scene = load_scene(SCENES / f"{name}.toml", ["mesh.size_body=auto"])
+    assert scene.mesh is not None
+    (finding,) = layers(scene)
+    assert finding.grade == "note"
+    assert not finding.enough
+    system = build_system(scene, to_run=False)
+    smallest = min(float(body.volume) for body in system.bodies)
+    diameter = 2.0 * (smallest / np.pi) ** 0.5 if scene.dimension == 2 else 2.0 * (0.75 * smallest / np.pi) ** (1 / 3)
+    limit = min(float(finding.found["thickness"] or 0.0) / 2.0, diameter / 10.0)
+    assert scene.mesh.size_body == pytest.approx(limit, rel=0.01)
+    assert scene.mesh.size_body <= limit * (1.0 + 1e-9)
+
+
+def test_auto_is_finer_in_a_thinner_fluid_and_a_number_from_then_on() -> None:
+    thick, thin = (falling_disk(fluid={"viscosity": mu}, mesh={"size_body": "auto"}) for mu in (0.1, 0.001))
+    assert thick.mesh is not None
+    assert thin.mesh is not None
+    assert thin.mesh.size_body < 0.5 * thick.mesh.size_body
+    assert rigidfluid.scene_from_dict(thin.to_dict()) == thin
+
+
+def test_auto_is_no_coarser_than_the_mesh() -> None:
+    scene = falling_disk(mesh={"size": 0.02, "size_body": "auto"})
+    assert scene.mesh is not None
+    assert scene.mesh.size_body == 0.02
+
+
+def test_other_words_are_refused() -> None:
+    with pytest.raises(SceneError, match=r"mesh\.size_body"):
+        falling_disk(mesh={"size_body": "automatic"})

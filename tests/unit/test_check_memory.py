@@ -1,17 +1,15 @@
-"""What `check` says of the memory that a run takes, and how well it expects the cells of a mesh."""
+"""What `check` says of the memory and the time that a run takes."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from falling import SCENES, falling_disk
+from falling import SCENES
 
 from rigidfluid.backends.dry import Dry
-from rigidfluid.checks import Finding, check
+from rigidfluid.checks import Finding, check, run_time
 from rigidfluid.checks import memory as asked
-from rigidfluid.core.mesh.cell_count import expected_cells
-from rigidfluid.core.run.mesh_keys import sizes_of
-from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.checks.machine_speed import machine_speed
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.load import load_scene
 
@@ -23,25 +21,22 @@ def findings(scene: Scene) -> list[Finding]:
     return [one for one in check(scene).findings if one.question == "memory"]
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        falling_disk(),
-        falling_disk(body={"position": [1.0, 0.14]}, mesh={"cells_per_gap": 4}),
-        load_scene(SCENES / "falling_disk_window.toml"),
-        load_scene(SCENES / "dfg_2d3.toml"),
-        load_scene(SCENES / "wavy_channel.toml"),
-        load_scene(SCENES / "falling_sphere.toml", COARSE_SPHERE),
-    ],
-    ids=["disk", "narrow gap", "window", "boxes of finer cells", "curved domain", "sphere"],
-)
-def test_cells_are_expected_within_a_fifth(scene: Scene) -> None:
-    simulation = Simulation(scene)
-    system, mesh = simulation.system, simulation.state.mesh
-    assert mesh is not None
-    assert scene.mesh is not None
-    given = system.meshed(system.pose), system.bodies, system.pose, system.walls, sizes_of(scene.mesh, system.domain)
-    assert expected_cells(*given) == pytest.approx(len(mesh.cells), rel=0.2)
+MEASURED = [  # scene, settings, unknowns at the start, most and memory [MiB] of the whole run
+    ("falling_sphere", [], 66_923, 72_163, 1049),
+    ("falling_sphere", ["mesh.size_body=0.4"], 18_005, 25_713, 903),
+    ("ten_cate_e3", [], 356_442, 465_534, 2956),
+    ("two_disks", ["mesh.size_body=0.04", "time.step=0.004"], 8_738, 9_542, 350),
+]
+
+
+@pytest.mark.parametrize(("name", "settings", "first", "most", "memory"), MEASURED, ids=str)
+def test_the_worst_moment_is_that_of_whole_runs(
+    name: str, settings: list[str], first: int, most: int, memory: int
+) -> None:
+    (finding,) = findings(load_scene(SCENES / f"{name}.toml", settings))
+    assert finding.found["unknowns"] == pytest.approx(first, rel=0.1)
+    assert finding.found["most_unknowns"] == pytest.approx(most, rel=0.15)
+    assert finding.found["memory"] == pytest.approx(memory * 2**20, rel=0.15)
 
 
 def test_it_tells_unknowns_memory_and_time(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,12 +63,40 @@ def test_more_than_is_available_is_a_warning(solver: str, grade: str, monkeypatc
 def test_without_a_mesh_nothing_is_asked() -> None:
     scene = load_scene(SCENES / "dry_bounce.toml")
     assert findings(scene) == []
-    assert Dry.solver_cost(Dry.__new__(Dry), 1.0) is None
+    assert Dry.solver_cost(Dry.__new__(Dry), 1.0, 1.0) is None
 
 
 def test_cells_that_no_machine_holds_are_counted_all_the_same() -> None:
     scene = load_scene(SCENES / "falling_sphere.toml", ["mesh.size=0.01", "mesh.size_body=0.001", "mesh.growth=0.2"])
     (finding,) = findings(scene)
     assert finding.grade == "warning"
-    assert float(finding.found["cells"] or 0.0) == pytest.approx(11.2 * 960.0 / 0.01**3, rel=0.2)
+    assert float(finding.found["cells"] or 0.0) == pytest.approx(11.1 * 960.0 / 0.01**3, rel=0.2)
     assert np.isfinite(float(finding.found["memory"] or np.inf))
+
+
+def in_time(scene: Scene) -> Finding:
+    (finding,) = [one for one in check(scene).findings if one.question == "time"]
+    return finding
+
+
+def test_the_time_is_that_of_all_steps_and_meshes_on_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_time, "machine_speed", lambda: 2.0)
+    fast = in_time(load_scene(SCENES / "falling_disk.toml", ["time.end=0.9", "time.step=0.004"]))
+    assert fast.found["steps"] == 225
+    assert 9 <= fast.found["meshes"] <= 20  # whole runs made 10 to 13
+    assert f"{fast.found['steps']} steps" in fast.text
+    monkeypatch.setattr(run_time, "machine_speed", lambda: 1.0)
+    slow = in_time(load_scene(SCENES / "falling_disk.toml", ["time.end=1.8", "time.step=0.004"]))
+    assert slow.found["steps"] == 450
+    for share in ("least", "most"):
+        assert 3.0 < slow.found[share] / fast.found[share] < 4.0
+    assert slow.found["most"] / slow.found["least"] < 10.0
+
+
+def test_what_rests_has_one_mesh() -> None:
+    found = in_time(load_scene(SCENES / "dfg_cylinder.toml")).found
+    assert found["meshes"] == 1
+
+
+def test_the_speed_of_the_machine_is_measured() -> None:
+    assert 0.02 < machine_speed() < 50.0

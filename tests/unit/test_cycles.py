@@ -5,11 +5,13 @@ import json
 import numpy as np
 import pytest
 from articulated_scenes import OUT, WAG, scene
+from falling import SCENES
 
 import rigidfluid
+from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
-from rigidfluid.core.run.cycles import cycles
+from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.reports.report import report
 
 
@@ -47,3 +49,41 @@ def test_summary_and_report_have_the_cycles_of_a_run(tmp_path):
 
 def test_what_is_rigid_has_no_cycles():
     assert "cycles" not in rigidfluid.run(scene()).summary
+
+
+def told(moved, turned, inertia=True):
+    return start_remarks({"it": {"period": 1.0, "displacement": moved, "rotation": turned}}, inertia, 0.1)
+
+
+def test_a_first_cycle_that_differs_from_the_second_is_remarked():
+    (remark,) = told([[0.8, 0.0], [1.0, 0.0], [1.0, 0.0]], [0.0, 0.0, 0.0])
+    assert remark.grade == "note"
+    assert "first cycle of 'it'" in remark.text
+    assert "20 % off" in remark.text
+    (turn,) = told([[1.0, 0.0], [1.0, 0.0]], [0.3, 0.4], inertia=False)
+    assert "rotation" in turn.text
+    (three,) = told([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 0.0, 0.0]] * 2)
+    assert "141 % off" in three.text
+
+
+def test_cycles_alike_or_too_small_to_compare_are_not():
+    assert told([[0.99, 0.0], [1.0, 0.0]], [0.0, 0.0]) == []
+    assert told([[1e-9, 0.0], [-3e-9, 0.0]], [1e-9, 2e-9]) == []
+    assert told([], []) == []
+
+
+def test_a_lone_cycle_is_remarked_where_the_fluid_has_inertia():
+    (remark,) = told([[1.0, 0.0]], [0.0])
+    assert "no second one" in remark.text
+    assert told([[1.0, 0.0]], [0.0], inertia=False) == []
+
+
+def test_a_swimmer_from_rest_says_so_in_its_summary():
+    """In a fluid with inertia its first cycle is not its second."""
+    settings = ["fluid.model=navier-stokes", "fluid.density=3.0", "mesh.size=12", "mesh.size_body=1.0", "time.end=8.0"]
+    run = rigidfluid.run(rigidfluid.load_scene(SCENES / "swimmer.toml", [*settings, "time.step=0.25"]))
+    first, second = np.array(run.summary["cycles"]["swimmer"]["displacement"])
+    off = np.linalg.norm(first - second) / np.linalg.norm(second)
+    assert off > 0.02
+    texts = [remark["text"] for remark in run.summary["remarks"]]
+    assert any("first cycle of 'swimmer'" in text and f"{per_cent(off)} off" in text for text in texts)

@@ -19,7 +19,7 @@ from mesh_tools import (
 
 from rigidfluid.core.mesh import refine_surface as surface
 from rigidfluid.core.mesh import remesh as module
-from rigidfluid.core.mesh.boundary_layer import LAYERS
+from rigidfluid.core.mesh.kept_cells import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh

@@ -7,7 +7,7 @@ import pytest
 
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
-from rigidfluid.core.run.remesh_jumps import remesh_jumps
+from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 
 
 def history(force, torque, remeshes):
@@ -36,6 +36,14 @@ def test_a_spike_is_told_over_the_range():
     found = remesh_jumps(history(torque, spiked, [0] * 10 + [1] * 10))
     assert found["disk"]["torque"] == pytest.approx(0.5 / np.ptp(spiked[5:]))
     assert found["disk"]["force"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_large_jump_is_noted():
+    found = jump_remarks({"a": {"force": 0.05, "torque": 0.2}, "b": {"force": 0.02, "torque": 0.3}})
+    assert [remark.text for remark in found] == [
+        "the torque on 'b' jumped by up to 30% of its range in the first steps on a new mesh"
+    ]
+    assert jump_remarks({}) == []
 
 
 def test_a_spike_elsewhere_is_none_of_a_mesh():

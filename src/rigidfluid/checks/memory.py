@@ -5,48 +5,46 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rigidfluid.checks.finding import Figures, Finding, figure
-from rigidfluid.core.mesh.cell_count import expected_cells
+from rigidfluid.checks.run_size import RunSize
 from rigidfluid.core.model.memory import REMEDY, available_memory, gigabytes
-from rigidfluid.core.model.system import System
-from rigidfluid.core.run.mesh_keys import sizes_of
-from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "memory"
 
 
-def in_memory(system: System, mesh: MeshTable) -> Iterator[Finding]:
-    """Compare what the backend expects to take on the mesh of the start with the memory that is available now.
+def in_memory(size: RunSize) -> Iterator[Finding]:
+    """Compare the most memory that the backend expects to take, at the start or later, with what is available now.
 
     Parameters
     ----------
-    system : System
-        Bodies, domain and backend.
-    mesh : MeshTable
-        Sizes of the cells.
+    size : RunSize
+        Of the meshes.
 
     Yields
     ------
     Finding
-        One where the backend knows what it takes; a warning where that is more than there is.
+        A warning where that is more than there is.
     """
-    sizes = sizes_of(mesh, system.domain)
-    cells = expected_cells(system.meshed(system.pose), system.bodies, system.pose, system.walls, sizes)
-    cost = system.backend.solver_cost(cells)
-    if cost is None:
-        return
+    start, most = size.start_cost, size.most_cost
+    costly = max(start, most, key=lambda cost: cost.memory)
     available = available_memory()
     found: Figures = {
-        "cells": cells,
-        "unknowns": cost.unknowns,
-        "method": cost.method,
-        "memory": cost.memory,
+        "cells": size.start.cells,
+        "unknowns": start.unknowns,
+        "most_cells": size.most.cells,
+        "most_unknowns": most.unknowns,
+        "gap": size.gap,
+        "method": most.method,
+        "memory": costly.memory,
         "available": available,
-        "seconds": cost.seconds,
+        "seconds": most.seconds,
     }
-    text = f"about {figure(cells)} cells with {figure(cost.unknowns)} unknowns at the start; by {cost.method!r} the run"
-    text += f" takes {gigabytes(cost.memory)} of memory, and {figure(cost.seconds)} s of one core each time that"
-    text += " factors are made"
-    if cost.memory <= available:
+    text = f"about {figure(size.start.cells)} cells with {figure(start.unknowns)} unknowns at the start"
+    if size.meshes > 1:
+        text += f", at most {figure(size.most.cells)} with {figure(most.unknowns)}"
+        text += "" if size.gap is None else f", where gaps are {figure(size.gap)}"
+    text += f"; by {most.method!r} the run takes {gigabytes(costly.memory)} of memory, and {figure(most.seconds)} s of"
+    text += " one core each time that factors are made"
+    if costly.memory <= available:
         yield Finding("note", QUESTION, (), text, found=found)
         return
     text += f"; {gigabytes(available)} are available"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.checks.boundary_layer import in_the_layer
 from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import in_the_fluid
@@ -21,6 +22,8 @@ from rigidfluid.checks.memory import in_memory
 from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
 from rigidfluid.checks.rebound import in_a_film
 from rigidfluid.checks.resolution import in_the_gap
+from rigidfluid.checks.run_size import run_size
+from rigidfluid.checks.run_time import in_time
 from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
 from rigidfluid.checks.shapes import of_facets
 from rigidfluid.checks.static_load import at_rest, under_a_stack
@@ -116,7 +119,10 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     if mesh is not None:
-        yield from chain(in_memory(system, mesh), counted_once(system, mesh))
+        size = run_size(parts, system, mesh, scene.time)
+        if size is not None:
+            yield from chain(in_memory(size), in_time(size, system.dimension, scene.time))
+        yield from chain(in_the_layer(system, mesh), counted_once(system, mesh))
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
         if mesh is not None:

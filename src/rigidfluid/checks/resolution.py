@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, at_most, figure
 from rigidfluid.checks.response import rest_gap
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "cells"
@@ -32,13 +33,17 @@ def in_the_gap(met: DesignContacts, mesh: MeshTable) -> Iterator[Finding]:
     Finding
         One for each kind of pair whose gap is known; a warning where fewer than cells_per_gap cells fit.
     """
-    resting = met.stacked_weight > 0.0
-    gaps = np.where(resting, rest_gap(met.law, met.contacts, met.stacked_weight, 0.0), met.turning_gaps())
-    finest = mesh.size_body / 2**mesh.refinements
-    gaps = np.where(gaps > _ROUNDING * met.law.range, gaps, np.nan)
+    gaps, finest = narrowest_gaps(met), mesh.size_body / 2**mesh.refinements
     for row in met.worst(-np.nan_to_num(gaps, nan=np.inf)):
         if np.isfinite(gaps[row]):
             yield _finding(met, row, float(gaps[row]), finest, mesh)
+
+
+def narrowest_gaps(met: DesignContacts) -> FloatArray:
+    """Gaps at rest under a stack, or where impacts end without weight, NaN where the law holds none (m,) [length]."""
+    resting = met.stacked_weight > 0.0
+    gaps = np.where(resting, rest_gap(met.law, met.contacts, met.stacked_weight, 0.0), met.turning_gaps())
+    return np.where(gaps > _ROUNDING * met.law.range, gaps, np.nan)
 
 
 def _finding(met: DesignContacts, row: int, gap: float, finest: float, mesh: MeshTable) -> Finding:

@@ -66,7 +66,7 @@ def page(
     scene = escape(scene_text(summary["scene"]))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
-        *(f'<p class="note">{escape(note)}</p>' for note in (*_warnings(summary["energy"]), *notes)),
+        *(f'<p class="note">{escape(note)}</p>' for note in (*_warnings(summary), *notes)),
         table(_figures(summary)),
         *_cycles(summary.get("cycles", {})),
         *_coefficients(coefficients),
@@ -126,11 +126,13 @@ def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:
         yield f"<p>And of {len(bodies) - _MOST_BODIES} more bodies, in the plot.</p>"
 
 
-def _warnings(energy: Mapping[str, Any]) -> Iterator[str]:
+def _warnings(summary: Mapping[str, Any]) -> Iterator[str]:
     """As the command line tells them."""
-    for warning in energy["warnings"]:
+    for warning in summary["energy"]["warnings"]:
         grade = "Serious warning" if warning["serious"] else "Warning"
         yield f"{grade}: {warning['text']}. {warning['remedy']}"
+    for remark in summary.get("remarks", ()):
+        yield f"{remark['grade'].capitalize()}: {remark['text']}. {remark['remedy']}"
 
 
 def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:

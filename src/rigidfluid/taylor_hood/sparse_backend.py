@@ -109,8 +109,8 @@ class SparseBackend(TaylorHoodBackend):
                 solver.forget()
 
     @final
-    def solver_cost(self, cells: float) -> SolverCost | None:
-        unknowns = predicted_unknowns(cells, self.problem.dimension)
+    def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
+        unknowns = predicted_unknowns(cells, facets, self.problem.dimension)
         return predicted_run(self._method(unknowns), unknowns, self.problem.dimension, self.problem.inertia)
 
     def _method(self, unknowns: float) -> Literal["lu", "schur"]:

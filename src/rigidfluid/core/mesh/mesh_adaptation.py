@@ -12,13 +12,13 @@ from itertools import chain
 
 import numpy as np
 
-from rigidfluid.core.mesh.boundary_layer import LAYERS
 from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
+from rigidfluid.core.mesh.kept_cells import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.regions import Wake

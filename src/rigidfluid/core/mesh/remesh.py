@@ -9,9 +9,9 @@ from itertools import combinations, product
 
 import numpy as np
 
-from rigidfluid.core.mesh.boundary_layer import kept_cells
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
+from rigidfluid.core.mesh.kept_cells import kept_cells
 from rigidfluid.core.mesh.level_set import level_set_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh, put_back

@@ -75,7 +75,14 @@ def wanted_size(
     (N,) array
         Wanted edge length [length].
     """
-    first, second = two_nearest_bodies(points, bodies, pose, _reach(sizes))
+    first, second = two_nearest_bodies(points, bodies, pose, reach_of_bodies(sizes))
+    return size_between(points, first, second, walls, sizes)
+
+
+def size_between(
+    points: FloatArray, first: FloatArray, second: FloatArray, walls: Sequence[Wall], sizes: Sizes
+) -> FloatArray:
+    """`wanted_size` of points at distances ``first`` and ``second`` (N,) from the two nearest bodies, (N,) [length]."""
     open_size = _size_at(first, points, sizes)
     near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
     gap = first[near] + np.minimum(second[near], nearest_wall(points[near], walls))
@@ -89,7 +96,7 @@ def size_away_from_gaps(points: FloatArray, bodies: Sequence[Body], pose: Pose, 
 
     h = min(size, size_body + growth·d₁, size_r + growth·d_r for each region r at the distance d_r).
     """
-    first, _ = two_nearest_bodies(points, bodies, pose, _reach(sizes))
+    first, _ = two_nearest_bodies(points, bodies, pose, reach_of_bodies(sizes))
     return _size_at(first, points, sizes)
 
 
@@ -101,7 +108,7 @@ def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
     return wanted
 
 
-def _reach(sizes: Sizes) -> float:
+def reach_of_bodies(sizes: Sizes) -> float:
     """The distance beyond which bodies decide no size [length]."""
     return max((sizes.size - sizes.size_body) / sizes.growth, sizes.cells_per_gap * sizes.size)
 

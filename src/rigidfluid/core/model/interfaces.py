@@ -353,8 +353,9 @@ class FluidBackend(Part):
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
         """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
 
-    def solver_cost(self, cells: float) -> SolverCost | None:
-        """What steps on a mesh of about so many ``cells`` are going to take; None where the backend does not know."""
+    def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
+        """What steps on a mesh of about so many ``cells``, and ``facets`` on its boundary, are going to take; None
+        where the backend does not know."""
         return None
 
     @abstractmethod

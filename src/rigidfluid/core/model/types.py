@@ -114,7 +114,9 @@ class Loads:
     Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
     submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
     ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
-    where its twist is given. ``film``: that which brakes them before, None without a fluid.
+    where its twist is given. ``film``: that which brakes them before, None without a fluid. In a fluid ``travel_speed``
+    (n,) is the highest expected between body and fluid, and ``flow_speed`` that of the fluid as it is given on the
+    boundary and at the start [length/time].
     """
 
     mass: FloatArray
@@ -124,6 +126,8 @@ class Loads:
     stacked_energy: FloatArray
     smallest_gap: float
     film: Film | None = None
+    travel_speed: FloatArray | None = None
+    flow_speed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,13 +311,15 @@ class SolverCost:
     """What the steps of a run are expected to take.
 
     ``method``: of solution, as the scene's keys name it; ``unknowns`` of a step; ``memory`` of the process [byte]; CPU
-    ``seconds`` that factors take, or what else preconditions, each time it is made.
+    ``seconds`` that factors take, or what else preconditions, each time it is made, and ``step_seconds`` of a step far
+    from contacts.
     """
 
     method: str
     unknowns: float
     memory: float
     seconds: float
+    step_seconds: float
 
 
 @dataclass(frozen=True, slots=True)

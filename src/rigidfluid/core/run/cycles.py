@@ -9,10 +9,15 @@ import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
+from rigidfluid.core.run.remarks import Remark
 
 _ROUNDING = 1e-9
+_ROUNDING_OF_WAYS = 1e-6
+_SAME = 0.02
+"""Part of a cycle's displacement or rotation by which the first two may differ without a remark."""
 
 
 def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str, Any]]:
@@ -35,6 +40,36 @@ def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str
     axes, orientation = _axes(history.dimension)
     table = history.table("bodies", ("time", "body", *axes, *orientation))
     return {name: _of_one(table, name, period, history.dimension) for name, period in periods.items()}
+
+
+def start_remarks(found: Mapping[str, Mapping[str, Any]], inertia: bool, length: float) -> list[Remark]:
+    """Where first cycles differ from second ones, or nobody can tell, as a fluid with ``inertia`` has no second one.
+
+    Parameters
+    ----------
+    found : mapping of str to mapping
+        What `cycles` gave.
+    inertia : bool
+        Of the fluid.
+    length : float
+        Size of the bodies; displacements below its millionth are rounding [length].
+    """
+    remedy = "Take later cycles: lengthen time.end, and leave the first one out."
+    remarks = []
+    for name, mine in found.items():
+        begins = f"the first cycle of {name!r} contains the start"
+        if len(mine["displacement"]) == 1 and inertia:
+            remarks.append(Remark("note", f"{begins}, and there is no second one to compare", remedy))
+        for figure, least in (("displacement", _ROUNDING_OF_WAYS * length), ("rotation", _ROUNDING_OF_WAYS)):
+            sizes = [float(np.linalg.norm(one)) for one in mine[figure][:2]]
+            if len(sizes) < 2 or max(sizes) <= least:
+                continue
+            off = float(np.linalg.norm(np.subtract(*mine[figure][:2])))
+            if off > _SAME * sizes[1] and off > least:
+                text = f"{begins}: its {figure} is {sizes[0]:.3g}, that of the second {sizes[1]:.3g}"
+                text += f", {per_cent(off / sizes[1])} off" if sizes[1] > least else ""
+                remarks.append(Remark("note", text, remedy))
+    return remarks
 
 
 def _of_one(table: Mapping[str, FloatArray], name: str, period: float, dimension: int) -> dict[str, Any]:

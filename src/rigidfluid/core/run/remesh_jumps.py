@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
+from rigidfluid.core.run.remarks import Remark
 
 _AFTER = 3
 """Steps on a new mesh in which a jump is looked for."""
@@ -14,6 +17,9 @@ _AFTER = 3
 _START = 5
 """First steps of a run, whose forces are those of the start."""
 
+
+NOTED = 0.1
+"""A jump of more than this share of the range is noted at the end of a run."""
 
 _COLUMNS = {"force": ("fx", "fy", "fz"), "torque": ("t", "tx", "ty", "tz")}
 
@@ -41,6 +47,18 @@ def remesh_jumps(history: History) -> dict[str, dict[str, float]]:
         values = {load: np.column_stack([bodies[axis][mine] for axis in axes]) for load, axes in loads.items()}
         found[str(name)] = {load: _largest_jump(time, each, rows) for load, each in values.items()}
     return found
+
+
+def jump_remarks(jumps: Mapping[str, Mapping[str, float]]) -> list[Remark]:
+    """Note the body whose force, and that whose torque, jumped most by `remesh_jumps`, where that is much."""
+    remarks = []
+    for load in ("force", "torque"):
+        jump, name = max(((each[load], name) for name, each in jumps.items()), default=(0.0, ""))
+        if jump > NOTED:
+            text = f"the {load} on {name!r} jumped by up to {jump:.0%} of its range in the first steps on a new mesh"
+            remedy = "Where no contact did that, set a smaller mesh.size_body."
+            remarks.append(Remark("note", text, remedy))
+    return remarks
 
 
 def _largest_jump(time: FloatArray, values: FloatArray, first: IntArray) -> float:

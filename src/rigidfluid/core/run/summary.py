@@ -16,9 +16,10 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
-from rigidfluid.core.run.cycles import cycles
+from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.core.run.process import peak_memory
-from rigidfluid.core.run.remesh_jumps import remesh_jumps
+from rigidfluid.core.run.remarks import layer_remarks
+from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.parts import known_parts
 
@@ -43,6 +44,13 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
+    mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.backend.problem
+    length = max(body.bounding_radius for body in system.bodies)
+    remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
+    inertia = system.backend.needs_mesh and problem is not None and problem.inertia
+    remarks += start_remarks(found.get("cycles", {}), inertia, length)
+    jumps = remesh_jumps(simulation.history) if simulation.counts.remeshes else {}
+    remarks += jump_remarks(jumps)
     return {
         "status": status,
         "scene": simulation.scene.to_dict(),
@@ -66,8 +74,9 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
-        **_cycles(simulation),
-        **_remesh_jumps(simulation),
+        **found,
+        "remesh_jumps": jumps,
+        "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy),
         "auto_epsilon": chosen_strengths(system),
     }
@@ -78,12 +87,6 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
-
-
-def _remesh_jumps(simulation: Simulation) -> dict[str, Any]:
-    """Jumps of forces at new meshes, where there were any."""
-    found = remesh_jumps(simulation.history) if simulation.counts.remeshes else {}
-    return {"remesh_jumps": found} if found else {}
 
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:

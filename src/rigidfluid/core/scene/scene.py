@@ -10,7 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
 
 from rigidfluid.errors import SceneError
 
@@ -39,6 +39,11 @@ InitialVelocity = Annotated[Vector | None, Field(description="Initial velocity; 
 InitialAngularVelocity = Annotated[
     Angular | None,
     Field(description="Initial angular velocity; a number in 2D; zero if not given [rad/time]"),
+]
+AUTO = "auto"
+"""Stands in a file for a number that is computed when the scene is loaded."""
+SizeBody = Annotated[
+    float, Field(gt=0), WithJsonSchema({"anyOf": [{"exclusiveMinimum": 0, "type": "number"}, {"const": AUTO}]})
 ]
 # A component that is a number, or an expression of place and time.
 Formula = float | str
@@ -382,7 +387,10 @@ class MeshTable(_Table):
     """How fine the mesh is, and when it is made anew."""
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
-    size_body: Positive = Field(description="Edge length on the bodies [length]")
+    size_body: SizeBody = Field(
+        description="Edge length on the bodies; `auto`: half of the thinnest boundary layer d/√Re at the speeds that "
+        "are expected, at most d/10, with the diameter d of a ball of the body's volume [length]"
+    )
     size_wall: Positive | None = Field(
         default=None,
         description="Edge length on walls that are not flat; a quarter of the least radius of curvature, where that is "

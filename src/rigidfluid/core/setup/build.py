@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
-from rigidfluid.core.setup.impact import creeping_resistances, impact_speeds
+from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, impact_speeds, travel_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_linkage, joined_bodies
@@ -92,8 +93,12 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     moved = _together(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
     pulled = _together(carried, linkage, weight)
     given = None if carried is None else fastest_given(carried, mechanisms.values(), scene.time.end)
-    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, parts.backend.part.needs_mesh, given)
+    wet = parts.backend.part.needs_mesh
+    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, wet, given)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
+    if wet:
+        travel = travel_speeds(scene, domain, parts.bodies, moved, pulled, given)
+        loads = replace(loads, travel_speed=travel, flow_speed=fastest_flow(scene, domain))
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)

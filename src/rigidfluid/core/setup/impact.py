@@ -65,6 +65,42 @@ def impact_speeds(
     (n,) array
         Speeds [length/time].
     """
+    start, falling = _own_speeds(scene, domain, bodies, mass, weight, wet, carried)
+    if wet:
+        falling = falling + fastest_flow(scene, domain)
+    if scene.contact.impact_speed is not None:
+        falling = np.maximum(start, scene.contact.impact_speed)
+    return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
+
+
+def travel_speeds(
+    scene: Scene,
+    domain: Domain,
+    bodies: Sequence[Body],
+    mass: FloatArray,
+    weight: FloatArray,
+    carried: FloatArray | None = None,
+) -> FloatArray:
+    """The highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
+
+    As for `impact_speeds`, but the larger of the body's own and that of the fastest flow, whatever the scene says of
+    impacts.
+    """
+    start, falling = _own_speeds(scene, domain, bodies, mass, weight, True, carried)
+    held = [table.fixed or table.prescribed is not None for table in scene.body]
+    return np.maximum(np.where(held, start, falling), fastest_flow(scene, domain))
+
+
+def _own_speeds(
+    scene: Scene,
+    domain: Domain,
+    bodies: Sequence[Body],
+    mass: FloatArray,
+    weight: FloatArray,
+    wet: bool,
+    carried: FloatArray | None,
+) -> tuple[FloatArray, FloatArray]:
+    """v₀, and what it becomes by falling, each (n,) [length/time]."""
     lever = _by_shape(_lever, bodies)
     start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
     if carried is not None:
@@ -73,10 +109,7 @@ def impact_speeds(
     falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
     if wet:
         falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, domain, bodies, pull)))
-        falling = falling + _fastest_flow(scene, domain)
-    if scene.contact.impact_speed is not None:
-        falling = np.maximum(start, scene.contact.impact_speed)
-    return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
+    return start, falling
 
 
 def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
@@ -180,7 +213,7 @@ def _own_speed(table: BodyTable, lever: float) -> float:
     return speed + 2.0 * np.pi * (table.prescribed.frequency or 0.0) * _length(table.prescribed.amplitude)
 
 
-def _fastest_flow(scene: Scene, domain: Domain) -> float:
+def fastest_flow(scene: Scene, domain: Domain) -> float:
     """Of all that is prescribed on the boundary and at the start, at the points and times sampled."""
     inflows = sampled_inflows(scene, domain)
     times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.scene.overrides import override
-from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.auto_size import auto_size_body
 from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.joint_checks import check_joints
@@ -50,6 +51,14 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
     Its backend may lack packages here, and then cannot run it.
     """
+    mesh = data.get("mesh")
+    if not isinstance(mesh, Mapping) or mesh.get("size_body") != AUTO:
+        return _checked(data)
+    coarse = _checked({**data, "mesh": {**mesh, "size_body": mesh.get("size")}})
+    return _checked({**data, "mesh": {**mesh, "size_body": auto_size_body(coarse)}})
+
+
+def _checked(data: Mapping[str, Any]) -> Scene:
     scene = with_drives(with_time_tables(read_table(Scene, data)))
     check_tables(scene)
     parts = known_parts(scene)

@@ -1,0 +1,113 @@
+"""How large the meshes of a run are going to be, at the start and at the most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log2
+
+import numpy as np
+
+from rigidfluid.checks.design_contacts import DesignContacts, design_contacts
+from rigidfluid.checks.resolution import narrowest_gaps
+from rigidfluid.checks.settled_pose import settled_pose
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.mesh.cell_count import Count, expected_count
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray, Pose, SolverCost
+from rigidfluid.core.run.mesh_keys import sizes_of
+from rigidfluid.core.scene.scene import MeshTable, TimeTable
+from rigidfluid.core.setup.parts import Parts
+
+_LATER_OVER_FIRST = 1.05
+"""Cells of a mesh made from another one over those of a first mesh, most often."""
+
+_SHARE_OF_REST = 0.8
+"""Of the gap at rest in the least gap of an impact that a film brakes, beside that where it would end without the film;
+fitted to the sphere of ten Cate et al. and of the paper, and to the paper's ellipsoid."""
+
+_HELD = 0.01
+"""Of a law's range: what comes nearer is stopped by the film."""
+
+_DIAMETERS_OF_A_MESH = 2.0
+"""A body goes so far until its mesh is worn."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunSize:
+    """Cells of the mesh at the ``start``, and the ``most``, with bodies settled down to a ``gap`` [length], None where
+    none falls; what the backend takes for them; and how many ``meshes`` are made, the first one included."""
+
+    start: Count
+    most: Count
+    gap: float | None
+    start_cost: SolverCost
+    most_cost: SolverCost
+    meshes: int
+
+
+def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
+    """The sizes that a run is expected to have; None where the backend does not know what it takes.
+
+    Parameters
+    ----------
+    parts : Parts
+        For a detector that needs no mesh.
+    system : System
+        Bodies, domain and backend.
+    mesh : MeshTable
+        Sizes of the cells.
+    time : TimeTable
+        The end.
+    """
+    sizes = sizes_of(mesh, system.domain)
+    start = _count(system, system.pose, sizes)
+    start_cost = system.backend.solver_cost(*start)
+    if start_cost is None:
+        return None
+    gap = least_gap(list(design_contacts(system)), sizes)
+    settled = settled_pose(system, parts.exact_detector, gap)
+    meshes = _later_meshes(system, settled, gap, sizes, time.end)
+    most = start
+    if meshes:
+        most = Count(*(_LATER_OVER_FIRST * number for number in max(start, _count(system, settled, sizes))))
+    most_cost = system.backend.solver_cost(*most)
+    assert most_cost is not None
+    falls = bool(np.any(settled.position != system.pose.position))
+    return RunSize(start, most, gap if falls else None, start_cost, most_cost, 1 + meshes)
+
+
+def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
+    """The gap g_rest^0.8 g_impact^0.2 that rest and impacts leave, at least what the finest cells resolve [length].
+
+    Where a law holds the bodies in one of the two alone it is that gap, and where in none, that of the finest cells.
+    """
+    finest = sizes.cells_per_gap * sizes.smallest
+    rest = _least([(met, narrowest_gaps(met)) for met in contacts])
+    impact = _least([(met, met.turning_gaps()) for met in contacts])
+    if rest is None or impact is None:
+        return max(rest or impact or 0.0, finest)
+    mean = float(rest**_SHARE_OF_REST * min(impact, rest) ** (1.0 - _SHARE_OF_REST))
+    return max(mean, finest)
+
+
+def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
+    """The least of those that a law holds or ends an impact at, None where there is none [length]."""
+    found = [float(gap) for met, mine in gaps for gap in mine if gap > _HELD * met.law.range]
+    return min(found, default=None)
+
+
+def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
+    return expected_count(system.meshed(pose), system.bodies, pose, system.walls, sizes)
+
+
+def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:
+    """How many meshes follow the first: one for each two diameters of a body's way, of the body with the most, and one
+    for each time that a gap halves."""
+    diameter = 2.0 * np.array([equal_volume_radius(body) for body in system.bodies])
+    fallen = np.linalg.norm(settled.position - system.pose.position, axis=1)
+    speed = np.linalg.norm(system.twist.velocity, axis=1)
+    way = np.where(fallen > 0.0, fallen, speed * end)
+    lands = bool(np.any(fallen > 0.0))
+    halvings = log2(max(2.0 * sizes.cells_per_gap * sizes.size_body / gap, 1.0)) if lands else 0.0
+    return int(np.ceil(float(np.max(way / diameter)) / _DIAMETERS_OF_A_MESH + halvings))

@@ -1,0 +1,58 @@
+"""How long does the run take?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil
+
+from rigidfluid.checks.finding import Figures, Finding
+from rigidfluid.checks.machine_speed import machine_speed
+from rigidfluid.checks.run_size import RunSize
+from rigidfluid.core.scene.scene import TimeTable
+
+QUESTION = "time"
+
+_SPREAD = 0.6, 4.5
+"""CPU time of whole runs over that of their steps in smooth motion and of their meshes. The most is that of many bodies
+in contact, where steps are solved again, halved and divided."""
+
+_MESH_SECONDS = {2: 3e-5, 3: 4e-4}
+"""CPU seconds for each cell of a new mesh, the fluid carried over."""
+
+_UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
+
+
+def in_time(size: RunSize, dimension: int, time: TimeTable) -> Iterator[Finding]:
+    """Say between which times of one core of this machine a run is expected to take.
+
+    Parameters
+    ----------
+    size : RunSize
+        Of the meshes.
+    dimension : int
+        Of space.
+    time : TimeTable
+        Steps.
+
+    Yields
+    ------
+    Finding
+        A note.
+    """
+    steps = ceil(time.end / time.step * (1.0 - 1e-12))
+    speed = machine_speed()
+    parts = zip(_SPREAD, (size.start, size.most), (size.start_cost, size.most_cost), strict=True)
+    least, most = (
+        share
+        * (steps * cost.step_seconds + size.meshes * (_MESH_SECONDS[dimension] * count.cells + cost.seconds))
+        / speed
+        for share, count, cost in parts
+    )
+    found: Figures = {"steps": steps, "meshes": size.meshes, "least": least, "most": most, "speed": speed}
+    text = f"{steps} steps and some {size.meshes} meshes take {_in_words(least, most)} of one core, as fast as now"
+    yield Finding("note", QUESTION, (), text, found=found)
+
+
+def _in_words(least: float, most: float) -> str:
+    _, unit, name = next(row for row in _UNITS if most >= row[0])
+    return f"{least / unit:.2g} to {most / unit:.2g} {name}"

@@ -1,0 +1,26 @@
+"""Thickness of the boundary layers on bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
+
+CELLS_WANTED = 2.0
+"""With so many cells across a layer forces and torques differ by about a tenth at a new mesh."""
+
+
+def boundary_layers(bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float) -> FloatArray:
+    """Thickness d/√Re of the layers on bodies, d the diameter of the ball of equal volume, Re = d v/ν, (n,) [length].
+
+    Infinite for a body at rest.
+    """
+    shapes = {shape_key(body): body for body in bodies}
+    known = {key: 2.0 * equal_volume_radius(body) for key, body in shapes.items()}
+    diameter = np.array([known[shape_key(body)] for body in bodies])
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.sqrt(kinematic_viscosity * diameter / speeds))

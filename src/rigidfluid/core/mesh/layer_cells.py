@@ -1,0 +1,54 @@
+"""How many cells lie across the boundary layers on bodies, and what is to be said where they are few."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.mechanics.boundary_layer import boundary_layers
+from rigidfluid.core.mechanics.shapes import shape_key
+from rigidfluid.core.mesh.made_size import facet_edge
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.types import FloatArray
+
+FEWEST_CELLS = 0.95
+"""With fewer a torque was eight times as large, or of the other sign, for some twenty steps after each new mesh."""
+
+
+class ThinnestLayer(NamedTuple):
+    """The layer with the fewest ``cells`` across, that of the ``body`` of this number: its ``thickness`` [length], and
+    the Reynolds number."""
+
+    body: int
+    thickness: float
+    cells: float
+    reynolds: float
+
+
+def thinnest_layer(
+    bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float, size_body: float
+) -> ThinnestLayer | None:
+    """The layer with the fewest cells of the mean edge on its body; None where nothing moves.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The n shapes.
+    speeds : (n,) array
+        Between body and fluid [length/time].
+    kinematic_viscosity : float
+        ν [length²/time].
+    size_body : float
+        Longest edge on the bodies [length].
+    """
+    if not np.any(speeds > 0.0):
+        return None
+    layers = boundary_layers(bodies, speeds, kinematic_viscosity)
+    shapes = {shape_key(body): body for body in bodies}
+    edges = {key: facet_edge(body, size_body) for key, body in shapes.items()}
+    cells = layers / np.array([edges[shape_key(body)] for body in bodies])
+    worst = int(np.argmin(cells))
+    reynolds = layers[worst] ** 2 * (speeds[worst] / kinematic_viscosity) ** 2
+    return ThinnestLayer(worst, float(layers[worst]), float(cells[worst]), float(reynolds))

@@ -1,0 +1,41 @@
+"""Remarks of a run's summary, and those on boundary layers that its cells did not resolve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
+from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A ``warning``, where results may be wrong, or a ``note``; what to do in ``remedy``."""
+
+    grade: Literal["warning", "note"]
+    text: str
+    remedy: str
+
+
+def layer_remarks(system: System, highest_speed: FloatArray, size_body: float | None) -> list[Remark]:
+    """Whether fewer than two cells lay across the thinnest boundary layer, by the ``highest_speed`` (n,) that bodies
+    had [length/time], or the flow given past them; none in Stokes flow, and without a fluid, where there is no
+    ``size_body`` [length]."""
+    problem = system.backend.problem
+    if size_body is None or problem is None or not problem.inertia or not system.backend.needs_mesh:
+        return []
+    speeds = np.maximum(highest_speed, system.loads.flow_speed)
+    layer = thinnest_layer(system.bodies, speeds, problem.dynamic_viscosity / problem.density, size_body)
+    if layer is None or layer.cells >= CELLS_WANTED:
+        return []
+    text = (
+        f"the boundary layer of {system.surfaces[layer.body]!r}, {layer.thickness:.3g} at its highest Reynolds number "
+        f"of {layer.reynolds:.3g}, had {layer.cells:.2g} cells across, so that forces and torques change at new meshes"
+    )
+    remedy = f"Set mesh.size_body to {layer.thickness / CELLS_WANTED:.2g} or less and compare."
+    return [Remark("note" if layer.cells >= FEWEST_CELLS else "warning", text, remedy)]

@@ -1,0 +1,46 @@
+"""The edge length on bodies where a scene leaves it to the speeds that are expected: `mesh.size_body = "auto"`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.system import System
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.parts import known_parts
+
+_EDGES_PER_DIAMETER = 10.0
+_DIGITS = 3
+
+
+def auto_size_body(scene: Scene) -> float:
+    """Half of the thinnest boundary layer d/√Re at the speeds that are expected, at most a tenth of the diameter d of
+    the smallest ball of equal volume, and at most the mesh's ``size`` [length].
+
+    Parameters
+    ----------
+    scene : Scene
+        With a mesh, whose ``size_body`` is not asked.
+    """
+    assert scene.mesh is not None
+    smallest = min((equal_volume_radius(body) for body in known_parts(scene).bodies), default=np.inf)
+    size = min(scene.mesh.size, 2.0 * smallest / _EDGES_PER_DIAMETER)
+    fine = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"size_body": size})})
+    return _rounded(min(size, _half_layer(build_system(fine, to_run=False))))
+
+
+def _half_layer(system: System) -> float:
+    """The thickness of the thinnest layer over the cells wanted, infinite where there is none [length]."""
+    problem, speeds = system.backend.problem, system.loads.travel_speed
+    if problem is None or not problem.inertia or speeds is None:
+        return np.inf
+    layers = boundary_layers(system.bodies, speeds, problem.dynamic_viscosity / problem.density)
+    return float(layers.min(initial=np.inf)) / CELLS_WANTED
+
+
+def _rounded(size: float) -> float:
+    """Down to three digits."""
+    unit = 10.0 ** (np.floor(np.log10(size)) - _DIGITS + 1)
+    return float(f"{np.floor(size / unit * (1.0 + 1e-12)) * unit:.{_DIGITS}g}")

@@ -1,0 +1,61 @@
+"""Where bodies are put for the narrowest gaps of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from falling import SCENES, falling_disk
+
+from rigidfluid.checks.settled_pose import settled_pose
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.load import load_scene
+from rigidfluid.core.setup.parts import known_parts
+
+GAP = 0.01
+
+
+def positions(scene: Scene) -> FloatArray:
+    return settled_pose(build_system(scene, to_run=False), known_parts(scene).exact_detector, GAP).position
+
+
+def test_a_disk_falls_to_the_floor() -> None:
+    np.testing.assert_allclose(positions(falling_disk()), [[1.0, 0.125 + GAP]], atol=0.06 * GAP)
+
+
+def test_a_light_disk_rises_to_the_top() -> None:
+    found = positions(falling_disk(body={"density": 0.5}))
+    np.testing.assert_allclose(found, [[1.0, 6.0 - 0.125 - GAP]], atol=0.06 * GAP)
+
+
+def test_a_disk_comes_to_lie_on_the_one_below() -> None:
+    scene = load_scene(SCENES / "two_disks.toml")
+    found, radius = positions(scene), 0.1
+    lower, upper = found[np.argsort(found[:, 1])]
+    assert lower[1] == pytest.approx(radius + GAP, abs=0.06 * GAP)
+    assert np.linalg.norm(upper - lower) - 2.0 * radius == pytest.approx(GAP, abs=0.06 * GAP)
+
+
+def test_an_ellipsoid_falls_as_it_is_turned() -> None:
+    scene = load_scene(SCENES / "falling_ellipsoid.toml")
+    system = build_system(scene, to_run=False)
+    detector = known_parts(scene).exact_detector
+    found = settled_pose(system, detector, GAP)
+    assert found.position[0, 0] == 0.5
+    assert 0.1 < found.position[0, 1] < 0.2 + GAP
+    np.testing.assert_array_equal(found.orientation, system.pose.orientation)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        falling_disk(body={"fixed": True}),
+        load_scene(SCENES / "swimmer.toml"),
+        load_scene(SCENES / "dfg_cylinder.toml"),
+        load_scene(SCENES / "hinged_pair.toml"),
+    ],
+    ids=["fixed", "mechanism", "weightless", "joint"],
+)
+def test_what_is_held_or_weightless_stays(scene: Scene) -> None:
+    np.testing.assert_array_equal(positions(scene), build_system(scene, to_run=False).pose.position)
