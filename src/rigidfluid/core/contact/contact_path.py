@@ -18,18 +18,17 @@ from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics, MotionDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
-from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
+from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics, Turning
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
     carried_bodies,
     carriers,
-    kinematics_now,
     mobility,
-    weights,
+    outer_load,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, together
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling
@@ -176,7 +175,13 @@ def _dry(system: System, state: State, start: float) -> BodyDynamics:
     """The bodies, on motions that joints may link."""
     free, mechanisms = _dry_motions(system, state, start), system.mechanisms
     motions: MotionDynamics = free if system.linkage is None else JointedDynamics(free, system.linkage, start)
-    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, system.weight)
+    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, _body_load(system, state))
+
+
+def _body_load(system: System, state: State) -> Wrench:
+    """Weight and wrenches from outside on the bodies, n rows."""
+    weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
+    return weight if state.applied is None else together(weight, state.applied)
 
 
 def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
@@ -186,8 +191,10 @@ def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
         return system.controlled_twist(start + elapsed)
 
     if mechanisms is None:
-        return DryDynamics(*now, system.mass, system.inertia, system.weight, system.controlled, given)
-    carried, controlled = weights(system, kinematics_now(system, state)).force, mechanisms.controlled
+        load = _body_load(system, state)
+        own = now[0], now[1], system.mass, system.inertia, load.force, system.controlled, given
+        return DryDynamics(*own, None if state.applied is None else Turning(load.torque, arms(system)))
+    carried, controlled = outer_load(system, state).force, mechanisms.controlled
     if mechanisms.driven:
         return DrivenDynamics(*now, mechanisms, carried, start, given)
     return DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
@@ -319,7 +326,7 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     rate = accelerations(system, state)
     weight = None
     if system.quasi_steady:
-        weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
+        weight = flat(outer_load(system, state)).flat[coupling.model.velocities]
     return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, weight)
 
 

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.run.cycles import cycles
@@ -66,6 +68,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **_cycles(simulation),
+        **_by_hand(state, system),
         "energy": energy_balance(state.ledger, simulation.history.energy),
         "auto_epsilon": chosen_strengths(system),
     }
@@ -76,6 +79,22 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
+
+
+def _by_hand(state: State, system: System) -> dict[str, Any]:
+    """What the caller has prescribed and applied last: velocities, and forces, each with the angular ones after them,
+    by name; where there is any."""
+    by_hand = {}
+    if state.prescription is not None:
+        by_hand["prescribed"] = _rows(system, state.prescription.twist, system.controlled)
+    if state.applied is not None:
+        by_hand["applied"] = _rows(system, flat(state.applied), flat(state.applied).any(axis=1))
+    return {"by_hand": by_hand} if by_hand else {}
+
+
+def _rows(system: System, rows: FloatArray, chosen: BoolArray) -> dict[str, list[float]]:
+    """Those of the chosen bodies, by name."""
+    return {system.surfaces[i]: rows[i].tolist() for i in np.flatnonzero(chosen)}
 
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:
