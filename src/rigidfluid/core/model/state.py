@@ -134,6 +134,7 @@ class State(CarriedState):
     the first step, and without a tolerance. ``link``: of joints; None before the first step, and without any.
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
+    ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
     """
 
     tick: int
@@ -158,6 +159,7 @@ class State(CarriedState):
     link: LinkLoad | None = None
     prescription: Prescription | None = None
     applied: Wrench | None = None
+    jumped: int | None = None
 
     @property
     def free_contact(self) -> Wrench:

@@ -219,9 +219,10 @@ class Simulation:
         angular_velocity: Sequence[float] | None = None,
         over: float | None = None,
     ) -> None:
-        """Move a body that is fixed or prescribed so from now on: at once, or linearly ``over`` a time.
+        """Move a body that is fixed or prescribed so from now on, after a linear change ``over`` a time.
 
-        A jump in a fluid begins with steps as short as it is large, see `halvings_after`.
+        Without such a time velocities jump; in a fluid they change within the next step, which is halved the more, the
+        more they jump, see `halvings_after`.
 
         Parameters
         ----------
@@ -239,11 +240,12 @@ class Simulation:
         """
         row, now = self._row(name, True), self.system.controlled_twist(self.time)
         twist = twist_row(self.scene.dimension, velocity, angular_velocity)
-        motion = self._motion().changed(row, twist, self.time, over_time(over, now[row], twist))
+        within = over_time(over, now[row], twist)
         if self.system.backend.needs_mesh:
-            step = self.clock.size(0)
-            halvings = halvings_after(self.system, self.state, row, twist, step, over)
+            halvings = halvings_after(self.system, self.state, row, twist, self.clock.size(0), over)
             self.state = shortened(self.state, self.clock, halvings)
+            within = within or self.clock.size(self.stepper.propose(self.state))
+        motion = self._motion().changed(row, twist, self.time, within)
         self.state = replace(self.state, prescription=motion.rows)
         self._follow(motion)
 

@@ -97,6 +97,7 @@ def attempt(
         link=link,
         prescription=state.prescription,
         applied=state.applied,
+        jumped=state.jumped,
     )
     return candidate, step
 

@@ -22,9 +22,9 @@ def halvings_after(
     """How many times ``step`` is to be halved after body ``row`` takes a ``twist`` (d+k,) at once: log₂ of its jump
     over a step's own change, at least none and at most `START_LEVEL`.
 
-    A step's own change is what the body's velocity would change by in ``step`` at its latest acceleration, or a 64th of
-    the speed of the body, before and after, or of the fluid, whichever is most: so a start from rest has the most
-    halvings. A motion that changes ``over`` a time does not jump; a step then passes no more than that time.
+    A step's own change is what the body's velocity would change by in two ``step`` at its latest acceleration, or a
+    64th of the speed of the body, before and after, or of the fluid, whichever is most: so a start from rest has the
+    most halvings. A motion that changes ``over`` a time does not jump; a step then passes no more than that time.
     """
     if over is not None and over >= step:
         return 0
@@ -33,7 +33,7 @@ def halvings_after(
     if state.past is not None:
         accelerated = _speed(now - flat(state.past.twist)[row], radius, d) * step / state.past.step
     fastest = max(_speed(now, radius, d), _speed(twist, radius, d), _fluid_speed(system, state))
-    own = max(accelerated, fastest / 2.0**START_LEVEL)
+    own = max(_LONGER * accelerated, fastest / 2.0**START_LEVEL)
     needed = math.ceil(math.log2(jump / own) - _ROUNDING) if jump > own else 0
     if over is not None:
         needed = min(needed, math.ceil(math.log2(step / over)))
@@ -41,11 +41,13 @@ def halvings_after(
 
 
 def shortened(state: State, clock: Clock, halvings: int) -> State:
-    """The state from which the next step is halved so many times, or as it would be without if that is shorter."""
+    """The state from which the next step is halved so many times, or as it would be without if that is shorter; it
+    begins anew then, see `begun_anew`."""
     if halvings == 0:
         return state
     level = max(state.level or 0, min(halvings + 1, clock.levels))
-    return replace(state, level=level, estimate=state.estimate and state.estimate.restarted)
+    estimate = state.estimate and state.estimate.restarted
+    return replace(state, level=level, estimate=estimate, jumped=state.tick)
 
 
 def _fluid_speed(system: System, state: State) -> float:
@@ -61,6 +63,9 @@ def _speed(twist: FloatArray, radius: float, dimension: int) -> float:
     """Bound of a surface's speed [length/time]."""
     return float(np.linalg.norm(twist[:dimension]) + radius * np.linalg.norm(twist[dimension:]))
 
+
+_LONGER = 2.0
+"""So many times the latest step is the next at most: a controller answers to twice the way then."""
 
 _ROUNDING = 1e-9
 """Of a number of halvings."""

@@ -27,17 +27,17 @@ class PrescribedMotion:
         rows, d = self.rows, self.rows.amplitude.shape[1]
         elapsed = time - rows.start
         phase = np.sin(2 * np.pi * rows.frequency * time) - np.sin(2 * np.pi * rows.frequency * rows.start)
-        within = np.minimum(elapsed, rows.over)
-        lacking = within - 0.5 * within**2 / np.where(rows.over > 0.0, rows.over, 1.0)
-        way = elapsed[:, None] * rows.twist - lacking[:, None] * (rows.twist - rows.before)
-        moved = way[:, :d] + phase[:, None] * rows.amplitude
-        return Pose(rows.pose.position + moved, rotate(rows.pose.orientation, way[:, d:]))
+        changing = np.minimum(elapsed, rows.over)[:, None]
+        mean = rows.before + 0.5 * changing / _divisor(rows.over)[:, None] * (rows.twist - rows.before)
+        first, then = changing * mean, (elapsed[:, None] - changing) * rows.twist
+        moved = first[:, :d] + then[:, :d] + phase[:, None] * rows.amplitude
+        return Pose(rows.pose.position + moved, rotate(rotate(rows.pose.orientation, first[:, d:]), then[:, d:]))
 
     def __call__(self, time: float) -> FloatArray:
         """Velocity and angular velocity (n, d+k) at ``time`` [length/time, rad/time]."""
         rows = self.rows
-        lacking = 1.0 - np.minimum((time - rows.start) / np.where(rows.over > 0.0, rows.over, 1.0), 1.0)
-        twist = rows.twist - (lacking * (rows.over > 0.0))[:, None] * (rows.twist - rows.before)
+        lacking = np.maximum(rows.over - (time - rows.start), 0.0) / _divisor(rows.over)
+        twist = rows.twist - lacking[:, None] * (rows.twist - rows.before)
         omega = 2 * np.pi * rows.frequency
         twist[:, : rows.amplitude.shape[1]] += (omega * np.cos(omega * time))[:, None] * rows.amplitude
         return twist
@@ -59,6 +59,11 @@ class PrescribedMotion:
             ),
         )
         return PrescribedMotion(changed)
+
+
+def _divisor(over: FloatArray) -> FloatArray:
+    """The same where it is not zero."""
+    return np.where(over > 0.0, over, 1.0)
 
 
 def _with_row(rows: FloatArray, row: int, values: FloatArray | float) -> FloatArray:
