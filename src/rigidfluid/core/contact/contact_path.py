@@ -31,7 +31,7 @@ from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, together
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.reduced_model import Coupling, uncoupled
 from rigidfluid.core.model.state import CarriedState, FreeMotions, LinkLoad, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
@@ -426,6 +426,27 @@ class _ContactLoad(NamedTuple):
     damping: FloatArray | None
     loss: float
     actuator_work: float
+
+
+def contact_forces(system: System, state: State, time: float) -> FloatArray:
+    """Force of each contact of a state on its first body, of all laws and their dampers (m, d) [force]."""
+    contacts, law = state.contacts, system.law
+    if law is None or len(contacts) == 0:
+        return np.zeros((len(contacts), system.dimension))
+    if not law.dissipative:
+        return law.force(contacts)
+    motion = relative_motion(contacts, _bodies_now(system, state, time), system.wall_velocity)
+    return np.asarray(law.force(contacts) + law.damping(contacts, motion))
+
+
+def _bodies_now(system: System, state: State, time: float) -> BodyDynamics:
+    """The bodies of a state as contacts meet them, in a fluid by the coupling that it has shown; without joints."""
+    motions: MotionDynamics
+    if not system.backend.needs_mesh:
+        motions = _dry_motions(system, state, time)
+    else:
+        motions = _coupled(system, state, state.coupling or uncoupled())
+    return motions if system.mechanisms is None else ComponentDynamics(motions, system.mechanisms, time)
 
 
 def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _ContactLoad:

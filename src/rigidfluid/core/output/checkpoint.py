@@ -24,7 +24,7 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 6
+FORMAT = 7
 """Of what is in a checkpoint, the backend's memory and the columns of tables included; files of others are refused."""
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.contact.contact_path import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.mesh.regions import Wake
@@ -350,7 +351,8 @@ class Simulation:
         if self.state.count > 0 and level is not None:
             quality = self.mesh_updater.quality(self.state)
             cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
-        now = records(self.system, self._probes, self.state, self.time, cost)
+        forces = contact_forces(self.system, self.state, self.time)
+        now = records(self.system, self._probes, self.state, self.time, cost, forces)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:

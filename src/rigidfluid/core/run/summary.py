@@ -8,6 +8,7 @@ from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rigidfluid.core.contact.strength import chosen_strengths
 from rigidfluid.core.mechanics.wrenches import flat
@@ -15,7 +16,7 @@ from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.run.cycles import cycles
@@ -88,11 +89,11 @@ def _by_hand(state: State, system: System) -> dict[str, Any]:
     if state.prescription is not None:
         by_hand["prescribed"] = _rows(system, state.prescription.twist, system.controlled)
     if state.applied is not None:
-        by_hand["applied"] = _rows(system, flat(state.applied), flat(state.applied).any(axis=1))
+        by_hand["applied"] = _rows(system, flat(state.applied), np.any(flat(state.applied), axis=1))
     return {"by_hand": by_hand} if by_hand else {}
 
 
-def _rows(system: System, rows: FloatArray, chosen: BoolArray) -> dict[str, list[float]]:
+def _rows(system: System, rows: FloatArray, chosen: ArrayLike) -> dict[str, list[float]]:
     """Those of the chosen bodies, by name."""
     return {system.surfaces[i]: rows[i].tolist() for i in np.flatnonzero(chosen)}
 
