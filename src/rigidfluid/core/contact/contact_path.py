@@ -429,9 +429,10 @@ class _ContactLoad(NamedTuple):
 
 
 def contact_forces(system: System, state: State, time: float) -> FloatArray:
-    """Force of each contact of a state on its first body, of all laws and their dampers (m, d) [force]."""
+    """Force of each contact of a state on its first body, of all laws and their dampers (m, d) [force]; zero at the
+    start, as all forces are."""
     contacts, law = state.contacts, system.law
-    if law is None or len(contacts) == 0:
+    if law is None or len(contacts) == 0 or state.count == 0:
         return np.zeros((len(contacts), system.dimension))
     if not law.dissipative:
         return law.force(contacts)
