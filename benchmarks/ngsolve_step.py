@@ -8,6 +8,8 @@
 
 from __future__ import annotations
 
+import os
+import sysconfig
 import time
 from collections import Counter
 from collections.abc import Sequence
@@ -72,6 +74,7 @@ class Flow:
             stokes = inertia + viscosity * ngs.InnerProduct(ngs.Grad(u), ngs.Grad(v)) + divergence + pin
             history = density / step * wind * v - (ngs.Grad(wind) * advection) * v
             self._form = ngs.BilinearForm(space, symmetric=True, symmetric_storage=True)
+            _let_ngscxx_be_found()
             self._form += stokes.Compile(realcompile=True, wait=True) * ngs.dx
             self._load = ngs.LinearForm(space)
             self._load += history.Compile(realcompile=True, wait=True) * ngs.dx
@@ -116,6 +119,13 @@ class Flow:
         r.data = free * r
         wanted = TOLERANCE * max(ngs.Norm(scale), ngs.Norm(r)) / ngs.Norm(r)
         x.data += GMRESSolver(self._form.mat, self._factors, maxiter=100, tol=wanted) * r
+
+
+def _let_ngscxx_be_found() -> None:
+    """NGSolve calls its compiler script by name, which lies with the scripts of this environment, activated or not."""
+    scripts, path = sysconfig.get_path("scripts"), os.environ.get("PATH", os.defpath)
+    if scripts not in path.split(os.pathsep):
+        os.environ["PATH"] = os.pathsep.join([scripts, path])
 
 
 def time_ngsolve(

@@ -42,11 +42,13 @@ def test_a_driven_body_has_the_velocity_of_its_time():
     np.testing.assert_allclose(b["vx"], 0.4 * np.pi * np.cos(4 * np.pi * b["time"]))
 
 
-def test_a_dry_scene_that_names_a_fluid_is_no_wetter():
+@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+def test_a_dry_scene_that_names_a_fluid_is_no_wetter(model):
     law = {"detector": "sphere", "law": "centre", "range": 0.04, "epsilon": 1e-6}
-    scene = dry({"velocity": [1.0, -5.0], "position": [5.0, 0.6]}, gravity=(0.0, 0.0), contact=law)
+    ball, time = {"velocity": [1.0, -5.0], "position": [5.0, 0.6]}, {"step": 0.001, "end": 0.25}
+    scene = dry(ball, gravity=(0.0, 0.0), contact=law, time=time)
     named = scene.to_dict()
-    named["fluid"] |= {"density": 1.0, "viscosity": 0.1}
+    named["fluid"] |= {"density": 1.0, "viscosity": 0.1, "model": model}
     wetter, drier = rigidfluid.run(scene_from_dict(named)).bodies, rigidfluid.run(scene).bodies
     assert drier["vy"][-1] > 0.0
     for column in ("x", "y", "vx", "vy"):

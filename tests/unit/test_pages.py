@@ -152,12 +152,25 @@ def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> No
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
-    (example,) = blocks(text("docs/control.md"), "python")
+    example, _ = blocks(text("docs/control.md"), "python")
     coarse = '["time.end=2", "mesh.size=0.1", "mesh.size_body=0.05"]'
     exec(example.replace('["time.end=2"]', coarse), {})
     printed = capsys.readouterr().out
     assert printed.startswith("1.0 [")
     assert len(printed.splitlines()) == 2
+
+
+def test_the_example_of_a_closed_loop_holds_the_disk(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    example = blocks(section(text("docs/control.md"), "A closed loop"), "python")[0]
+    assert "mesh.size_body=0.04" in example
+    exec(example.replace('"mesh.size_body=0.04"', '"mesh.size_body=0.1", "mesh.size=0.5"'), {})
+    height, work, residual = map(float, re.findall(r"-?\d+\.\d+(?:e-\d+)?", capsys.readouterr().out)[1:])
+    assert height == pytest.approx(4.2, abs=5e-3)
+    assert work == pytest.approx(2.607, rel=0.02)
+    assert abs(residual) < 1e-3 * work
 
 
 def test_the_picture_is_small() -> None:

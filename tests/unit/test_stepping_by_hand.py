@@ -78,8 +78,12 @@ def test_a_driven_body_takes_the_velocity_that_it_is_given() -> None:
     simulation.go()
     np.testing.assert_allclose(simulation.bodies["paddle"].velocity, [0.1, 0.0])
     np.testing.assert_allclose(simulation.bodies["paddle"].position - before, [0.02, 0.0], atol=2e-3)
+    simulation.apply("ball", torque=0.25)
     simulation.finish("complete")
-    assert simulation.history.summary["scene"]["body"][1]["prescribed"] == {"velocity": [0.1, 0.0]}
+    assert simulation.history.summary["by_hand"] == {
+        "prescribed": {"paddle": [0.1, 0.0, 0.0]},
+        "applied": {"ball": [0.0, 0.0, 0.25]},
+    }
 
 
 def test_a_fixed_body_may_be_set_in_motion() -> None:

@@ -18,21 +18,20 @@ from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics, MotionDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
-from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics
+from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics, Turning
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
     carried_bodies,
     carriers,
-    kinematics_now,
     mobility,
-    weights,
+    outer_load,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, together
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.reduced_model import Coupling, uncoupled
 from rigidfluid.core.model.state import CarriedState, FreeMotions, LinkLoad, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
@@ -176,7 +175,13 @@ def _dry(system: System, state: State, start: float) -> BodyDynamics:
     """The bodies, on motions that joints may link."""
     free, mechanisms = _dry_motions(system, state, start), system.mechanisms
     motions: MotionDynamics = free if system.linkage is None else JointedDynamics(free, system.linkage, start)
-    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, system.weight)
+    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, _body_load(system, state))
+
+
+def _body_load(system: System, state: State) -> Wrench:
+    """Weight and wrenches from outside on the bodies, n rows."""
+    weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
+    return weight if state.applied is None else together(weight, state.applied)
 
 
 def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
@@ -186,8 +191,10 @@ def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
         return system.controlled_twist(start + elapsed)
 
     if mechanisms is None:
-        return DryDynamics(*now, system.mass, system.inertia, system.weight, system.controlled, given)
-    carried, controlled = weights(system, kinematics_now(system, state)).force, mechanisms.controlled
+        load = _body_load(system, state)
+        own = now[0], now[1], system.mass, system.inertia, load.force, system.controlled, given
+        return DryDynamics(*own, None if state.applied is None else Turning(load.torque, arms(system)))
+    carried, controlled = outer_load(system, state).force, mechanisms.controlled
     if mechanisms.driven:
         return DrivenDynamics(*now, mechanisms, carried, start, given)
     return DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
@@ -349,7 +356,7 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     rate = accelerations(system, state)
     weight = None
     if system.quasi_steady:
-        weight = flat(weights(system, kinematics_now(system, state))).flat[coupling.model.velocities]
+        weight = flat(outer_load(system, state)).flat[coupling.model.velocities]
     return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, weight)
 
 
@@ -449,6 +456,28 @@ class _ContactLoad(NamedTuple):
     damping: FloatArray | None
     loss: float
     actuator_work: float
+
+
+def contact_forces(system: System, state: State, time: float) -> FloatArray:
+    """Force of each contact of a state on its first body, of all laws and their dampers (m, d) [force]; zero at the
+    start, as all forces are."""
+    contacts, law = state.contacts, system.law
+    if law is None or len(contacts) == 0 or state.count == 0:
+        return np.zeros((len(contacts), system.dimension))
+    if not law.dissipative:
+        return law.force(contacts)
+    motion = relative_motion(contacts, _bodies_now(system, state, time), system.wall_velocity)
+    return np.asarray(law.force(contacts) + law.damping(contacts, motion))
+
+
+def _bodies_now(system: System, state: State, time: float) -> BodyDynamics:
+    """The bodies of a state as contacts meet them, in a fluid by the coupling that it has shown; without joints."""
+    motions: MotionDynamics
+    if not system.backend.needs_mesh:
+        motions = _dry_motions(system, state, time)
+    else:
+        motions = _coupled(system, state, state.coupling or uncoupled())
+    return motions if system.mechanisms is None else ComponentDynamics(motions, system.mechanisms, time)
 
 
 def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _ContactLoad:

@@ -7,7 +7,7 @@ import numpy as np
 from rigidfluid.core.contact.answers import updated_model
 from rigidfluid.core.contact.contact_path import BodyStep, near_contacts
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.motions import carriers, kinematics_now, round_motions, weights
+from rigidfluid.core.mechanics.motions import carriers, newly_applied, outer_load, round_motions
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
@@ -51,7 +51,7 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     step = step_to(system, state, time + size, size, state.free_pose, nothing(state.free_pose), None)
     known = None if state.coupling is None else state.coupling.model
     model = updated_model(system, state, step, state.contacts, flat(state.free_twist), velocities, known)
-    before, expected = _load_before(state, model), _expected_load(system, state, model)
+    before, expected = _load_before(system, state, model), _expected_load(system, state, model)
     if system.quasi_steady:  # the fluid remembers nothing: Φ is what bodies and contacts leave of the forces there are
         before = expected = np.where(np.isnan(before), expected + _slowing(state, model), before)
     return Coupling(model, expected, before, np.zeros(len(velocities)))
@@ -82,9 +82,11 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodySte
     model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
     past = state.past_twist or state.free_twist
     twists = tuple(_of(model, flat(twist)) for twist in (candidate.free_twist, state.free_twist, past))
-    before = flat(state.free_contact) * (state.past_step or 0.0)
-    impulses = _of(model, step.impulse), _of(model, before)
+    before = (flat(state.free_contact) + _applied(state)) * (state.past_step or 0.0)
+    applied = _applied(candidate)
+    impulses = _of(model, step.impulse + (candidate.past_step or 0.0) * applied), _of(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
+    load = load + _of(model, applied)
     if candidate.link is not None:
         load = load - _of(model, candidate.link.wrench)
     missed = _of(model, flat(path.free_twist)) - twists[0]
@@ -164,7 +166,7 @@ def _velocities(system: System, near: Contacts) -> IntArray:
     return np.flatnonzero(moves)
 
 
-def _load_before(state: State, model: ReducedModel) -> FloatArray:
+def _load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
     """Φ at the start of a step: at the end of the one before, less the friction that came up in that step."""
     before = np.full(len(model.velocities), np.nan)
     if state.coupling is None or state.past is None:
@@ -173,7 +175,8 @@ def _load_before(state: State, model: ReducedModel) -> FloatArray:
     _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
     change = flat(state.free_twist) - flat(state.past.twist)
     slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
-    before[here] = (state.coupling.load - slowed)[there]
+    added = _of(model, flat(newly_applied(system, state)))
+    before[here] = (state.coupling.load - slowed)[there] + added[here]
     return before
 
 
@@ -186,11 +189,18 @@ def _slowing(state: State, model: ReducedModel) -> FloatArray:
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
     if state.past is None:
-        return _of(model, flat(weights(system, kinematics_now(system, state))))
+        return _of(model, flat(outer_load(system, state)))
     change = _of(model, flat(state.free_twist) - flat(state.past.twist))
     pushed = flat(state.free_contact) + (0.0 if state.link is None else state.link.wrench)
     impulse = _of(model, pushed) * state.past.step
-    return expected_load(model, change, impulse, state.past.step)
+    return expected_load(model, change, impulse, state.past.step) + _of(model, flat(newly_applied(system, state)))
+
+
+def _applied(state: State) -> FloatArray:
+    """Mean wrench from outside on the motions in the step that led to a ``state``, (N, d+k)."""
+    if state.past is None or state.past.applied is None:
+        return np.zeros_like(flat(state.free_contact))
+    return flat(state.past.applied)
 
 
 def _of(model: ReducedModel, field: FloatArray) -> FloatArray:

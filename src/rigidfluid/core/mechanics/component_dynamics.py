@@ -35,14 +35,14 @@ class ComponentDynamics:
         How they carry the n bodies.
     time : float
         At the start [time].
-    weight : (n, d) array, optional
-        Of the bodies, where the motions know its sum alone, and not that it turns them [force].
+    load : Wrench, optional
+        Constant, on the bodies, where the motions know its force alone, and not that it turns them.
     """
 
     def __init__(
-        self, motions: MotionDynamics, mechanisms: Mechanisms, time: float, weight: FloatArray | None = None
+        self, motions: MotionDynamics, mechanisms: Mechanisms, time: float, load: Wrench | None = None
     ) -> None:
-        self._motions, self._mechanisms, self._time, self._weight = motions, mechanisms, time, weight
+        self._motions, self._mechanisms, self._time, self._load = motions, mechanisms, time, load
         self._impulse = nothing(motions.pose)
         self._place()
 
@@ -99,9 +99,12 @@ class ComponentDynamics:
 
     def max_acceleration(self, time: float) -> FloatArray:
         """Of the motion, and by its rotation: |α| |arm| + |ω|² |arm|; and what changes in the relative motion."""
-        now = self.kinematics
+        now, pull = self.kinematics, self._motions.angular_pull(time)
+        if self._load is not None:
+            torque = free_wrench(now, self._load).torque
+            pull = pull + np.linalg.norm(np.einsum("nij,nj->ni", self._motions.inverse_inertia, torque), axis=1)
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
-        turning = (self._motions.angular_pull(time) + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
+        turning = (pull + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
         later = self._mechanisms.at(self._motions.pose, self._time + time)
         change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
         return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
@@ -109,7 +112,7 @@ class ComponentDynamics:
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the motions' twists as contacts with this ``wrench`` on the bodies, and all else that acts, do."""
         pushed, so_far = free_wrench(at or self.kinematics, wrench), self._impulse
-        self._motions.kick(self._turned_by_weight(pushed), time)
+        self._motions.kick(self._turned(pushed), time)
         self._impulse = Wrench(so_far.force + time * pushed.force, so_far.torque + time * pushed.torque)
 
     def drift(self, time: float) -> None:
@@ -117,11 +120,11 @@ class ComponentDynamics:
         self._time += time
         self._place()
 
-    def _turned_by_weight(self, wrench: Wrench) -> Wrench:
-        if self._weight is None:
+    def _turned(self, wrench: Wrench) -> Wrench:
+        """The wrench on the motions, with the torque of the constant load."""
+        if self._load is None:
             return wrench
-        carried = free_wrench(self.kinematics, Wrench(self._weight, np.zeros_like(self.inverse_inertia[:, 0])))
-        return Wrench(wrench.force, wrench.torque + carried.torque)
+        return Wrench(wrench.force, wrench.torque + free_wrench(self.kinematics, self._load).torque)
 
     def _place(self) -> None:
         motions = self._motions.pose

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 from numba import njit
@@ -93,6 +93,14 @@ class BodyDynamics(Protocol):
         """Change the pose as the twist does in ``time``."""
 
 
+class Turning(NamedTuple):
+    """A constant ``torque`` (n, k) on bodies [force·length], whose surfaces reach ``arm`` (n,) far from their centres
+    [length]."""
+
+    torque: FloatArray
+    arm: FloatArray
+
+
 class DryDynamics:
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
@@ -105,11 +113,13 @@ class DryDynamics:
     inertia : (n, k, k) array
         In each body's frame [mass·length²].
     weight : (n, d) array
-        W, constant [force].
+        W, what else acts, constant [force].
     controlled : (n,) array
         Where the twist is given.
     controlled_twist : callable
         From a time since the start to the twist (n, d+k) of driven bodies.
+    turning : Turning, optional
+        Torques besides the weight.
     """
 
     free: FreeMotions | None = None
@@ -126,8 +136,9 @@ class DryDynamics:
         weight: FloatArray,
         controlled: BoolArray,
         controlled_twist: Callable[[float], FloatArray],
+        turning: Turning | None = None,
     ) -> None:
-        self.pose = pose
+        self.pose, self._turning = pose, turning
         self._free = ~controlled[:, None]
         self._mass, self._inertia, self._weight = mass, inertia, weight
         self._given, self._time = controlled_twist, 0.0
@@ -165,8 +176,12 @@ class DryDynamics:
         return other
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """|W|/m, and of driven bodies the greatest change of velocity over the time that it is in."""
+        """|W|/m, of turned bodies that of their surface, and of driven bodies the greatest change of velocity over the
+        time that it is in."""
         fall = np.linalg.norm(self._weight, axis=1) / self._mass
+        if self._turning is not None:
+            lightest = np.linalg.eigvalsh(self._inverse)[:, -1]
+            fall = fall + self._turning.arm * lightest * np.linalg.norm(self._turning.torque, axis=1)
         if not self._driven:
             return np.asarray(fall)
         now, d = self._given(self._time), self._velocity.shape[1]
@@ -181,7 +196,8 @@ class DryDynamics:
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change momenta by F + W and T for so long."""
         state = self._velocity, self._momentum
-        _kick(*state, wrench.force, wrench.torque, self._weight, self._mass, self._free[:, 0], time)
+        torque = wrench.torque if self._turning is None else wrench.torque + self._turning.torque
+        _kick(*state, wrench.force, torque, self._weight, self._mass, self._free[:, 0], time)
 
     def begin(self, ahead: float) -> None:
         """Nothing is given of these motions that jumps."""

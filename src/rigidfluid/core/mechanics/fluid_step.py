@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.mechanics.motions import weights
+from rigidfluid.core.mechanics.motions import applied_wrench, weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat, together, wrench_of
@@ -35,7 +35,7 @@ def step_to(
         controlled=system.controlled_motions,
         controlled_twist=system.controlled_twist(time),
         impulse=flat(impulse),
-        load_scale=_load_scale(system, impulse, derivative),
+        load_scale=_load_scale(system, state, impulse, derivative),
         turning=np.zeros_like(load),
         kinematics=kinematics,
         links=None if system.linkage is None or not system.backend.needs_mesh else system.linkage.links(pose, time),
@@ -65,7 +65,9 @@ def _newton_euler(
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
-    pushed = mean_push(impulse, _latest_push(system, state), state.past_step, derivative)
+    applied = applied_wrench(system, state, kinematics)
+    pushed = together(impulse, Wrench(size * applied.force, size * applied.torque))
+    pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
     if system.linkage is not None and system.backend.needs_mesh:
         pushed = together(pushed, system.linkage.spring_wrench(pose, time))
     mechanisms = system.mechanisms
@@ -82,10 +84,14 @@ def _newton_euler(
 
 
 def _latest_push(system: System, state: State) -> Wrench:
-    """What pushed the motions in the latest step: contacts, and without a fluid joints, which go the same way."""
+    """What pushed the motions in the latest step: contacts, wrenches from outside, and without a fluid joints, which go
+    the same way."""
+    pushed = state.free_contact
+    if state.past is not None and state.past.applied is not None:
+        pushed = together(pushed, state.past.applied)
     if state.link is None or system.backend.needs_mesh:
-        return state.free_contact
-    return together(state.free_contact, wrench_of(state.link.wrench, system.dimension))
+        return pushed
+    return together(pushed, wrench_of(state.link.wrench, system.dimension))
 
 
 def _relative_momentum_rate(
@@ -105,13 +111,14 @@ def _relative_momentum_rate(
     return np.asarray(rate)
 
 
-def _load_scale(system: System, impulse: Wrench, derivative: FloatArray) -> float:
-    """A hundredth of weight and contacts, which cancel each other at rest [force].
+def _load_scale(system: System, state: State, impulse: Wrench, derivative: FloatArray) -> float:
+    """A hundredth of weight, contacts and forces from outside, which cancel each other at rest [force].
 
     What remains of them is rounding, and no residual can be made small beside it.
     """
     pushed = derivative[0] * np.linalg.norm(impulse.force[~system.controlled_motions])
-    return float(0.01 * max(np.linalg.norm(system.weight[~system.controlled]), pushed))
+    applied = 0.0 if state.applied is None else np.linalg.norm(state.applied.force)
+    return float(0.01 * max(np.linalg.norm(system.weight[~system.controlled]), pushed, applied))
 
 
 def mean_push(impulse: Wrench, latest: Wrench, past_step: float | None, derivative: FloatArray) -> Wrench:

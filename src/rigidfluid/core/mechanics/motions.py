@@ -6,7 +6,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench, levers
 from rigidfluid.core.mechanics.rigid import cross, inverse_lab_inertia, lab_inertia, rotation_matrices
-from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.mechanics.wrenches import flat, nothing, together, wrench_of
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
@@ -15,6 +15,31 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 def weights(system: System, kinematics: Kinematics | None) -> Wrench:
     """Of all that each motion carries: the sum, and its torque about the centre of mass, N rows."""
     return free_wrench(kinematics, Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))
+
+
+def applied_wrench(system: System, state: State, kinematics: Kinematics | None) -> Wrench:
+    """Mean wrench from outside on the motions in the step from ``state`` to where they carry the bodies by
+    ``kinematics``, N rows."""
+    if state.applied is None:
+        return nothing(state.free_pose)
+    if kinematics is None:
+        return state.applied
+    start, end = (flat(free_wrench(at, state.applied)) for at in (kinematics_now(system, state), kinematics))
+    return wrench_of(0.5 * (start + end), system.dimension)
+
+
+def outer_load(system: System, state: State) -> Wrench:
+    """Weight and wrenches from outside, of all that each motion carries, N rows."""
+    kinematics = kinematics_now(system, state)
+    return together(weights(system, kinematics), applied_wrench(system, state, kinematics))
+
+
+def newly_applied(system: System, state: State) -> Wrench:
+    """Wrench from outside on the motions from now on, less its mean in the latest step, N rows."""
+    now = applied_wrench(system, state, kinematics_now(system, state))
+    if state.past is None or state.past.applied is None:
+        return now
+    return Wrench(now.force - state.past.applied.force, now.torque - state.past.applied.torque)
 
 
 def carried_bodies(system: System, motions: Pose, twist: Twist, time: float) -> tuple[Pose, Twist]:
@@ -36,7 +61,8 @@ def kinematics_now(system: System, state: State) -> Kinematics | None:
 
 
 def accelerations(system: System, state: State) -> FloatArray:
-    """Of the motions in the latest step, without what their contacts gave; at the start what weight gives.
+    """Of the motions in the latest step, without what their contacts gave, and with what has been applied since; at the
+    start what weight and applied wrenches give.
 
     Parameters
     ----------
@@ -52,12 +78,12 @@ def accelerations(system: System, state: State) -> FloatArray:
     """
     linear, angular = mobility(system, state)
     if state.past is None:
-        weight = weights(system, kinematics_now(system, state))
-        fall = np.einsum("nij,nj->ni", linear, weight.force)
-        return np.concatenate([fall, np.einsum("nij,nj->ni", angular, weight.torque)], axis=1)
-    wrench = state.free_contact
-    by_contact = Twist(np.einsum("nij,nj->ni", linear, wrench.force), np.einsum("nij,nj->ni", angular, wrench.torque))
-    return (flat(state.free_twist) - flat(state.past.twist)) / state.past.step - flat(by_contact)
+        return _answer(linear, angular, outer_load(system, state))
+    rate = (flat(state.free_twist) - flat(state.past.twist)) / state.past.step
+    rate -= _answer(linear, angular, state.free_contact)
+    if state.applied is None:
+        return rate
+    return rate + _answer(linear, angular, newly_applied(system, state))
 
 
 def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
@@ -86,6 +112,12 @@ def body_accelerations(system: System, state: State, time: float, size: float) -
     turning = cross(rate[carrier, d:], arm) + cross(spin, cross(spin, arm))
     carried = np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
     return np.asarray(carried + (later.given - now.given) / size)
+
+
+def _answer(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArray:
+    """M⁻¹ times a wrench on the motions (N, d+k)."""
+    by_force = np.einsum("nij,nj->ni", linear, wrench.force)
+    return np.concatenate([by_force, np.einsum("nij,nj->ni", angular, wrench.torque)], axis=1)
 
 
 def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:

@@ -75,6 +75,13 @@ class Coupling:
     correction: FloatArray
 
 
+def uncoupled() -> Coupling:
+    """The coupling of no body at all."""
+    none = np.zeros(0)
+    model = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), none, Asked(none, none), False)
+    return Coupling(model, none, none, none)
+
+
 def reduced_model(
     velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, asked: Asked, shared: bool
 ) -> ReducedModel:

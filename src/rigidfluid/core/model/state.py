@@ -51,6 +51,21 @@ class LinkLoad:
 
 
 @dataclass(frozen=True, slots=True)
+class Prescription:
+    """Velocities of the N motions that nothing can change, zero for those that are free or fixed: constant ``twist``
+    (N, d+k), reached linearly from ``before`` (N, d+k) within ``over`` (N,) [time], and sinusoidal displacements of
+    ``amplitude`` (N, d) and ``frequency`` (N,); each since its ``start`` (N,) [time], from its row of ``pose``."""
+
+    twist: FloatArray
+    before: FloatArray
+    over: FloatArray
+    amplitude: FloatArray
+    frequency: FloatArray
+    start: FloatArray
+    pose: Pose
+
+
+@dataclass(frozen=True, slots=True)
 class ErrorEstimate:
     """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
     infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
@@ -97,11 +112,13 @@ class CarriedState:
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """One step earlier, of the motions: what second order in time needs."""
+    """One step earlier, of the motions: what second order in time needs. ``applied``: the mean wrench from outside in
+    the step since then, None without any."""
 
     pose: Pose
     twist: Twist
     step: float
+    applied: Wrench | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +132,9 @@ class State(CarriedState):
     could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
     ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
     the first step, and without a tolerance. ``link``: of joints; None before the first step, and without any.
+    ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
+    from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
+    ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
     """
 
     tick: int
@@ -137,6 +157,9 @@ class State(CarriedState):
     free: FreeMotions | None = None
     estimate: ErrorEstimate | None = None
     link: LinkLoad | None = None
+    prescription: Prescription | None = None
+    applied: Wrench | None = None
+    jumped: int | None = None
 
     @property
     def free_contact(self) -> Wrench:

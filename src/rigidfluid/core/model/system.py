@@ -114,7 +114,7 @@ class System:
     def quasi_steady(self) -> bool:
         """Whether there is a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
         problem = self.backend.problem
-        return problem is not None and not problem.inertia
+        return self.backend.needs_mesh and problem is not None and not problem.inertia
 
     def meshed(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""

@@ -39,7 +39,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
             *("time", "step", "body", *along, *orientation, *named("v"), *spin),
             *(*named("f"), *torque, *named("cf"), *named("c", torque), "gap"),
         ),
-        "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap"),
+        "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap", *named("f")),
         "joints": ("time", "step", "joint", "gap", "angle", "rate", *named("f"), *torque),
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
@@ -56,12 +56,15 @@ class StepCost(NamedTuple):
     quality: float
 
 
-def records(system: System, probes: FloatArray, state: State, time: float, cost: StepCost | None) -> Records:
-    """The rows of one state; ``probes`` (p, d) are the points where the fluid is recorded, ``cost`` None at a start."""
+def records(
+    system: System, probes: FloatArray, state: State, time: float, cost: StepCost | None, forces: FloatArray
+) -> Records:
+    """The rows of one state; ``probes`` (p, d) are the points where the fluid is recorded, ``cost`` None at a start,
+    ``forces`` (m, d) those of its contacts on their first bodies."""
     stamp = (time, state.count)
     return {
         "bodies": list(_body_rows(system, state, stamp)),
-        "contacts": list(_contact_rows(system, state, stamp)),
+        "contacts": list(_contact_rows(system, state, stamp, forces)),
         "joints": list(_joint_rows(system, state, stamp, time)),
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
@@ -103,12 +106,12 @@ def _numbers(pose: Pose, twist: Twist, hydrodynamic: Wrench, contact: Wrench, ga
     return rows
 
 
-def _contact_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+def _contact_rows(system: System, state: State, stamp: Row, forces: FloatArray) -> Iterator[Row]:
     near = state.contacts
     for i in np.flatnonzero(near.gap <= system.law.range) if system.law else ():
         names = (system.surfaces[near.body_a[i]], system.surfaces[near.body_b[i]])
         vectors = np.concatenate([near.point_a[i], near.point_b[i], near.normal[i]]).tolist()
-        yield (*stamp, *names, *vectors, float(near.gap[i]))
+        yield (*stamp, *names, *vectors, float(near.gap[i]), *forces[i].tolist())
 
 
 def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterator[Row]:

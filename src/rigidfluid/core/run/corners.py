@@ -21,13 +21,16 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
 
 
 def begun_anew(system: System, clock: Clock, state: State) -> State:
-    """At a corner and one step after it, the state without its past, from which nothing can be extrapolated; else the
-    same.
+    """At a corner or jump and one step after it, the state without its past, from which nothing can be extrapolated;
+    else the same.
 
-    The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start.
+    The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start. After a jump that a
+    caller has prescribed the level is known already.
     """
     if state.past is None:
         return state
+    if state.jumped is not None and state.jumped in (state.tick, state.tick - clock.tick_from(state.past.step)):
+        return replace(state, past=None)
     if _is_corner(system, clock, state.tick):
         level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
         estimate = state.estimate and state.estimate.restarted

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.contact.contact_path import contact_forces
+from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.size_field import Sizes
@@ -24,18 +26,19 @@ from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
+from rigidfluid.core.run.by_hand import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.initial_state import initial_state, start_level
+from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
+from rigidfluid.core.run.velocity_jump import halvings_after, shortened
 from rigidfluid.core.scene.scene import FluidTable, Scene
 from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.prescribed import prescribed_motion
+from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.errors import OutputError, SceneError, StepError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
@@ -65,7 +68,6 @@ class BodyNow:
 class SavedRun:
     """A run as `Simulation.save` kept it."""
 
-    scene: Scene
     state: State
     memory: FluidState
     system: System
@@ -212,43 +214,68 @@ class Simulation:
         self._observers.append((Schedule(self.clock, every, self.time), observer))
 
     def prescribe(
-        self, name: str, velocity: Sequence[float] | None = None, angular_velocity: Sequence[float] | None = None
+        self,
+        name: str,
+        velocity: Sequence[float] | None = None,
+        angular_velocity: Sequence[float] | None = None,
+        over: float | None = None,
     ) -> None:
-        """Move a body that is fixed or prescribed so from now on; what is not given is zero.
+        """Move a body that is fixed or prescribed so from now on, after a linear change ``over`` a time.
 
-        It changes the scene, so that a checkpoint made after it cannot be resumed as the scene that it was.
+        Without such a time velocities jump; in a fluid they change within the next step, which is halved the more, the
+        more they jump, see `halvings_after`.
 
         Parameters
         ----------
         name : str
             Of the body.
-        velocity, angular_velocity : sequence of float
-            (d,) and (k,) [length/time, rad/time].
+        velocity, angular_velocity : sequence of float, optional
+            (d,) and (k,); zero if not given [length/time, rad/time].
+        over : float, optional
+            Time in which the body goes from the velocities it has to these [time].
 
         Raises
         ------
         SceneError
             If there is no such body, it is free, or a value is not allowed.
         """
-        tables, number = self.scene.to_dict(), self._controlled(name)
-        given = {"velocity": velocity, "angular_velocity": angular_velocity}
-        body = {key: value for key, value in tables["body"][number].items() if key != "fixed"}
-        body["prescribed"] = {key: value for key, value in given.items() if value is not None}
-        tables["body"][number] = body
-        self.scene = scene_from_dict(tables)
-        motion = prescribed_motion(self.scene, self.state.free_pose, self.time)
-        linkage = None if self.system.linkage is None else self.system.linkage.following(motion)
-        self.stepper.system = replace(
-            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, linkage=linkage
-        )
-        if self.system.backend.needs_mesh:  # the fluid is set in motion at once
-            estimate = self.state.estimate and self.state.estimate.restarted
-            self.state = replace(self.state, level=start_level(self.clock), estimate=estimate)
+        row, now = self._row(name, True), self.system.controlled_twist(self.time)
+        twist = twist_row(self.scene.dimension, velocity, angular_velocity)
+        within = over_time(over, now[row], twist)
+        if self.system.backend.needs_mesh:
+            halvings = halvings_after(self.system, self.state, row, twist, self.clock.size(0), over)
+            self.state = shortened(self.state, self.clock, halvings)
+            within = within or self.clock.size(self.stepper.propose(self.state))
+        motion = self._motion().changed(row, twist, self.time, within)
+        self.state = replace(self.state, prescription=motion.rows)
+        self._follow(motion)
+
+    def apply(self, name: str, force: Sequence[float] | None = None, torque: Sequence[float] | None = None) -> None:
+        """Apply a force at the centre of mass of a free body, and a torque, from now on until they are changed.
+
+        They are constant in the lab frame; their work is in the column ``control`` of the energies.
+
+        Parameters
+        ----------
+        name : str
+            Of the body, or of a component of a mechanism.
+        force, torque : sequence of float, optional
+            (d,) and (k,); zero if not given [force, force·length].
+
+        Raises
+        ------
+        SceneError
+            If there is no such body, it is fixed or prescribed, or a value is not allowed.
+        """
+        row, wrench = self._row(name, False), wrench_row(self.scene.dimension, force, torque)
+        before = nothing(self.state.pose) if self.state.applied is None else self.state.applied
+        rows = flat(before)
+        rows[row] = wrench
+        self.state = replace(self.state, applied=wrench_of(rows, self.scene.dimension))
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
         return SavedRun(
-            scene=self.scene,
             state=self.state,
             memory=self.system.backend.memory(),
             system=self.system,
@@ -268,7 +295,7 @@ class Simulation:
                 "Make the Simulation without a folder, or resume the run from its checkpoint.",
             )
         self.system.backend.recall(saved.memory, saved.state.mesh)
-        self.scene, self.state, self.extremes = saved.scene, saved.state, saved.extremes
+        self.state, self.extremes = saved.state, saved.extremes
         self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
@@ -314,6 +341,8 @@ class Simulation:
         self._elapsed_before, self._cpu_before, self._times = earlier.elapsed, earlier.cpu_time, earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
+        if self.state.prescription is not None:
+            self._follow(PrescribedMotion(self.state.prescription))
         self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
         self.observe(Simulation._output, self.scene.output.every)
 
@@ -322,7 +351,8 @@ class Simulation:
         if self.state.count > 0 and level is not None:
             quality = self.mesh_updater.quality(self.state)
             cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
-        now = records(self.system, self._probes, self.state, self.time, cost)
+        forces = contact_forces(self.system, self.state, self.time)
+        now = records(self.system, self._probes, self.state, self.time, cost, forces)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:
@@ -355,15 +385,31 @@ class Simulation:
             ranks=self._ranks.size,
         )
 
-    def _controlled(self, name: str) -> int:
-        """The number of a body whose motion is given."""
-        names = [body.name for body in self.scene.body]
-        given = [body for body, controlled in zip(names, self.system.controlled, strict=False) if controlled]
-        if name not in given:
-            found = f"{name!r}, which {'is free' if name in names else 'is not there'}"
-            allowed = f"a body that is fixed or prescribed: {', '.join(map(str, given)) or 'there is none'}"
-            raise SceneError("body", found, allowed, "Name another, or give it 'fixed = true' in the scene.")
-        return names.index(name)
+    def _motion(self) -> PrescribedMotion:
+        """What is prescribed now: since the start by the scene, or by hand."""
+        if self.state.prescription is not None:
+            return PrescribedMotion(self.state.prescription)
+        system = self.system
+        return prescribed_motion(self.scene, system.pose if system.mechanisms is None else system.mechanisms.pose)
+
+    def _follow(self, motion: PrescribedMotion) -> None:
+        """Let prescribed bodies move so."""
+        linkage = None if self.system.linkage is None else self.system.linkage.following(motion)
+        self.stepper.system = replace(
+            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, linkage=linkage
+        )
+
+    def _row(self, name: str, prescribed: bool) -> int:
+        """The number of a body whose motion is prescribed, or of a free one."""
+        names = self.system.surfaces[: len(self.system.bodies)]
+        right = [body for body, given in zip(names, self.system.controlled, strict=True) if given == prescribed]
+        if name in right:
+            return names.index(name)
+        other = "free" if prescribed else "fixed or prescribed"
+        found = f"{name!r}, which {f'is {other}' if name in names else 'is not there'}"
+        wanted = "a body that is fixed or prescribed" if prescribed else "a free body or component"
+        remedy = "Name another, or give it 'fixed = true' in the scene." if prescribed else "Name another."
+        raise SceneError("body", found, f"{wanted}: {', '.join(map(str, right)) or 'there is none'}", remedy)
 
 
 def _by_name(

@@ -12,8 +12,8 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_o
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
-from rigidfluid.core.mechanics.motions import kinematics_now
-from rigidfluid.core.mechanics.rigid import kinetic_energy
+from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
+from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, together, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Ledger, Power, Work
@@ -79,7 +79,7 @@ def attempt(
         level=level,
         pose=pose,
         twist=twist,
-        past=Past(state.free_pose, state.free_twist, size),
+        past=Past(state.free_pose, state.free_twist, size, _applied(system, state, step)),
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
@@ -99,6 +99,9 @@ def attempt(
         remesh_failed=state.remesh_failed,
         free=_free_motions(path, step, advance, size),
         link=link,
+        prescription=state.prescription,
+        applied=state.applied,
+        jumped=state.jumped,
     )
     return candidate, step
 
@@ -108,6 +111,10 @@ def _pushed(path: BodyStep, size: float) -> Wrench:
     if path.link is None:
         return path.free_impulse
     return together(path.free_impulse, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
+
+
+def _applied(system: System, state: State, step: Step) -> Wrench | None:
+    return None if state.applied is None else applied_wrench(system, state, step.kinematics)
 
 
 def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad | None:
@@ -179,7 +186,18 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
-    """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, and of dampers."""
+    """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, of wrenches from
+    outside, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     free = float(fallen[~system.controlled].sum())
-    return Work(free, path.actuator_work + by_actuators, path.dissipated, path.friction, path.drag_loss)
+    driven = path.actuator_work + by_actuators + _applied_work(state, path.pose)
+    return Work(free, driven, path.dissipated, path.friction, path.drag_loss)
+
+
+def _applied_work(state: State, pose: Pose) -> float:
+    """Of wrenches from outside, on the way from a state to a ``pose`` of the bodies [energy]."""
+    if state.applied is None:
+        return 0.0
+    turned = rotation_between(state.pose.orientation, pose.orientation)
+    moved = state.applied.force * (pose.position - state.pose.position)
+    return float(np.sum(moved) + np.sum(state.applied.torque * turned))

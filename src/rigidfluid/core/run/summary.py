@@ -8,10 +8,13 @@ from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
+from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
@@ -75,6 +78,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **found,
+        **_by_hand(state, system),
         "remesh_jumps": jumps,
         "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy),
@@ -87,6 +91,22 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
+
+
+def _by_hand(state: State, system: System) -> dict[str, Any]:
+    """What the caller has prescribed and applied last: velocities, and forces, each with the angular ones after them,
+    by name; where there is any."""
+    by_hand = {}
+    if state.prescription is not None:
+        by_hand["prescribed"] = _rows(system, state.prescription.twist, system.controlled)
+    if state.applied is not None:
+        by_hand["applied"] = _rows(system, flat(state.applied), np.any(flat(state.applied), axis=1))
+    return {"by_hand": by_hand} if by_hand else {}
+
+
+def _rows(system: System, rows: FloatArray, chosen: ArrayLike) -> dict[str, list[float]]:
+    """Those of the chosen bodies, by name."""
+    return {system.surfaces[i]: rows[i].tolist() for i in np.flatnonzero(chosen)}
 
 
 def _of_all(ranks: Ranks, memory: int | None) -> int | None:

@@ -7,7 +7,8 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import AliasChoices, AliasPath, BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from rigidfluid.errors import SceneError
@@ -53,6 +54,40 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     for field, number in _numbers(json.loads(text), at):
         refuse_out_of_proportion(field, number)
     return table
+
+
+def fields_by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The fields of a table by the keys that it may have."""
+    fields = model.model_fields
+    return {key: fields[name] for name, keys in _keys_by_name(model).items() for key in keys}
+
+
+def table_of(options: BaseModel) -> dict[str, Any]:
+    """The table that `read_table` makes such options of."""
+    keys = _keys_by_name(type(options))
+    return {keys[name][0]: value for name, value in options.model_dump().items()}
+
+
+def _keys_by_name(model: type[BaseModel]) -> dict[str, list[str]]:
+    """The keys that each field of a model is read from: its aliases where it has any, and also its name where the model
+    takes both."""
+    both = model.model_config.get("populate_by_name") or model.model_config.get("validate_by_name")
+    found = {}
+    for name, field in model.model_fields.items():
+        aliases = list(_aliases(field.validation_alias))
+        found[name] = [*aliases, name] if both or not aliases else aliases
+    return found
+
+
+def _aliases(alias: str | AliasPath | AliasChoices | None) -> Iterator[str]:
+    """Keys of a table that an alias reads."""
+    if isinstance(alias, AliasChoices):
+        for choice in alias.choices:
+            yield from _aliases(choice)
+    elif isinstance(alias, AliasPath):
+        yield str(alias.path[0])
+    elif alias is not None:
+        yield alias
 
 
 def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
@@ -119,7 +154,7 @@ def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at:
     complaint, location = complaints[0], _keys(model, complaints[0])
     field = ".".join([*filter(None, [at]), *map(str, location)])
     if complaint["type"] == "extra_forbidden":
-        return unknown_key(field, _model_at(model, location[:-1]).model_fields)
+        return unknown_key(field, fields_by_key(_model_at(model, location[:-1])))
     if complaint["type"] == "missing" and isinstance(complaint["input"], Mapping):
         return _missing_key(model, complaint, field)
     if complaint["type"] == "missing":
@@ -137,9 +172,9 @@ def _keys(model: type[BaseModel], complaint: ErrorDetails) -> Location:
         if isinstance(part, int) or any_key:
             keys.append(part)
             any_key = False
-        elif table is not None and part in table.model_fields:
+        elif table is not None and part in (fields := fields_by_key(table)):
             keys.append(part)
-            annotation = table.model_fields[part].annotation
+            annotation = fields[part].annotation
             table, any_key = _table_in(annotation), _has_any_key(annotation)
     return (*keys, last) if complaint["type"] == "extra_forbidden" else tuple(keys)
 
@@ -161,7 +196,7 @@ def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: 
 
 def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:
     table, key = complaint["input"], str(complaint["loc"][-1])
-    fields = _model_at(model, complaint["loc"][:-1]).model_fields
+    fields = fields_by_key(_model_at(model, complaint["loc"][:-1]))
     misspelt = [other for other in table if other not in fields and suggestion(other, [key])]
     if misspelt:
         return unknown_key(field.removesuffix(key) + misspelt[0], fields)
@@ -178,8 +213,8 @@ def _allowed(complaint: ErrorDetails) -> str:
 
 def _remedy(model: type[BaseModel], location: Location) -> str:
     names = [part for part in location if isinstance(part, str)]
-    parent = _model_at(model, names[:-1])
-    meaning = parent.model_fields[names[-1]].description if names and names[-1] in parent.model_fields else None
+    field = fields_by_key(_model_at(model, names[:-1])).get(names[-1]) if names else None
+    meaning = None if field is None else field.description
     return f"Correct it; it means: {meaning}." if meaning else "Correct the value."
 
 
@@ -187,7 +222,7 @@ def _model_at(model: type[BaseModel], location: Iterable[int | str]) -> type[Bas
     """The model of the table at this place of the scene."""
     for part in location:
         if isinstance(part, str):
-            model = _table_in(model.model_fields[part].annotation) or model
+            model = _table_in(fields_by_key(model)[part].annotation) or model
     return model
 
 

@@ -13,7 +13,7 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Component, Mechanism
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import BodyTable, Scene
-from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.scene.validation import fields_by_key, read_table, table_of, unknown_key
 from rigidfluid.core.setup.placing import initial_pose, initial_twist
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
@@ -58,9 +58,10 @@ def with_components(scene: Scene, registry: Registry | None = None) -> tuple[Sce
 def _built(scene: Scene, registry: Registry, number: int) -> Mechanism:
     table, at = scene.mechanism[number], f"mechanism.{number}"
     part = registry.get(MECHANISM, table.type, f"{at}.type")
+    known = fields_by_key(part.Options)
     for key in table.options:
-        if key not in part.Options.model_fields:
-            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", {*known, *type(table).model_fields})
     options = read_table(part.Options, table.options, at)
     try:
         mechanism = part(options, scene.dimension)
@@ -127,7 +128,7 @@ def _component_tables(scene: Scene, mechanisms: Mapping[str, Mechanism]) -> list
             angular_velocity=spin,
             part_of=name,
             **{turned: orientation[0] if scene.dimension == 2 else orientation},
-            **part.shape.options.model_dump(),
+            **table_of(part.shape.options),
         )
         for (name, part), (position, orientation, velocity, spin) in zip(owners, rows, strict=True)
     ]

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field
 
 from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation, Vector
-from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry
@@ -87,9 +87,10 @@ def build_shape(table: NestedBodyTable, at: str, dimension: int) -> Body:
     check_length(table.position, f"{at}.position", dimension)
     check_orientation(table, dimension, at)
     part, options = Registry.load().get(BODY, table.type, f"{at}.type"), dict(table.model_extra or {})
+    known = fields_by_key(part.Options)
     for key in options:
-        if key not in part.Options.model_fields:
-            raise unknown_key(f"{at}.{key}", {*part.Options.model_fields, *type(table).model_fields})
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", {*known, *type(table).model_fields})
     try:
         return part(read_table(part.Options, options, at), dimension)
     except SceneError as error:  # a body does not know its place in the scene

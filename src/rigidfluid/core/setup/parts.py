@@ -13,7 +13,7 @@ from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.core.model.wall import is_round, radius_of
 from rigidfluid.core.scene.scene import InteractionTable
-from rigidfluid.core.scene.validation import read_table, unknown_key
+from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
@@ -254,13 +254,14 @@ def _law(table: LawTable, law: type[ForceLaw], scene: Scene, bodies: Sequence[Bo
 
 def _options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:
     """The part's own of the keys given."""
-    return read_table(part.Options, {key: given[key] for key in given if key in part.Options.model_fields}, at)
+    own = fields_by_key(part.Options)
+    return read_table(part.Options, {key: given[key] for key in given if key in own}, at)
 
 
 def _refuse_unread(
     options: Mapping[str, Any], readers: Sequence[type[Part]], common: Mapping[str, Any], at: str, hint: str = ""
 ) -> None:
-    known = set().union(*(reader.Options.model_fields for reader in readers))
+    known = set().union(*(fields_by_key(reader.Options) for reader in readers))
     for key in options:
         if key not in known:
             raise unknown_key(f"{at}.{key}", known | set(common), hint)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotate
+from rigidfluid.core.model.state import Prescription
 from rigidfluid.core.model.types import FloatArray, Pose
 
 if TYPE_CHECKING:
@@ -16,47 +17,63 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PrescribedMotion:
-    """Constant twists and sinusoidal displacements, zero for bodies that are free or fixed.
+    """Evaluates a `Prescription`: velocity(t) = before + (twist - before) min(s/over, 1) + 2π f · amplitude ·
+    cos(2π f t), s the time since its start."""
 
-    velocity(t) = velocity + 2π f · amplitude · cos(2π f t)
-
-    Parameters
-    ----------
-    twist : ndarray (n, d+k)
-        Constant velocity and angular velocity [length/time, rad/time].
-    amplitude : ndarray (n, d)
-        Amplitude of the displacement [length].
-    frequency : ndarray (n,)
-        Its frequency f [1/time].
-    pose : Pose
-        Of all bodies when the motion starts.
-    start : float
-        When that is [time].
-    """
-
-    twist: FloatArray
-    amplitude: FloatArray
-    frequency: FloatArray
-    pose: Pose
-    start: float
+    rows: Prescription
 
     def pose_at(self, time: float) -> Pose:
         """Where the motion leads to by ``time``: evaluated, so that no error of a step adds up."""
-        elapsed, d = time - self.start, self.amplitude.shape[1]
-        phase = np.sin(2 * np.pi * self.frequency * time) - np.sin(2 * np.pi * self.frequency * self.start)
-        moved = elapsed * self.twist[:, :d] + phase[:, None] * self.amplitude
-        return Pose(self.pose.position + moved, rotate(self.pose.orientation, elapsed * self.twist[:, d:]))
+        rows, d = self.rows, self.rows.amplitude.shape[1]
+        elapsed = time - rows.start
+        phase = np.sin(2 * np.pi * rows.frequency * time) - np.sin(2 * np.pi * rows.frequency * rows.start)
+        changing = np.minimum(elapsed, rows.over)[:, None]
+        mean = rows.before + 0.5 * changing / _divisor(rows.over)[:, None] * (rows.twist - rows.before)
+        first, then = changing * mean, (elapsed[:, None] - changing) * rows.twist
+        moved = first[:, :d] + then[:, :d] + phase[:, None] * rows.amplitude
+        return Pose(rows.pose.position + moved, rotate(rotate(rows.pose.orientation, first[:, d:]), then[:, d:]))
 
     def __call__(self, time: float) -> FloatArray:
         """Velocity and angular velocity (n, d+k) at ``time`` [length/time, rad/time]."""
-        twist = self.twist.copy()
-        omega = 2 * np.pi * self.frequency
-        twist[:, : self.amplitude.shape[1]] += (omega * np.cos(omega * time))[:, None] * self.amplitude
+        rows = self.rows
+        lacking = np.maximum(rows.over - (time - rows.start), 0.0) / _divisor(rows.over)
+        twist = rows.twist - lacking[:, None] * (rows.twist - rows.before)
+        omega = 2 * np.pi * rows.frequency
+        twist[:, : rows.amplitude.shape[1]] += (omega * np.cos(omega * time))[:, None] * rows.amplitude
         return twist
 
+    def changed(self, row: int, twist: FloatArray, time: float, over: float = 0.0) -> PrescribedMotion:
+        """The same, but for one ``row``, which has the constant ``twist`` (d+k,) from ``time`` + ``over`` on, to which
+        it goes linearly from what it has at ``time``."""
+        rows, now, pose = self.rows, self(time), self.pose_at(time)
+        changed = Prescription(
+            twist=_with_row(rows.twist, row, twist),
+            before=_with_row(rows.before, row, now[row]),
+            over=_with_row(rows.over, row, over),
+            amplitude=_with_row(rows.amplitude, row, 0.0),
+            frequency=_with_row(rows.frequency, row, 0.0),
+            start=_with_row(rows.start, row, time),
+            pose=Pose(
+                _with_row(rows.pose.position, row, pose.position[row]),
+                _with_row(rows.pose.orientation, row, pose.orientation[row]),
+            ),
+        )
+        return PrescribedMotion(changed)
 
-def prescribed_motion(scene: Scene, pose: Pose, start: float = 0.0) -> PrescribedMotion:
-    """The motion that a scene prescribes to its bodies, the first of those that are at ``pose`` at time ``start``."""
+
+def _divisor(over: FloatArray) -> FloatArray:
+    """The same where it is not zero."""
+    return np.where(over > 0.0, over, 1.0)
+
+
+def _with_row(rows: FloatArray, row: int, values: FloatArray | float) -> FloatArray:
+    changed = rows.copy()
+    changed[row] = values
+    return changed
+
+
+def prescribed_motion(scene: Scene, pose: Pose) -> PrescribedMotion:
+    """The motion that a scene prescribes to its bodies, the first of those that are at ``pose`` at the start."""
     n, d = len(pose.position), scene.dimension
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(scene.body):
@@ -67,4 +84,4 @@ def prescribed_motion(scene: Scene, pose: Pose, start: float = 0.0) -> Prescribe
         twist[i, d:] = motion.angular_velocity or 0.0
         amplitude[i] = motion.amplitude or 0.0
         frequency[i] = motion.frequency or 0.0
-    return PrescribedMotion(twist, amplitude, frequency, pose, start)
+    return PrescribedMotion(Prescription(twist, twist, np.zeros(n), amplitude, frequency, np.zeros(n), pose))

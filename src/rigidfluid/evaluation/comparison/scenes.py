@@ -9,7 +9,7 @@ from typing import Any
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import FluidTable, Scene, read_toml
-from rigidfluid.core.scene.validation import unknown_key
+from rigidfluid.core.scene.validation import fields_by_key, unknown_key
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -72,7 +72,7 @@ def _refuse_unread(fluid: Mapping[str, Any], registry: Registry, backends: Seque
     """Each key must belong to all, to a backend that is compared, or to the one that the scene itself names."""
     named = {*backends, fluid.get("backend", FluidTable.model_fields["backend"].default)}
     readers = [entry.part for entry in registry.entries if entry.kind is FLUID_BACKEND and entry.name in named]
-    known = _COMMON.union(*(reader.Options.model_fields for reader in readers))
+    known = _COMMON.union(*(fields_by_key(reader.Options) for reader in readers))
     for key in fluid:
         if key not in known:
             who = " or ".join(map(repr, backends))
@@ -80,7 +80,7 @@ def _refuse_unread(fluid: Mapping[str, Any], registry: Registry, backends: Seque
 
 
 def _scene(tables: Mapping[str, Any], part: type[FluidBackend]) -> Scene:
-    own = set(part.Options.model_fields)
+    own = set(fields_by_key(part.Options))
     fluid = {key: value for key, value in tables.get("fluid", {}).items() if key in _COMMON | own}
     try:
         return scene_from_dict({**tables, "fluid": fluid | {"backend": part.name}})

@@ -1,0 +1,59 @@
+"""Numbers that a caller gives a body while a run goes on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import SceneError
+
+
+def twist_row(
+    dimension: int, velocity: Sequence[float] | None, angular_velocity: Sequence[float] | None
+) -> FloatArray:
+    """Velocity and angular velocity of a body (d+k,), zero where not given; raises SceneError."""
+    return _row(dimension, {"velocity": velocity, "angular_velocity": angular_velocity})
+
+
+def wrench_row(dimension: int, force: Sequence[float] | None, torque: Sequence[float] | None) -> FloatArray:
+    """Force and torque on a body (d+k,), zero where not given; raises SceneError."""
+    return _row(dimension, {"force": force, "torque": torque})
+
+
+def over_time(over: float | None, before: FloatArray, after: FloatArray) -> float:
+    """Time in which a body goes from one twist (d+k,) to another, 0 for a jump; raises SceneError."""
+    if over is None:
+        return 0.0
+    if not (math.isfinite(over) and over > 0.0):
+        raise SceneError("over", over, "a time above 0", "Leave it out for a jump.")
+    spins = before[3:], after[3:]
+    if len(before) == 6 and np.any(np.abs(np.cross(*spins)) > _PARALLEL * math.prod(map(np.linalg.norm, spins))):
+        found = f"{spins[1].tolist()} over a time, of a body that turns by {spins[0].tolist()}"
+        remedy = "Bring it to rest first, or leave out 'over'."
+        raise SceneError("angular_velocity", found, "one about the axis that it turns about", remedy)
+    return float(over)
+
+
+def _row(dimension: int, given: dict[str, Sequence[float] | None]) -> FloatArray:
+    lengths = dimension, 1 if dimension == 2 else 3
+    return np.concatenate([_vector(key, given[key], length) for key, length in zip(given, lengths, strict=True)])
+
+
+def _vector(key: str, value: Sequence[float] | None, length: int) -> FloatArray:
+    if value is None:
+        return np.zeros(length)
+    try:
+        vector = np.asarray(value, dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        vector = np.full(length, np.nan)
+    if vector.shape != (length,) or not np.isfinite(vector).all():
+        numbers = "1 finite number" if length == 1 else f"{length} finite numbers"
+        raise SceneError(key, value, numbers, "Give as many as the scene has dimensions, or axes to turn about.")
+    return vector
+
+
+_PARALLEL = 1e-9
+"""Sine of an angle between axes that is rounding."""

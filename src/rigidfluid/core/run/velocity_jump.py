@@ -1,0 +1,71 @@
+"""How short steps begin after the velocity of a prescribed body has jumped in a fluid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.initial_state import START_LEVEL
+from rigidfluid.core.run.step import bodies_energy
+
+
+def halvings_after(
+    system: System, state: State, row: int, twist: FloatArray, step: float, over: float | None = None
+) -> int:
+    """How many times ``step`` is to be halved after body ``row`` takes a ``twist`` (d+k,) at once: log₂ of its jump
+    over a step's own change, at least none and at most `START_LEVEL`.
+
+    A step's own change is what the body's velocity would change by in two ``step`` at its latest acceleration, or a
+    64th of the speed of the body, before and after, or of the fluid, whichever is most: so a start from rest has the
+    most halvings. A motion that changes ``over`` a time does not jump; a step then passes no more than that time.
+    """
+    if over is not None and over >= step:
+        return 0
+    radius, d, now = system.bodies[row].bounding_radius, system.dimension, flat(state.free_twist)[row]
+    jump, accelerated = _speed(twist - now, radius, d), 0.0
+    if state.past is not None:
+        accelerated = _speed(now - flat(state.past.twist)[row], radius, d) * step / state.past.step
+    fastest = max(_speed(now, radius, d), _speed(twist, radius, d), _fluid_speed(system, state))
+    own = max(_LONGER * accelerated, fastest / 2.0**START_LEVEL)
+    needed = math.ceil(math.log2(jump / own) - _ROUNDING) if jump > own else 0
+    if over is not None:
+        needed = min(needed, math.ceil(math.log2(step / over)))
+    return min(needed, START_LEVEL)
+
+
+def shortened(state: State, clock: Clock, halvings: int) -> State:
+    """The state from which the next step is halved so many times, or as it would be without if that is shorter; it
+    begins anew then, see `begun_anew`."""
+    if halvings == 0:
+        return state
+    level = max(state.level or 0, min(halvings + 1, clock.levels))
+    estimate = state.estimate and state.estimate.restarted
+    return replace(state, level=level, estimate=estimate, jumped=state.tick)
+
+
+def _fluid_speed(system: System, state: State) -> float:
+    """Root of the mean square of the fluid's speed [length/time]."""
+    if system.backend.problem is None:
+        return 0.0
+    energy = state.ledger.kinetic - bodies_energy(system, state.pose, state.twist)
+    mass = system.backend.problem.density * system.meshed(state.pose).volume
+    return math.sqrt(max(2.0 * energy, 0.0) / mass)
+
+
+def _speed(twist: FloatArray, radius: float, dimension: int) -> float:
+    """Bound of a surface's speed [length/time]."""
+    return float(np.linalg.norm(twist[:dimension]) + radius * np.linalg.norm(twist[dimension:]))
+
+
+_LONGER = 2.0
+"""So many times the latest step is the next at most: a controller answers to twice the way then."""
+
+_ROUNDING = 1e-9
+"""Of a number of halvings."""
