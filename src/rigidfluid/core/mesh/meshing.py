@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.on_planes import put_on_planes
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
@@ -178,16 +179,18 @@ def _netgen_failed(error: Exception) -> MeshError:
 
 
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
-    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on a flat one where it meets
-    others."""
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all flat ones at once
+    where these meet others."""
     points = mesh.points.copy()
-    flat = [piece.shape.plane is not None for piece in domain.pieces]
-    for number in sorted(range(len(flat)), key=flat.__getitem__):
-        if not (flat[number] or curved):
-            continue
-        vertices = surface_vertices(mesh, bodies + number)
-        points[vertices] = domain.pieces[number].shape.closest_point(points[vertices])
-    return replace(mesh, points=points)
+    planes, belongs = [], []
+    for number, piece in enumerate(domain.pieces, start=bodies):
+        vertices = surface_vertices(mesh, number)
+        if piece.shape.plane is not None:
+            planes.append(piece.shape.plane)
+            belongs.append(np.isin(np.arange(len(points)), vertices))
+        elif curved:
+            points[vertices] = piece.shape.closest_point(points[vertices])
+    return replace(mesh, points=put_on_planes(points, planes, np.reshape(belongs, (-1, len(points))).T))
 
 
 def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray) -> Any:

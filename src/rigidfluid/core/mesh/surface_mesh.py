@@ -61,7 +61,10 @@ def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequ
     for i, body in enumerate(bodies):
         own = _as_mesh(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
         parts.append(replace(own, points=to_world(pose, i, own.points), markers=np.full(len(own.facets), i)))
-    outer = _as_mesh(domain.facets) if domain.facets is not None else _meshed_domain(domain, sizes)
+    if domain.facets is None:
+        outer = _meshed_domain(domain, sizes)
+    else:
+        outer = put_back(_as_mesh(domain.facets), 0, domain, curved=False)
     parts.append(replace(outer, markers=len(bodies) + outer.markers))
     return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
 
