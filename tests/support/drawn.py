@@ -69,6 +69,20 @@ def polyhedron(corners: Sequence[Sequence[float]], faces: Sequence[Sequence[int]
     return solid
 
 
+def oblique_tube() -> Any:
+    """A tube of radius 1 along z, between two planes that lie across no axis."""
+    from netgen import occ
+
+    tube = occ.Cylinder(occ.Pnt(0, 0, -2), occ.Z, 1, 4)
+    tube.faces.name = "wall"
+    tube = tube * occ.HalfSpace(occ.Pnt(0, 0, 1), occ.Vec(0.3, 0.5, 1.0))
+    tube = tube * occ.HalfSpace(occ.Pnt(0, 0, -1), occ.Vec(0.6, -0.1, -1.0))
+    for face in tube.faces:
+        if face.name != "wall":
+            face.name = "top" if face.center.z > 0.0 else "bottom"
+    return tube
+
+
 def written(shape: Any, folder: Path, name: str = "shape.step") -> str:
     """The path of a file with the shape, as its ending says."""
     path = str(folder / name)

@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drawn import drawn, polyhedron, straight, written
+from drawn import drawn, oblique_tube, polyhedron, straight, written
 from mesh_files import meshed, write_gmsh41
 from mesh_tools import ball, nobody, upright
 
+from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.on_planes import put_on_planes
+from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_volume
@@ -95,6 +96,19 @@ def test_sloped_walls_stay_through_ten_meshes(name: str, kind: str, tmp_path: Pa
     assert float(cell_volumes(mesh.points, mesh.cells).sum()) == pytest.approx(before, rel=1e-14 * max(1.0, 1.0 / size))
 
 
+@pytest.mark.parametrize("way", ["cad", "fill"])
+def test_rims_of_curved_walls_in_sloped_planes_are_on_both(way: Way, tmp_path: Path) -> None:
+    """Edges there are halved as the body is near: the new vertices are on the round wall, and in the plane."""
+    domain = drawn(oblique_tube(), tmp_path)
+    body, pose, sizes = ball(0.25, 3), upright([0.55, 0.0, 0.2]), Sizes(0.6, 0.15, 0.8)
+    walls = list(surfaces_of(domain, 1))
+    mesh = initial_mesh([body], pose, domain, walls, sizes, Inserter(way))
+    for made in (mesh, remesh(mesh, [body], pose, domain, walls, sizes)):
+        for number, piece in enumerate(domain.pieces, start=1):
+            vertices = made.points[np.unique(made.facets[made.markers == number])]
+            assert np.abs(piece.shape.signed_distance(vertices)).max() < 4.0 * EPSILON
+
+
 def test_a_run_between_sloped_walls_goes_on_through_ten_meshes(tmp_path: Path) -> None:
     table = {
         "scene": {"name": "sloped", "dimension": 2},
@@ -120,7 +134,7 @@ def test_a_corner_comes_onto_all_its_planes_at_once() -> None:
     planes = [Plane(np.array([0.1, 0.7, 0.3]), normal) for normal in normals]
     points = np.array([0.1, 0.7, 0.3]) + 1e-3 * rng.normal(size=(5, 3))
     belongs = np.array([[1, 1, 1], [1, 1, 0], [0, 1, 1], [0, 1, 0], [0, 0, 0]], dtype=bool)
-    put = put_on_planes(points, planes, belongs)
+    put = put_on_surfaces(points, planes, belongs)
     distances = np.stack([plane.signed_distance(put) for plane in planes], axis=1)
     assert np.abs(distances[belongs]).max() < 4.0 * EPSILON
     np.testing.assert_array_equal(put[:2, 2], 0.3)
@@ -137,7 +151,7 @@ def test_a_corner_between_planes_that_are_one_stays_where_it_is_along_them(angle
     slope = 0.3 + np.array([0.0, angle])
     planes = [Plane(np.array([0.2, k * 1e-16]), np.array([-np.sin(a), np.cos(a)])) for k, a in enumerate(slope)]
     point = np.array([[1.0, 0.4]])
-    put = put_on_planes(point, planes, np.ones((1, 2), dtype=bool))
+    put = put_on_surfaces(point, planes, np.ones((1, 2), dtype=bool))
     np.testing.assert_allclose(put, planes[0].closest_point(point), rtol=0, atol=1e-11)
 
 

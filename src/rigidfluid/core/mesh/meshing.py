@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mesh.distribution import surface_vertices
-from rigidfluid.core.mesh.on_planes import put_on_planes
+from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
@@ -179,18 +179,14 @@ def _netgen_failed(error: Exception) -> MeshError:
 
 
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
-    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all flat ones at once
-    where these meet others."""
-    points = mesh.points.copy()
-    planes, belongs = [], []
-    for number, piece in enumerate(domain.pieces, start=bodies):
-        vertices = surface_vertices(mesh, number)
-        if piece.shape.plane is not None:
-            planes.append(piece.shape.plane)
-            belongs.append(np.isin(np.arange(len(points)), vertices))
-        elif curved:
-            points[vertices] = piece.shape.closest_point(points[vertices])
-    return replace(mesh, points=put_on_planes(points, planes, np.reshape(belongs, (-1, len(points))).T))
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all at once where several
+    meet."""
+    chosen = [k for k, piece in enumerate(domain.pieces) if curved or piece.shape.plane is not None]
+    belongs = np.zeros((len(mesh.points), len(chosen)), dtype=bool)
+    for column, number in enumerate(chosen):
+        belongs[surface_vertices(mesh, bodies + number), column] = True
+    shapes = [domain.pieces[number].shape for number in chosen]
+    return replace(mesh, points=put_on_surfaces(mesh.points, shapes, belongs))
 
 
 def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray) -> Any:
