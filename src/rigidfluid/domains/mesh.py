@@ -18,7 +18,6 @@ from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
-from rigidfluid.domains.planes import plane_around
 from rigidfluid.errors import SceneError
 
 
@@ -42,20 +41,6 @@ class MeshOptions(PartOptions):
     fluid: int | str | None = Field(
         default=None, description="Number or name of the cells that are fluid, where the file has several kinds"
     )
-
-
-class FacetWall(FacetSurface):
-    """Facets that are taken for what they are, even where they lie in a plane: the plane does not end with them."""
-
-    @property
-    def plane(self) -> None:
-        """None."""
-        return
-
-    @property
-    def radius(self) -> None:
-        """None."""
-        return
 
 
 class MeshDomain(Domain):
@@ -127,8 +112,7 @@ class MeshDomain(Domain):
     def _piece(self, number: int, name: str) -> Piece:
         facets = self._facets.part(self._facets.markers == number)
         area = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1).sum()
-        plane = plane_around(facets, self._facets.points)
-        return Piece(name, plane or FacetWall(facets, self._whole), float(area))
+        return Piece(name, self._whole.piece(number), float(area))
 
 
 def _refuse_crossing(facets: Facets) -> None:
