@@ -151,6 +151,22 @@ def test_a_flat_piece_is_all_of_its_plane_only_where_the_domain_is_beside_it(tmp
     np.testing.assert_allclose(wall.signed_distance(np.array([[1.5, 0.75], [0.7, 0.6]])), [0.25, 0.5], atol=1e-15)
 
 
+@pytest.mark.parametrize("faces", [None, {"wall": 1}])
+def test_triangles_without_area_are_refused(tmp_path: Path, faces: dict[str, Any] | None) -> None:
+    write_stl(tmp_path / "points.stl", CUBE, np.array([[0, 0, 0], [1, 1, 2]]))
+    with pytest.raises(SceneError, match=r"domain.file: found 2 facets, all without an area"):
+        meshed(tmp_path / "points.stl", faces=faces)
+
+
+@pytest.mark.parametrize("corner", [[0.5, 0.0, 0.0], [0.3, 0.3, 0.0]])
+def test_surfaces_that_enclose_no_volume_are_refused(tmp_path: Path, corner: list[float]) -> None:
+    """A tetrahedron pressed into a plane."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], corner])
+    write_stl(tmp_path / "flat.stl", points, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    with pytest.raises(SceneError, match=r"domain.file: found facets that enclose a volume of -?0"):
+        meshed(tmp_path / "flat.stl", faces={"wall": 1})
+
+
 def with_baffle(dimension: int, cracked: bool) -> tuple[Mesh, list[str]]:
     """A square or cube, its sides one group, and a plate that stands in its middle, `cracked`: with points of its own
     on either side."""

@@ -74,6 +74,9 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
     doubled = len(np.unique(vertices)) - len(np.unique(joined[vertices]))
     vertices = joined[vertices]
     sound = np.all(np.diff(np.sort(vertices, axis=1), axis=1) > 0, axis=1)
+    if not sound.any():
+        found = f"{len(vertices)} facets, all without an area"
+        raise SceneError(FIELD, found, "facets around a region", "Write the file anew.")
     if len(region):  # the two sides of a wall without thickness, joined
         _refuse_baffles(Cells(vertices, numbers, file.facets.names), sound & _doubled(vertices), points)
     used, compact = np.unique(vertices[sound], return_inverse=True)

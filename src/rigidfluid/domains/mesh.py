@@ -20,6 +20,9 @@ from rigidfluid.domains.naming import Labels, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.errors import SceneError
 
+_LEAST_VOLUME = 1e-12
+"""Of the cube around the domain: what has less is flat."""
+
 
 class MeshOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
@@ -78,6 +81,9 @@ class MeshDomain(Domain):
         markers = np.array([piece_of[number] for number in facets.markers.tolist()], dtype=np.int64)
         self._facets = Facets(facets.points, facets.vertices, markers)
         self._whole = FacetSurface(self._facets)
+        if not self.volume > _LEAST_VOLUME * float(self.size.max()) ** dimension:
+            found = f"facets that enclose a volume of {self.volume:.3g}"
+            raise SceneError(FIELD, found, "facets around a region of some volume", "Write the file anew.")
 
     @property
     def facets(self) -> Facets:
