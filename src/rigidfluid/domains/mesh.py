@@ -26,7 +26,7 @@ _LEAST_VOLUME = 1e-12
 
 class MeshOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
-    not used.
+    not used. Walls without thickness, facets with fluid on both sides, are refused.
 
     Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`, those of Netgen and STL
     without.
