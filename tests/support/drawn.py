@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,43 @@ def plate() -> Any:
     hole = occ.WorkPlane().Circle(1, 1, 0.3).Face()
     hole.edges.name = "hole"
     return sheet - hole
+
+
+def straight(corners: Sequence[Sequence[float]]) -> Any:
+    """The polygon through corners (N, 2), each side with a name of its own."""
+    from netgen import occ
+
+    path = occ.WorkPlane().MoveTo(*corners[0])
+    for number, corner in enumerate([*corners[1:], corners[0]]):
+        path = path.LineTo(*corner, f"side {number}")
+    return path.Face()
+
+
+def polyhedron(corners: Sequence[Sequence[float]], faces: Sequence[Sequence[int]]) -> Any:
+    """The solid between flat faces through some of the corners (N, 3), each face with a name of its own."""
+    from netgen import occ
+
+    points = [occ.Pnt(*corner) for corner in corners]
+    around = [zip(face, (*face[1:], face[0]), strict=True) for face in faces]
+    wires = [occ.Wire([occ.Segment(points[a], points[b]) for a, b in edges]) for edges in around]
+    solid = occ.Solid(occ.Glue([occ.Face(wire) for wire in wires]))
+    for number, face in enumerate(solid.faces):
+        face.name = f"side {number}"
+    return solid
+
+
+def oblique_tube() -> Any:
+    """A tube of radius 1 along z, between two planes that lie across no axis."""
+    from netgen import occ
+
+    tube = occ.Cylinder(occ.Pnt(0, 0, -2), occ.Z, 1, 4)
+    tube.faces.name = "wall"
+    tube = tube * occ.HalfSpace(occ.Pnt(0, 0, 1), occ.Vec(0.3, 0.5, 1.0))
+    tube = tube * occ.HalfSpace(occ.Pnt(0, 0, -1), occ.Vec(0.6, -0.1, -1.0))
+    for face in tube.faces:
+        if face.name != "wall":
+            face.name = "top" if face.center.z > 0.0 else "bottom"
+    return tube
 
 
 def written(shape: Any, folder: Path, name: str = "shape.step") -> str:

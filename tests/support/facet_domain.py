@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,13 @@ def irregular_outline(seed: int = 1, count: int = 65) -> FacetDomain:
     numbers = np.arange(len(points))
     edges = np.stack([np.roll(numbers, -1), numbers], axis=1)  # clockwise, so that normals point into the fluid
     return FacetDomain(Facets(points, edges, markers), ("lower", "outlet", "upper", "inlet"))
+
+
+def room(corners: Sequence[tuple[float, float]]) -> FacetDomain:
+    """The inside of a polygon, its corners in order to the left, each side with a name of its own."""
+    numbers = np.arange(len(corners))
+    edges = np.stack([np.roll(numbers, -1), numbers], axis=1)  # clockwise, so that normals point into the fluid
+    return FacetDomain(Facets(np.array(corners), edges, numbers), tuple(f"side {number}" for number in numbers))
 
 
 def bent_tube(size: float = 0.4) -> FacetDomain:

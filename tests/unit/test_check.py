@@ -123,6 +123,14 @@ def test_nothing_rests_without_weight_or_freedom() -> None:
     assert not found("rest", BALL | {"fixed": True})
 
 
+def test_a_range_beside_a_blade_is_measured_by_its_thickness() -> None:
+    """However thin: the radius of the largest ball in it is half its height here, rounded down."""
+    blade = {"type": "polygon", "points": [[0, 0], [0.4, 0], [0.2, 1e-7]], "density": 2.0, "position": [1.0, 1.0]}
+    finding = only("range", blade)
+    assert finding.found["half_thickness"] == pytest.approx(5e-8, rel=0.01)
+    assert finding.remedy.startswith("Set contact.range to 5e-08 or less")
+
+
 def test_pairs_are_held_by_their_own_epsilon() -> None:
     upper = BALL | {"position": [1.0, 1.5]}
     at_wall, between = found("rest", BALL, upper, contact={"epsilon": 2e-7, "epsilon_wall": 1e-7})

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, binary_stl, polygon, polyhedron
+from mesh_files import write_stl
 from mesh_tools import ball
 
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
@@ -38,6 +39,25 @@ def test_a_shape_may_be_thick_where_its_centre_is_not() -> None:
     thin = polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 0.1), (0.1, 0.1), (0.1, 1.0), (0.0, 1.0)])
     assert inscribed_radius(thin) == 0.0
     assert half_thickness(ball(0.2)) == 0.2
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-5, 1e-8])
+def test_however_thin_a_shape_is_its_thickness_is_found(height: float, tmp_path: Path) -> None:
+    """The incircle's radius of a triangle, 2A over the outline; half the height of a slab, along no axis."""
+    side = float(np.hypot(0.2, height))
+    triangle = polygon([(0.0, 0.0), (0.4, 0.0), (0.2, height)])
+    assert half_thickness(triangle) == pytest.approx(2.0 * 0.2 * height / (0.4 + 2.0 * side), rel=0.01)
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    write_stl(tmp_path / "slab.stl", CUBE * [1.0, 1.0, max(height, 1e-6)] @ turn, np.array(TRIANGLES))
+    assert half_thickness(polyhedron(tmp_path / "slab.stl")) == pytest.approx(0.5 * max(height, 1e-6), rel=1e-5)
+
+
+def test_a_flat_polyhedron_is_refused(tmp_path: Path) -> None:
+    """Before anything is divided by its volume: warnings are errors here."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.3, 0.0]])
+    write_stl(tmp_path / "flat.stl", points, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    with pytest.raises(SceneError, match=r"body\.file: found facets that enclose nothing"):
+        polyhedron(tmp_path / "flat.stl")
 
 
 def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 L_SHAPE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]])
@@ -108,16 +109,23 @@ def test_normals_at_a_corner_itself_are_the_mean_of_those_around_it() -> None:
     np.testing.assert_allclose(found[0], -np.ones(3) / np.sqrt(3.0), atol=1e-15)
 
 
-def test_flat_pieces_have_a_plane_and_others_none() -> None:
-    whole = FacetSurface(polygon(L_SHAPE))
-    assert whole.plane is None
-    assert whole.radius is None
-    floor = whole.piece(0)
+def test_flat_pieces_are_their_plane_unless_it_goes_on_inside() -> None:
+    """The fluid is inside an L: planes of the two sides at the corner that points inwards go on there."""
+    room = FacetSurface(polygon(L_SHAPE[::-1]))
+    assert room.plane is None
+    assert room.radius is None
+    pieces = [room.piece(number) for number in range(6)]
+    assert [isinstance(piece, Plane) for piece in pieces].count(False) == 2
+    (floor,) = (piece for piece in pieces if piece.bounds[1][1] == 0.0)
     assert floor.plane is not None
-    assert floor.radius == np.inf
     assert floor.plane.axis == 1
-    np.testing.assert_array_equal(floor.plane.unit_normal, [0.0, -1.0])
+    np.testing.assert_array_equal(floor.plane.unit_normal, [0.0, 1.0])
     np.testing.assert_array_equal(floor.bounds, [[0.0, 0.0], [2.0, 0.0]])
+    points = np.random.default_rng(0).uniform(0.0, 2.0, (50, 2))
+    for piece in pieces:  # a surface that says it is a plane measures to all of it
+        if piece.plane is not None:
+            assert piece.radius == np.inf
+            np.testing.assert_array_equal(piece.signed_distance(points), piece.plane.signed_distance(points))
 
 
 def test_a_piece_takes_the_sign_of_the_whole_in_the_fluid() -> None:
@@ -129,6 +137,7 @@ def test_a_piece_takes_the_sign_of_the_whole_in_the_fluid() -> None:
     foot = np.array([[0.5, 0.5], [1.0, 0.5], [1.0, 0.5]])
     expected = np.linalg.norm(around - foot, axis=1) * [1.0, 1.0, -1.0]
     np.testing.assert_allclose(ledge.signed_distance(around), expected, rtol=1e-15)
+    assert isinstance(ledge, FacetSurface)
     alone = FacetSurface(ledge.facets)
     assert alone.signed_distance(around)[0] < 0
 

@@ -11,12 +11,13 @@ import pytest
 from drawn import ball_in_a_box, bent_tube, drawn, plate
 from mesh_files import CUBE, FLUID, TRIANGLES, meshed, write_by_meshio, write_gmsh41, write_stl, write_vol
 from mesh_tools import ball, nobody, upright
+from scipy.spatial import Delaunay
 
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.mesh.topology import boundary_facets, check_mesh
 from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.setup.boundary import surfaces_of
@@ -148,6 +149,58 @@ def test_a_flat_piece_is_all_of_its_plane_only_where_the_domain_is_beside_it(tmp
     assert flat == [True, True, False, False, True, True]
     wall = domain.pieces[2].shape
     np.testing.assert_allclose(wall.signed_distance(np.array([[1.5, 0.75], [0.7, 0.6]])), [0.25, 0.5], atol=1e-15)
+
+
+@pytest.mark.parametrize("faces", [None, {"wall": 1}])
+def test_triangles_without_area_are_refused(tmp_path: Path, faces: dict[str, Any] | None) -> None:
+    write_stl(tmp_path / "points.stl", CUBE, np.array([[0, 0, 0], [1, 1, 2]]))
+    with pytest.raises(SceneError, match=r"domain.file: found 2 facets, all without an area"):
+        meshed(tmp_path / "points.stl", faces=faces)
+
+
+@pytest.mark.parametrize("corner", [[0.5, 0.0, 0.0], [0.3, 0.3, 0.0]])
+def test_surfaces_that_enclose_no_volume_are_refused(tmp_path: Path, corner: list[float]) -> None:
+    """A tetrahedron pressed into a plane."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], corner])
+    write_stl(tmp_path / "flat.stl", points, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    with pytest.raises(SceneError, match=r"domain.file: found facets that enclose a volume of -?0"):
+        meshed(tmp_path / "flat.stl", faces={"wall": 1})
+
+
+def with_baffle(dimension: int, cracked: bool) -> tuple[Mesh, list[str]]:
+    """A square or cube, its sides one group, and a plate that stands in its middle, `cracked`: with points of its own
+    on either side."""
+    steps = np.arange(5) / 4.0
+    points = np.stack(np.meshgrid(*[steps] * dimension, indexing="ij"), axis=-1).reshape(-1, dimension)
+    cells = Delaunay(points).simplices.astype(np.int64)
+    outer = boundary_facets(cells)
+    sides = np.concatenate([np.delete(cells, k, axis=1) for k in range(dimension + 1)])
+    in_plate = np.all((points[sides][..., 0] == 0.5) & (points[sides][..., 1] <= 0.5), axis=1)
+    plate = np.unique(np.sort(sides[in_plate], axis=1), axis=0)
+    facets, count = [outer, plate], len(points)
+    if cracked:
+        inside = [corner for corner in np.unique(plate) if not np.isin(corner, outer) and points[corner, 1] < 0.5]
+        twin = np.arange(count)
+        twin[inside] = count + np.arange(len(inside))
+        beyond = points[cells].mean(axis=1)[:, 0] > 0.5
+        cells[beyond] = twin[cells[beyond]]
+        points, facets = np.concatenate([points, points[inside]]), [outer, plate, twin[plate]]
+    markers = np.repeat([0, 1, 1], [len(outer), len(plate), len(plate) * cracked])
+    return Mesh(points, cells, np.concatenate(facets), markers), ["side", "plate"]
+
+
+@pytest.mark.parametrize("cracked", [False, True])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_wall_without_thickness_is_refused_by_its_name(tmp_path: Path, dimension: int, cracked: bool) -> None:
+    mesh, names = with_baffle(dimension, cracked)
+    write_gmsh41(tmp_path / "baffle.msh", mesh, names)
+    found = r"domain.file: found \d+ facets of 2 'plate' with fluid on both sides, the first about \(0.5, "
+    with pytest.raises(SceneError, match=found):
+        meshed(tmp_path / "baffle.msh", dimension)
+    alone = mesh.markers == 0
+    whole = replace(with_baffle(dimension, False)[0], facets=mesh.facets[alone], markers=mesh.markers[alone])
+    write_gmsh41(tmp_path / "whole.msh", whole, names[:1])
+    assert meshed(tmp_path / "whole.msh", dimension).volume == pytest.approx(1.0, rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.facet_moments import facet_moments, unit_inertia
 from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.model.facets import Facets, area_vectors, enclosed_volume
 from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
@@ -42,10 +42,10 @@ class FacetBody(Body):
         super().__init__(options, facets.points.shape[1])
         self._key = key
         self._refuse_crossings(facets)
-        moments = facet_moments(facets)
         size = float(np.max(np.ptp(facets.points, axis=0)))
-        if not abs(moments.volume) > _LEAST_VOLUME * size**self.dimension:
+        if not abs(enclosed_volume(facets.points, facets.vertices)) > _LEAST_VOLUME * size**self.dimension:
             self._refuse("facets that enclose nothing", "a shape of some volume", "Check the corners.")
+        moments = facet_moments(facets)
         vertices = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
         own = Facets(facets.points - moments.centre, np.ascontiguousarray(vertices), np.zeros_like(facets.markers))
         self._surface = FacetSurface(own)

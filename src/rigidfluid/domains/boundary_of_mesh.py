@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.model.facets import Facets, place
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
 from rigidfluid.domains.naming import Part, listed
 from rigidfluid.errors import SceneError
@@ -74,6 +74,11 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
     doubled = len(np.unique(vertices)) - len(np.unique(joined[vertices]))
     vertices = joined[vertices]
     sound = np.all(np.diff(np.sort(vertices, axis=1), axis=1) > 0, axis=1)
+    if not sound.any():
+        found = f"{len(vertices)} facets, all without an area"
+        raise SceneError(FIELD, found, "facets around a region", "Write the file anew.")
+    if len(region):  # the two sides of a wall without thickness, joined
+        _refuse_baffles(Cells(vertices, numbers, file.facets.names), sound & _doubled(vertices), points)
     used, compact = np.unique(vertices[sound], return_inverse=True)
     facets = Facets(points[used, :dimension], compact.reshape(-1, dimension).astype(np.int64), numbers[sound])
     return Boundary(facets, file.facets.names, doubled)
@@ -114,6 +119,7 @@ def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArr
     sides = np.concatenate([np.delete(region, k, axis=1) for k in range(count)])
     unique, times = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     outer = unique[times == 1]
+    _refuse_baffles(facets, _among(facets.vertices, unique[times == 2]), points)
     keys = np.concatenate([outer, np.sort(facets.vertices, axis=1)])
     _, row = np.unique(keys, axis=0, return_inverse=True)
     number_of = dict(zip(row.ravel()[len(outer) :].tolist(), facets.numbers.tolist(), strict=True))
@@ -124,6 +130,31 @@ def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArr
         text = f"{len(bare)} facets of the fluid's boundary without a number, the first about {first}"
         raise SceneError(FIELD, text, "a number or name for every facet", "Give all of the boundary physical groups.")
     return outer, np.array(found, dtype=np.int64)
+
+
+def _refuse_baffles(facets: Cells, thin: BoolArray, points: FloatArray) -> None:
+    """Refuse the ``thin`` ones (F,) of ``facets``, with fluid on both sides."""
+    if thin.any():
+        number = int(facets.numbers[thin][0])
+        mine = facets.vertices[thin & (facets.numbers == number)]
+        name = f"{number} {facets.names[number]!r}" if number in facets.names else str(number)
+        first = place(points[mine[0], : mine.shape[1]])
+        found = f"{len(mine)} facets of {name} with fluid on both sides, the first about {first}"
+        remedy = "Draw a wall of some thickness there; if it is no wall, take its group out of the file."
+        raise SceneError(FIELD, found, "facets with fluid on one side", remedy)
+
+
+def _doubled(vertices: IntArray) -> BoolArray:
+    """Which facets (F,) are there more than once."""
+    _, row, times = np.unique(np.sort(vertices, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return np.asarray(times[row.ravel()] > 1)
+
+
+def _among(facets: IntArray, others: IntArray) -> BoolArray:
+    """Which facets (F,) are among ``others`` (G, d)."""
+    corners = np.sort(np.concatenate([facets, others]), axis=1)
+    row = np.unique(corners, axis=0, return_inverse=True)[1].ravel()
+    return np.isin(row[: len(facets)], row[len(facets) :])
 
 
 def _joined(points: FloatArray, vertices: IntArray) -> IntArray:

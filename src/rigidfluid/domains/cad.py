@@ -14,13 +14,13 @@ from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.plane_of_facets import plane_around
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.closed_form import Flat, Form, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
-from rigidfluid.domains.planes import plane_around
 from rigidfluid.errors import MeshError, SceneError
 
 _FACETS = 30

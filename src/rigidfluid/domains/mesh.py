@@ -18,13 +18,15 @@ from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
-from rigidfluid.domains.planes import plane_around
 from rigidfluid.errors import SceneError
+
+_LEAST_VOLUME = 1e-12
+"""Of the cube around the domain: what has less is flat."""
 
 
 class MeshOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
-    not used.
+    not used. Walls without thickness, facets with fluid on both sides, are refused.
 
     Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`, those of Netgen and STL
     without.
@@ -42,20 +44,6 @@ class MeshOptions(PartOptions):
     fluid: int | str | None = Field(
         default=None, description="Number or name of the cells that are fluid, where the file has several kinds"
     )
-
-
-class FacetWall(FacetSurface):
-    """Facets that are taken for what they are, even where they lie in a plane: the plane does not end with them."""
-
-    @property
-    def plane(self) -> None:
-        """None."""
-        return
-
-    @property
-    def radius(self) -> None:
-        """None."""
-        return
 
 
 class MeshDomain(Domain):
@@ -93,6 +81,9 @@ class MeshDomain(Domain):
         markers = np.array([piece_of[number] for number in facets.markers.tolist()], dtype=np.int64)
         self._facets = Facets(facets.points, facets.vertices, markers)
         self._whole = FacetSurface(self._facets)
+        if not self.volume > _LEAST_VOLUME * float(self.size.max()) ** dimension:
+            found = f"facets that enclose a volume of {self.volume:.3g}"
+            raise SceneError(FIELD, found, "facets around a region of some volume", "Write the file anew.")
 
     @property
     def facets(self) -> Facets:
@@ -127,8 +118,7 @@ class MeshDomain(Domain):
     def _piece(self, number: int, name: str) -> Piece:
         facets = self._facets.part(self._facets.markers == number)
         area = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1).sum()
-        plane = plane_around(facets, self._facets.points)
-        return Piece(name, plane or FacetWall(facets, self._whole), float(area))
+        return Piece(name, self._whole.piece(number), float(area))
 
 
 def _refuse_crossing(facets: Facets) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.refine_surface import bisect, edges_of_facets, middles_on_surfaces, one_per_cell
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
@@ -20,7 +22,7 @@ _NUDGE = 1e-3
 """Over the size of the domain: of differences, and of a step from the boundary that is surely inside or outside."""
 
 
-_MADE: dict[tuple[type[Domain], int, str, float], tuple[Mesh, Mesh]] = {}
+_MADE: dict[tuple[Hashable, float], tuple[Mesh, Mesh]] = {}
 
 
 class DomainContract:
@@ -46,7 +48,7 @@ class DomainContract:
     @pytest.fixture
     def meshes(self, domain: Domain) -> tuple[Mesh, Mesh]:
         """A coarse one and a fine one, made once for all tests of a domain."""
-        key = type(domain), domain.dimension, domain.options.model_dump_json(), self.coarse
+        key = _identity(domain), self.coarse
         if key not in _MADE:
             _MADE[key] = _mesh(domain, self.coarse), _mesh(domain, 0.5 * self.coarse)
         return _MADE[key]
@@ -130,8 +132,11 @@ class DomainContract:
                 assert np.all(points <= upper + self.tolerance * _size(domain))
 
     def test_volume_and_areas_are_those_of_fine_meshes(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
-        """The finer the mesh, the nearer."""
-        errors = [_sizes_of(domain, mesh) / _sizes_told(domain) - 1.0 for mesh in meshes]
+        """When all edges of the boundary are halved, each new vertex on its surfaces, errors fall, to a quarter of a
+        smooth surface's. Netgen's own edges depend on curvature, too, and may not get shorter where they are asked to.
+        """
+        finer = meshes[1], _halved(meshes[1], domain)
+        errors = [_sizes_of(domain, mesh) / _sizes_told(domain) - 1.0 for mesh in finer]
         assert np.all(np.abs(errors[1]) < self.volume_tolerance), errors
         assert np.all(np.abs(errors[1]) <= np.maximum(0.5 * np.abs(errors[0]), self.tolerance)), errors
 
@@ -178,12 +183,35 @@ def _probes(domain: Domain) -> FloatArray:
     return inside
 
 
+def _identity(domain: Domain) -> Hashable:
+    """What tells domains apart: some are made from more than their options."""
+    options, extent = domain.options.model_dump_json(), tuple(np.ravel(domain.extent).tolist())
+    facets = () if domain.facets is None else (domain.facets.points.tobytes(), domain.facets.vertices.tobytes())
+    return type(domain), domain.dimension, options, domain.names, domain.volume, extent, facets
+
+
 def _mesh(domain: Domain, relative_size: float) -> Mesh:
-    nobody = Pose(np.zeros((0, domain.dimension)), np.zeros((0, 1 if domain.dimension == 2 else 4)))
     size = relative_size * _size(domain)
     if domain.facets is not None:
-        return fill_mesh([], nobody, domain, [], Sizes(size, size, 0.3))
-    return generate_mesh([], nobody, domain, size, size, 0.3)
+        return fill_mesh([], _nobody(domain), domain, [], Sizes(size, size, 0.3))
+    return generate_mesh([], _nobody(domain), domain, size, size, 0.3)
+
+
+def _nobody(domain: Domain) -> Pose:
+    return Pose(np.zeros((0, domain.dimension)), np.zeros((0, 1 if domain.dimension == 2 else 4)))
+
+
+def _halved(mesh: Mesh, domain: Domain) -> Mesh:
+    """The mesh with every edge of its boundary cut in two at a point of the exact surface."""
+    given = len(mesh.points)
+    while True:
+        edges, _ = edges_of_facets(mesh, np.ones(len(mesh.facets), dtype=bool))
+        edges = edges[(edges < given).all(axis=1)]
+        if not len(edges):
+            return mesh
+        length = np.linalg.norm(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]], axis=1)
+        edges = edges[one_per_cell(mesh.cells, edges, length, len(mesh.points))]
+        mesh = bisect(mesh, edges, middles_on_surfaces(mesh, edges, [], _nobody(domain), domain))
 
 
 def _middles(mesh: Mesh, piece: int) -> FloatArray:

@@ -6,8 +6,14 @@ import numpy as np
 
 from rigidfluid.core.model.interfaces import Body
 
-_LATTICE = {2: 80, 3: 32}
-"""Dimension → points along each side of the box around a shape."""
+_SAMPLES = {2: 400, 3: 1600}
+"""Dimension → points of a surface at which balls inside touch it."""
+
+_BISECTIONS = 50
+"""Of a ball's radius: to rounding of the shape's size."""
+
+_SLACK = 1e-6
+"""A ball is inside if its centre is as deep as its radius but for this share of it."""
 
 
 def shape_key(body: Body) -> tuple[str, str]:
@@ -23,13 +29,20 @@ def inscribed_radius(body: Body) -> float:
 
 
 def half_thickness(body: Body) -> float:
-    """Radius of the largest ball that fits into the shape, to a few per cent where it is no ellipsoid [length]."""
+    """Radius of the largest ball that fits into the shape, to a few per cent where it is no ellipsoid [length].
+
+    The largest of those that touch the surface at samples of it, each by bisection, so that no shape is too thin.
+    """
     if body.semi_axes is not None:
         return float(body.semi_axes.min())
-    lower, upper = body.bounds
-    places = (np.arange(_LATTICE[body.dimension]) + 0.5) / _LATTICE[body.dimension]
-    lattice = np.stack(np.meshgrid(*[places] * body.dimension, indexing="ij"), axis=-1).reshape(-1, body.dimension)
-    return -float(body.signed_distance(lower + lattice * (upper - lower)).min())
+    touched = body.sample_surface(_SAMPLES[body.dimension])
+    normal = body.normal(touched)
+    fits, least_too_large = np.zeros(len(touched)), np.full(len(touched), body.bounding_radius)
+    for _ in range(_BISECTIONS):
+        radius = 0.5 * (fits + least_too_large)
+        inside = -body.signed_distance(touched - radius[:, None] * normal) >= (1.0 - _SLACK) * radius
+        fits, least_too_large = np.where(inside, radius, fits), np.where(inside, least_too_large, radius)
+    return float(fits.max())
 
 
 def equal_volume_radius(body: Body) -> float:

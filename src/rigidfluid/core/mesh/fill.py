@@ -11,11 +11,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
-from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_checks import refuse_unfillable
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
-from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import enclosed_volume
 from rigidfluid.core.model.interfaces import Body
@@ -73,10 +72,7 @@ def fill_between(surface: Mesh, sizes: Sizes, timeout: float) -> Mesh:
     points, cells = filled(surface, sizes.size, sizes.growth, timeout)
     mesh = orient(_with_facets(points, cells, surface))
     check_mesh(mesh, quality=0.0)
-    expected = -enclosed_volume(surface.points, surface.facets)
-    volume = float(cell_volumes(mesh.points, mesh.cells).sum())
-    if abs(volume - expected) > 1e-10 * expected:
-        raise MeshError("mesh", f"cells with a volume of {volume!r}", f"{expected!r} between the surfaces", REMEDY)
+    check_volume(mesh, -enclosed_volume(surface.points, surface.facets), "between the surfaces")
     return mesh
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
@@ -178,16 +179,14 @@ def _netgen_failed(error: Exception) -> MeshError:
 
 
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
-    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on a flat one where it meets
-    others."""
-    points = mesh.points.copy()
-    flat = [piece.shape.plane is not None for piece in domain.pieces]
-    for number in sorted(range(len(flat)), key=flat.__getitem__):
-        if not (flat[number] or curved):
-            continue
-        vertices = surface_vertices(mesh, bodies + number)
-        points[vertices] = domain.pieces[number].shape.closest_point(points[vertices])
-    return replace(mesh, points=points)
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all at once where several
+    meet."""
+    chosen = [k for k, piece in enumerate(domain.pieces) if curved or piece.shape.plane is not None]
+    belongs = np.zeros((len(mesh.points), len(chosen)), dtype=bool)
+    for column, number in enumerate(chosen):
+        belongs[surface_vertices(mesh, bodies + number), column] = True
+    shapes = [domain.pieces[number].shape for number in chosen]
+    return replace(mesh, points=put_on_surfaces(mesh.points, shapes, belongs))
 
 
 def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray) -> Any:

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.model.domain import Domain
@@ -81,18 +82,34 @@ def long_edges(
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Edges (E, 2) of bodies and curved walls longer than ``longest`` times the size wanted at their middles; on the
     surface above those, points (E, d) and the size wanted there (E,)."""
-    edges, owner = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
+    edges, _ = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
     periodic, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(bodies), domain))
     if len(periodic):
-        alone = edge_numbers(edges, (0, 1), periodic, len(mesh.points)) < 0
-        edges, owner = edges[alone], owner[alone]
+        edges = edges[edge_numbers(edges, (0, 1), periodic, len(mesh.points)) < 0]
     middles = mesh.points[edges].mean(axis=1)
     wanted = wanted_size(middles, bodies, pose, walls, sizes)
     long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
-    edges, owner, middles = edges[long], owner[long], middles[long]
-    for i in np.unique(owner):
-        middles[owner == i] = on_surface(i, middles[owner == i], bodies, pose, domain)
+    edges = edges[long]
+    middles = middles_on_surfaces(mesh, edges, bodies, pose, domain)
     return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
+
+
+def middles_on_surfaces(
+    mesh: Mesh, edges: IntArray, bodies: Sequence[Body], pose: Pose, domain: Domain
+) -> FloatArray:
+    """Points (E, d) of the exact surface above the middles of ``edges`` (E, 2), which are sorted; of all that meet
+    there."""
+    middles = np.asarray(mesh.points[edges].mean(axis=1))
+    if not len(edges):
+        return middles
+    belongs = np.zeros((len(edges), len(bodies) + len(domain.pieces)), dtype=bool)
+    for pair in combinations(range(mesh.facets.shape[1]), 2):
+        number = edge_numbers(mesh.facets, pair, edges, len(mesh.points))
+        belongs[number[number >= 0], mesh.markers[number >= 0]] = True
+    on_bodies, on_domain = np.split(belongs, [len(bodies)], axis=1)
+    for i in np.flatnonzero(on_bodies.any(axis=0)).tolist():
+        middles[on_bodies[:, i]] = on_surface(i, middles[on_bodies[:, i]], bodies, pose, domain)
+    return put_on_surfaces(middles, [piece.shape for piece in domain.pieces], on_domain)
 
 
 def on_kept_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:

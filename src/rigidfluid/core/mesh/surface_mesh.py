@@ -12,9 +12,8 @@ from rigidfluid.core.mesh.meshing import ATTEMPTS, longest_edges, netgen_mesh, p
 from rigidfluid.core.mesh.refine_surface import (
     LONGEST,
     bisect,
-    edge_numbers,
     edges_of_facets,
-    on_surface,
+    middles_on_surfaces,
     one_per_cell,
 )
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
@@ -61,7 +60,10 @@ def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequ
     for i, body in enumerate(bodies):
         own = _as_mesh(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
         parts.append(replace(own, points=to_world(pose, i, own.points), markers=np.full(len(own.facets), i)))
-    outer = _as_mesh(domain.facets) if domain.facets is not None else _meshed_domain(domain, sizes)
+    if domain.facets is None:
+        outer = _meshed_domain(domain, sizes)
+    else:
+        outer = put_back(_as_mesh(domain.facets), 0, domain, curved=False)
     parts.append(replace(outer, markers=len(bodies) + outer.markers))
     return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
 
@@ -143,15 +145,4 @@ def _halved(
             return surface
         edges, length = edges[long], length[long]
         edges = edges[one_per_cell(surface.facets, edges, length, len(surface.points))]
-        surface = bisect(surface, edges, _middles(surface, edges, bodies, pose, domain))
-
-
-def _middles(surface: Mesh, edges: IntArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
-    """Points (E, d) of the exact surface above the middles of ``edges`` (E, 2), where two meet of the flat one."""
-    middles = surface.points[edges].mean(axis=1)
-    flat = [False] * len(bodies) + [piece.shape.plane is not None for piece in domain.pieces]
-    for number in sorted(np.unique(surface.markers).tolist(), key=flat.__getitem__):
-        theirs, _ = edges_of_facets(surface, surface.markers == number)
-        mine = edge_numbers(edges, (0, 1), theirs, len(surface.points)) >= 0
-        middles[mine] = on_surface(number, middles[mine], bodies, pose, domain)
-    return np.asarray(middles)
+        surface = bisect(surface, edges, middles_on_surfaces(surface, edges, bodies, pose, domain))

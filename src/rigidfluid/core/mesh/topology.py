@@ -7,10 +7,14 @@ from itertools import combinations
 import numpy as np
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.types import BoolArray, IntArray, Mesh
 from rigidfluid.errors import MeshError
 
 REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."
+
+_ROUNDINGS = 16.0
+"""How many roundings of a coordinate, of ε max|x| each, a vertex of the boundary may be away from its place."""
 
 
 def boundary_facets(cells: IntArray) -> IntArray:
@@ -84,6 +88,19 @@ def check_mesh(mesh: Mesh, quality: float) -> None:
     if worst[cell] <= quality:
         where = np.array2string(mesh.points[mesh.cells[cell]].mean(axis=0), precision=4)
         raise MeshError(f"mesh near {where}", f"a cell of quality {worst[cell]:.3g}", f"more than {quality:g}", REMEDY)
+
+
+def check_volume(mesh: Mesh, expected: float, whose: str) -> None:
+    """Refuse a mesh whose cells fill another volume than ``expected`` [length^d], that ``whose`` says.
+
+    All that may differ is how rounding of the coordinates moves the boundary, _ROUNDINGS ε max|x| times its area.
+    """
+    volume = float(cell_volumes(mesh.points, mesh.cells).sum())
+    area = float(np.linalg.norm(area_vectors(mesh.points, mesh.facets), axis=1).sum())
+    allowed = _ROUNDINGS * np.finfo(float).eps * float(np.abs(mesh.points).max()) * area
+    if abs(volume - expected) > allowed:
+        found = f"cells of a volume that is {volume - expected:.3g} off the {expected!r} {whose}"
+        raise MeshError("mesh", found, f"at most {allowed:.3g}, by rounding", REMEDY)
 
 
 def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:

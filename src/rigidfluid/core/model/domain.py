@@ -19,9 +19,9 @@ from rigidfluid.core.model.types import BoolArray, FloatArray
 class Piece:
     """A piece of the domain's boundary that conditions can be set on by its name.
 
-    ``shape``: the surface it lies on; of a flat piece all of its plane. ``area`` of the piece [length^(d-1)].
-    ``coordinates``: from points (N, d) of the piece to its own coordinates (N, d-1), each from 0 to 1 and with equal
-    areas for equal parts; profiles are given in them, and a piece without them has none.
+    ``shape``: the surface it lies on; of a flat piece all of its plane, if that does not go on inside. ``area`` of the
+    piece [length^(d-1)]. ``coordinates``: from points (N, d) of the piece to its own coordinates (N, d-1), each from 0
+    to 1 and with equal areas for equal parts; profiles are given in them, and a piece without them has none.
     """
 
     name: str
@@ -35,8 +35,8 @@ class Domain(SpatialPart):
 
     Surfaces are numbered through, the n bodies first: piece i is surface n + i. Nodes of the mesh slide along flat
     pieces across an axis, and are held on all others. When the mesh is made anew, nodes of flat pieces are put back
-    into their planes; the facets of other pieces are kept as those of bodies are, or halved with the new node on the
-    closest point of the piece.
+    into all their planes; the facets of other pieces are kept as those of bodies are, or halved with the new node on
+    the closest point of the piece.
 
     Parameters
     ----------

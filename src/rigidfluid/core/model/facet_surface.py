@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rigidfluid.core.model.facet_faces import Faces, faces_of
-from rigidfluid.core.model.facets import Facets, area_vectors
-from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.plane_of_facets import plane_around
+from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
-
-FLAT = 1e-10
-"""Over the size of the surface: points that are less off a plane lie in it."""
 
 _TOUCHING = 1e-8
 """Over the size of the surface: nearer points have no direction from an edge or a corner."""
@@ -69,9 +67,12 @@ class FacetSurface(Surface):
         self._bounds = used.min(axis=0), used.max(axis=0)
         self._size = float(np.max(self._bounds[1] - self._bounds[0]))
 
-    def piece(self, marker: int) -> FacetSurface:
-        """The facets with this marker, a part of this closed surface."""
-        return FacetSurface(self.facets.part(self.facets.markers == marker), whole=self)
+    def piece(self, marker: int) -> Surface:
+        """What the facets with this marker, a part of this closed surface, are: their plane if all of this surface is
+        on its one side, and the facets alone if they are not flat or their plane goes on inside."""
+        part = self.facets.part(self.facets.markers == marker)
+        plane = plane_around(part, self._points[np.unique(self._vertices)])
+        return FacetSurface(part, whole=self) if plane is None else plane
 
     @property
     def whole(self) -> FacetSurface:
@@ -82,16 +83,6 @@ class FacetSurface(Surface):
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Corners of the box around all facets, (d,) each [length]."""
         return self._bounds
-
-    @cached_property
-    def plane(self) -> Plane | None:
-        """The plane that all facets lie in, bounded as they are; None if there is no such plane."""
-        return plane_of(self.facets, FLAT * self._size)
-
-    @property
-    def radius(self) -> float | None:
-        """Infinite where all facets lie in a plane, else None [length]."""
-        return None if self.plane is None else np.inf
 
     @property
     def facet_normals(self) -> FloatArray:
@@ -209,24 +200,6 @@ def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: fl
     apart = np.linalg.norm(foot - first[query], axis=1) > touching
     same = (query[:, None] == query) & (np.linalg.norm(foot[:, None] - foot, axis=2) <= touching)
     return np.asarray(apart & ~np.tril(same, -1).any(axis=1))
-
-
-def plane_of(facets: Facets, tolerance: float) -> Plane | None:
-    """The plane that all facets lie in but for a ``tolerance`` [length], bounded as they are; None if there is none.
-
-    A normal that lies along an axis but for rounding is put there.
-    """
-    vectors = area_vectors(facets.points, facets.vertices)
-    total = vectors.sum(axis=0)
-    length = float(np.linalg.norm(total))
-    if length <= FLAT * np.linalg.norm(vectors, axis=1).sum():
-        return None
-    normal, rounded = total / length, np.round(total / length)
-    if np.all(np.abs(normal - rounded) <= FLAT):
-        normal = rounded
-    mine = facets.points[np.unique(facets.vertices)]
-    plane = Plane(facets.points[facets.vertices[0, 0]], normal, (mine.min(axis=0), mine.max(axis=0)))
-    return plane if np.all(np.abs(plane.signed_distance(mine)) <= tolerance) else None
 
 
 def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:
