@@ -12,6 +12,9 @@ from rigidfluid.registry import Registry
 
 Table = dict[str, Any]
 
+_ALSO = {"contact": ("interaction",), "body": ("domain.obstacle", "mechanism.component")}
+"""Other tables that name the same parts."""
+
 _POWERS = {"centre": 3, "contact": 3, "normal": 2, "barrier": 1}
 """p of a law's ε, in length^p/force."""
 
@@ -35,7 +38,7 @@ class Units:
 
 
 def in_units(scene: Table, units: Units) -> Table:
-    """The same scene in other units; ``file`` tables and strokes are not converted."""
+    """The same scene in other units; files of shapes get a ``scale``, tables over time in files stay as they are."""
     schema = Scene.model_json_schema()
     parts = {(entry.kind.field, entry.name): entry.part.Options for entry in Registry.load().entries}
 
@@ -44,10 +47,11 @@ def in_units(scene: Table, units: Units) -> Table:
         law = given.get("law", "")
         for (field, name), options in parts.items():
             place, _, key = field.rpartition(".")
-            if at in (place, "interaction") and given.get(key, keys.get(key, {}).get("default")) == name:
+            if at in (place, *_ALSO.get(place, ())) and given.get(key, keys.get(key, {}).get("default")) == name:
                 more = options.model_json_schema()
                 definitions, keys = definitions | more.get("$defs", {}), keys | more["properties"]
-        return {key: value(key, one, keys[key], definitions, at, law) for key, one in given.items()}
+        found = {key: value(key, one, keys[key], definitions, at, law) for key, one in given.items()}
+        return found | {"scale": units.length * given.get("scale", 1.0)} if "scale" in keys else found
 
     def value(key: str, given: Any, field: Table, definitions: Table, at: str, law: str) -> Any:
         name = _target(field)
