@@ -152,7 +152,7 @@ def _bounded(plane: Plane, facets: Facets, area: float, centre: FloatArray, slac
     Whatever has an area of πr² and no point farther than r from its centre is a disk.
     """
     areas = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1)
-    if np.isclose(areas.sum(), area, rtol=_SAME):
+    if np.isclose(areas.sum(), area, rtol=_SAME, atol=0.0):
         return plane
     rim, radius = facets.points[np.unique(facets.vertices)], np.sqrt(area / np.pi)
     across = np.sqrt(1.0 - plane.unit_normal**2)
