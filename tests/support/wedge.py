@@ -35,11 +35,12 @@ class Wedge(Domain):
     def contains(self, points: FloatArray) -> BoolArray:
         return np.all([piece.shape.signed_distance(points) > 0.0 for piece in self.pieces], axis=0)
 
-    def cad_shape(self) -> Any:
+    def cad_shape(self, unit: float) -> Any:
         from netgen import occ
 
-        path = occ.WorkPlane().MoveTo(*CORNERS[0])
-        for name, corner in zip(("floor", "slope", "side"), np.roll(CORNERS, -1, axis=0), strict=True):
+        corners = CORNERS / unit
+        path = occ.WorkPlane().MoveTo(*corners[0])
+        for name, corner in zip(("floor", "slope", "side"), np.roll(corners, -1, axis=0), strict=True):
             path = path.LineTo(*corner, name)
         return path.Face()
 

@@ -337,7 +337,7 @@ def test_the_film_in_a_hollow_is_that_of_the_radii_difference() -> None:
 
 def test_a_side_of_the_cad_shape_without_a_name_is_refused() -> None:
     nameless = dish()
-    nameless.cad_shape = lambda: ball(1.0).cad_shape()  # type: ignore[method-assign]
+    nameless.cad_shape = lambda unit: ball(1.0).cad_shape(unit)  # type: ignore[method-assign]
     with pytest.raises(PluginError, match=r"domain.type: found a side of the CAD shape named .* allowed is one of rim"):
         initial_mesh([ball(0.2)], upright([0.0, 0.0]), nameless, [rim(1)], Sizes(0.25, 0.05))
 

@@ -11,6 +11,7 @@ from pydantic import Field
 from rigidfluid.bodies.ellipsoid_distance import closest_point
 from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
@@ -99,14 +100,15 @@ class Ellipsoid(Body):
         """``count`` points (count, d), the stretched image of evenly spread ones on a ball [length]."""
         return self.semi_axes * unit_sphere_points(count, self.dimension)
 
-    def cad_shape(self) -> Any:
-        """An ellipse in the plane z = 0 (2D) or an ellipsoid (3D), as ``netgen.occ`` shapes."""
+    def cad_shape(self, unit: float) -> Any:
+        """An ellipse in the plane z = 0 (2D) or an ellipsoid (3D), as ``netgen.occ`` shapes with lengths over
+        ``unit``."""
         from netgen import occ
 
-        origin = occ.Pnt(0, 0, 0)
+        origin, semi_axes = occ.Pnt(0, 0, 0), in_unit(self.semi_axes, unit).tolist()
         if self.dimension == 3:
-            return occ.Ellipsoid(occ.Axes(origin, occ.X, occ.Y), *self.options.semi_axes)
+            return occ.Ellipsoid(occ.Axes(origin, occ.X, occ.Y), *semi_axes)
         # Open CASCADE wants the major axis first (and crashes otherwise)
-        minor, major = sorted(self.options.semi_axes)
-        along = occ.X if self.options.semi_axes[0] == major else occ.Y
+        minor, major = sorted(semi_axes)
+        along = occ.X if semi_axes[0] == major else occ.Y
         return occ.WorkPlane(occ.Axes(origin, occ.Z, along)).Ellipse(major, minor).Face()

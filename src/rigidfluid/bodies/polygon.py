@@ -10,6 +10,7 @@ from pydantic import Field
 from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.errors import SceneError
 
 Point = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -61,11 +62,11 @@ class Polygon(FacetBody):
         edges = np.stack([numbers, np.roll(numbers, -1)], axis=1)
         super().__init__(options, Facets(corners, edges, np.zeros(len(corners), dtype=np.int64)), "points")
 
-    def cad_shape(self) -> Any:
-        """A face in the plane z = 0 with straight edges, as a ``netgen.occ`` shape."""
+    def cad_shape(self, unit: float) -> Any:
+        """A face in the plane z = 0 with straight edges, as a ``netgen.occ`` shape with lengths over ``unit``."""
         from netgen import occ
 
-        corners = self.facets.points[self.facets.vertices[:, 0]]
+        corners = in_unit(self.facets.points[self.facets.vertices[:, 0]], unit).tolist()
         plane = occ.WorkPlane().MoveTo(*corners[0])
         for corner in corners[1:]:
             plane = plane.LineTo(*corner)

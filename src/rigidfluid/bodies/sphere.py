@@ -10,6 +10,7 @@ from pydantic import Field
 
 from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.types import FloatArray
 
 
@@ -69,10 +70,9 @@ class Sphere(Body):
         """``count`` evenly spread points of the surface (count, d) [length]."""
         return self.radius * unit_sphere_points(count, self.dimension)
 
-    def cad_shape(self) -> Any:
-        """A disk in the plane z = 0 (2D) or a ball (3D), as ``netgen.occ`` shapes."""
+    def cad_shape(self, unit: float) -> Any:
+        """A disk in the plane z = 0 (2D) or a ball (3D), as ``netgen.occ`` shapes with lengths over ``unit``."""
         from netgen import occ
 
-        if self.dimension == 2:
-            return occ.WorkPlane().Circle(self.radius).Face()
-        return occ.Sphere(occ.Pnt(0, 0, 0), self.radius)
+        radius = float(in_unit(self.radius, unit))
+        return occ.WorkPlane().Circle(radius).Face() if self.dimension == 2 else occ.Sphere(occ.Pnt(0, 0, 0), radius)

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.errors import SceneError
@@ -91,20 +92,20 @@ class Box(Domain):
         """Which of ``points`` (N, d) are inside or on a face, (N,)."""
         return np.asarray(np.all((self._lower <= points) & (points <= self._upper), axis=1))
 
-    def cad_shape(self) -> Any:
-        """A rectangle in the plane z = 0 (2D) or a cuboid (3D), as ``netgen.occ`` shapes."""
+    def cad_shape(self, unit: float) -> Any:
+        """A rectangle in the plane z = 0 (2D) or a cuboid (3D), as ``netgen.occ`` shapes with lengths over ``unit``."""
         from netgen import occ
 
-        lower, upper = self.extent
+        lower, upper = (in_unit(corner, unit) for corner in self.extent)
         if self.dimension == 2:
-            shape = occ.WorkPlane().Rectangle(*self.size).Face().Move(occ.Vec(float(lower[0]), float(lower[1]), 0.0))
+            shape = occ.WorkPlane().Rectangle(*(upper - lower)).Face().Move(occ.Vec(*map(float, lower), 0.0))
             sides = shape.edges
         else:
             shape = occ.Box(occ.Pnt(*lower), occ.Pnt(*upper))
             sides = shape.faces
         for side in sides:
             centre = np.array([side.center.x, side.center.y, side.center.z])[: self.dimension]
-            distance = np.abs(np.column_stack([centre - lower, upper - centre]) / self.size[:, None])
+            distance = np.abs(np.column_stack([centre - lower, upper - centre]) / (upper - lower)[:, None])
             side.name = self.names[int(np.argmin(distance))]
         return shape
 

@@ -14,10 +14,11 @@ from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.model.plane_of_facets import plane_around
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
-from rigidfluid.domains.closed_form import Flat, Form, form_of_edge, form_of_face
+from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
@@ -76,11 +77,11 @@ class Cad(Domain):
 
     def __init__(self, options: CadOptions, dimension: int) -> None:
         super().__init__(options, dimension)
-        self._shape = _read(options, dimension)
-        parts = [_part(number, side) for number, side in enumerate(self._sides, start=1)]
+        self._shape, self._unit = _read(options, dimension)
+        parts = [self._part(number) for number in range(1, len(self._sides) + 1)]
         self._names = surface_names(parts, options.faces)
         self._order = in_order(self._names, options.faces)
-        facets = facing_the_fluid(_fine_facets(self._shape, dimension), "domain.file")
+        facets = facing_the_fluid(_fine_facets(self._shape, dimension, self._unit), "domain.file")
         self._facets, self._whole = facets, FacetSurface(facets)
         self._forms = [self._form(side) for side in self._sides]
 
@@ -97,17 +98,18 @@ class Cad(Domain):
     @property
     def volume(self) -> float:
         """As Open CASCADE integrates it [length^d]."""
-        return float(self._shape.mass)
+        return float(self._shape.mass) * self._unit**self.dimension
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are inside, (N,)."""
         return np.asarray(self._exact.signed_distance(points) > 0.0)
 
-    def cad_shape(self) -> Any:
-        """The solid or face of the file, scaled."""
-        for side, name in zip(self._sides, self._names, strict=True):
+    def cad_shape(self, unit: float) -> Any:
+        """The solid or face of the file, its lengths over ``unit``."""
+        shape = _scaled(self._shape, float(in_unit(self._unit, unit)))
+        for side, name in zip(sides(shape, self.dimension), self._names, strict=True):
             side.name = name
-        return self._shape
+        return shape
 
     @property
     def _sides(self) -> list[Any]:
@@ -118,21 +120,28 @@ class Cad(Domain):
         return FormedSurface(self._facets, self._forms)
 
     def _form(self, side: Any) -> Form | None:
-        return form_of_edge(side) if self.dimension == 2 else form_of_face(side.surf)
+        return form_of_edge(side, self._unit) if self.dimension == 2 else form_of_face(side.surf, self._unit)
 
     def _centre(self, number: int) -> FloatArray:
-        centre = self._sides[number].center
-        return np.array([centre.x, centre.y, centre.z])[: self.dimension]
+        return self._unit * components(self._sides[number].center)[: self.dimension]
+
+    def _area(self, number: int) -> float:
+        return float(self._sides[number].mass) * self._unit ** (self.dimension - 1)
+
+    def _part(self, number: int) -> Part:
+        centre = ", ".join(f"{x:.4g}" for x in self._unit * components(self._sides[number - 1].center))
+        look = f"about ({centre}), of size {self._area(number - 1):.4g}"
+        return Part(number, self._sides[number - 1].name, look)
 
     def _piece(self, name: str) -> Piece:
         numbers = [i for i, given in enumerate(self._names) if given == name]
         chosen = np.isin(self._facets.markers, numbers)
         facets = self._facets.part(chosen)
-        area = float(sum(self._sides[i].mass for i in numbers))
+        area = sum(self._area(i) for i in numbers)
         if all(isinstance(self._forms[i], Flat) for i in numbers):
             plane = plane_around(facets, self._facets.points)
             if plane is not None:
-                centre = sum(self._sides[i].mass * self._centre(i) for i in numbers) / area
+                centre = np.sum([self._area(i) * self._centre(i) for i in numbers], axis=0) / area
                 return Piece(name, _bounded(plane, facets, area, centre, self._exact.slack), area)
         return Piece(name, FormedSurface(facets, self._forms, self._whole), area)
 
@@ -143,7 +152,7 @@ def _bounded(plane: Plane, facets: Facets, area: float, centre: FloatArray, slac
     Whatever has an area of πr² and no point farther than r from its centre is a disk.
     """
     areas = np.linalg.norm(area_vectors(facets.points, facets.vertices), axis=1)
-    if np.isclose(areas.sum(), area, rtol=_SAME):
+    if np.isclose(areas.sum(), area, rtol=_SAME, atol=0.0):
         return plane
     rim, radius = facets.points[np.unique(facets.vertices)], np.sqrt(area / np.pi)
     across = np.sqrt(1.0 - plane.unit_normal**2)
@@ -153,7 +162,8 @@ def _bounded(plane: Plane, facets: Facets, area: float, centre: FloatArray, slac
     return Plane(plane.point, plane.unit_normal, (lower - slack * across, upper + slack * across))
 
 
-def _read(options: CadOptions, dimension: int) -> Any:
+def _read(options: CadOptions, dimension: int) -> tuple[Any, float]:
+    """The shape with its longest side as meshers take it, and what is 1 in it [length]."""
     from netgen import meshing, occ
 
     path = Path(options.file)
@@ -173,18 +183,25 @@ def _read(options: CadOptions, dimension: int) -> Any:
         found = f"{path} with {len(solids)} solids and {len(faces)} faces"
         allowed = "one solid in 3D" if dimension == 3 else "one face and no solid in 2D"
         raise SceneError("domain.file", found, allowed, "Join what the fluid fills, and leave the rest out.")
-    return whole[0].Scale(occ.Pnt(0, 0, 0), options.scale)
+    unit = mesher_unit(_size(whole[0]))
+    return _scaled(whole[0], 1.0 / unit), options.scale * unit
 
 
-def _part(number: int, side: Any) -> Part:
-    centre = ", ".join(f"{x:.4g}" for x in (side.center.x, side.center.y, side.center.z))
-    return Part(number, side.name, f"about ({centre}), of size {side.mass:.4g}")
+def _scaled(shape: Any, factor: float) -> Any:
+    from netgen import occ
+
+    return shape if factor == 1.0 else shape.Scale(occ.Pnt(0, 0, 0), factor)
 
 
-def _fine_facets(shape: Any, dimension: int) -> Facets:
-    """Facets marked by the number of their face, from 0."""
+def _size(shape: Any) -> FloatArray:
+    """Sides of the box around a shape, (3,)."""
     low, high = shape.bounding_box
-    size = max(high.x - low.x, high.y - low.y, high.z - low.z)
+    return components(high) - components(low)
+
+
+def _fine_facets(shape: Any, dimension: int, unit: float) -> Facets:
+    """Facets marked by the number of their face, from 0; ``unit`` is 1 in the shape [length]."""
+    size = float(_size(shape).max())
     for number, side in enumerate(sides(shape, dimension)):
         side.name = str(number)
     try:
@@ -197,4 +214,4 @@ def _fine_facets(shape: Any, dimension: int) -> Facets:
         raise SceneError("domain.file", found, "a closed shape without gaps", remedy) from error
     mesh = surfaces_of(made, dimension)
     used, compact = np.unique(mesh.facets, return_inverse=True)
-    return Facets(mesh.points[used], compact.reshape(mesh.facets.shape).astype(np.int64), mesh.markers)
+    return Facets(unit * mesh.points[used], compact.reshape(mesh.facets.shape).astype(np.int64), mesh.markers)

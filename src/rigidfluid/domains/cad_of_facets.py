@@ -6,16 +6,19 @@ from typing import Any
 
 from rigidfluid.core.mesh.meshing import in_space
 from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.types import IntArray
 
 
-def cad_of_facets(facets: Facets) -> Any:
-    """A ``netgen.occ`` face (2D) or solid (3D) with straight sides.
+def cad_of_facets(facets: Facets, unit: float) -> Any:
+    """A ``netgen.occ`` face (2D) or solid (3D) with straight sides and lengths over a unit.
 
     Parameters
     ----------
     facets : Facets
         Of one closed surface, normals outwards.
+    unit : float
+        What is 1 in the shape [length].
 
     Returns
     -------
@@ -24,7 +27,7 @@ def cad_of_facets(facets: Facets) -> Any:
     """
     from netgen import occ
 
-    points = [occ.Pnt(*in_space(point)) for point in facets.points]
+    points = [occ.Pnt(*in_space(point)) for point in in_unit(facets.points, unit)]
     if facets.points.shape[1] == 2:
         return occ.Face(_wire([points[corner] for corner in _in_turn(facets.vertices)]))
     return occ.Solid(occ.Sew([occ.Face(_wire([points[corner] for corner in row])) for row in facets.vertices.tolist()]))

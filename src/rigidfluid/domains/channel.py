@@ -83,11 +83,11 @@ class Channel(Domain):
             inside &= placed.signed_distance(points) > 0.0
         return inside
 
-    def cad_shape(self) -> Any:
-        """The box minus the obstacles, as a ``netgen.occ`` face or solid."""
-        shape = self._box.cad_shape()
+    def cad_shape(self, unit: float) -> Any:
+        """The box minus the obstacles, as a ``netgen.occ`` face or solid with lengths over ``unit``."""
+        shape = self._box.cad_shape(unit)
         for name, placed in self._obstacles.items():
-            shape = shape - placed.cad_shape(name)
+            shape = shape - placed.cad_shape(name, unit)
         return shape
 
     def _refuse_outside(self) -> None:

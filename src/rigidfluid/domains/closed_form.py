@@ -62,8 +62,8 @@ class Flat:
 Form = Flat | Offset
 
 
-def form_of_face(surface: Any) -> Form | None:
-    """The form of a face's ``surf`` in Netgen's OpenCASCADE, None if it is none of those.
+def form_of_face(surface: Any, unit: float = 1.0) -> Form | None:
+    """The form of a face's ``surf`` in Netgen's OpenCASCADE, where ``unit`` is 1 [length]; None if it is none of those.
 
     The parametrisations are those of Open CASCADE: with axes X, Y and Z, a plane is O + uX + vY, a cylinder O + Re(u) +
     vZ, a ball O + R cos v e(u) + R sin v Z and a torus O + (R + r cos v) e(u) + r sin v Z, where e(u) = cos u X + sin u
@@ -72,8 +72,8 @@ def form_of_face(surface: Any) -> Form | None:
     from netgen import occ
 
     try:
-        start, du, dv = (_components(one) for one in surface.D1(0.0, 0.0))
-        samples = np.array([_components(surface.Value(u, v)) for u, v in _SAMPLES])
+        start, du, dv = (unit * components(one) for one in surface.D1(0.0, 0.0))
+        samples = unit * np.array([components(surface.Value(u, v)) for u, v in _SAMPLES])
     except (occ.OCCException, RuntimeError):  # the surface has no such parameters
         return None
     size = float(np.ptp(samples, axis=0).max())
@@ -83,10 +83,10 @@ def form_of_face(surface: Any) -> Form | None:
     return None
 
 
-def form_of_edge(edge: Any) -> Form | None:
-    """The form of an edge in the plane z = 0: a straight line, a circle, or None."""
+def form_of_edge(edge: Any, unit: float = 1.0) -> Form | None:
+    """The form of an edge in the plane z = 0, where ``unit`` is 1 [length]: a straight line, a circle, or None."""
     low, high = edge.parameter_interval
-    samples = np.array([_components(edge.Value(t))[:2] for t in np.linspace(low, high, 6)[:5]])
+    samples = unit * np.array([components(edge.Value(t))[:2] for t in np.linspace(low, high, 6)[:5]])
     size = float(np.ptp(samples, axis=0).max())
     for form in _guesses_in_the_plane(*samples[[0, 1, 3]]):
         if np.all(np.abs(form.closest_point(samples) - samples) <= _EXACT * size):
@@ -141,5 +141,6 @@ def _on_circle(points: FloatArray, centre: FloatArray, axis: FloatArray, radius:
     return np.asarray(centre + radius * away / np.maximum(distance, 1e-300))
 
 
-def _components(vector: Any) -> FloatArray:
+def components(vector: Any) -> FloatArray:
+    """(3,)."""
     return np.array([vector.x, vector.y, vector.z])

@@ -15,6 +15,7 @@ from rigidfluid.core.mesh.meshing import in_space, sides, turned
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.domains.cad_of_facets import cad_of_facets
@@ -70,12 +71,13 @@ class PlacedBody(Surface):
         points = to_world(self.pose, 0, self.shape.facets.points)
         return FacetSurface(replace(self.shape.facets, points=points))
 
-    def cad_shape(self, name: str) -> Any:
-        """The shape in its place as a ``netgen.occ`` face or solid, its sides called ``name``."""
+    def cad_shape(self, name: str, unit: float) -> Any:
+        """The shape in its place as a ``netgen.occ`` face or solid with lengths over ``unit``, its sides called
+        ``name``."""
         from netgen import occ
 
-        placed = turned(self._cad, self.pose.orientation[0])
-        placed = placed.Move(occ.Vec(*in_space(self.pose.position[0])))
+        placed = turned(self._cad(unit), self.pose.orientation[0])
+        placed = placed.Move(occ.Vec(*in_space(in_unit(self.pose.position[0], unit))))
         for side in sides(placed, self.shape.dimension):
             side.name = name
         return placed
@@ -95,9 +97,9 @@ class PlacedBody(Surface):
         if self.shape.facets is not None:
             areas = area_vectors(self.shape.facets.points, self.shape.facets.vertices)
             return float(np.linalg.norm(areas, axis=1).sum())
-        return float(sum(side.mass for side in sides(self._cad, self.shape.dimension)))
+        unit, d = self.shape.bounding_radius, self.shape.dimension
+        return float(sum(side.mass for side in sides(self._cad(unit), d))) * unit ** (d - 1)
 
-    @property
-    def _cad(self) -> Any:
+    def _cad(self, unit: float) -> Any:
         facets = self.shape.facets
-        return self.shape.cad_shape() if facets is None else cad_of_facets(facets)
+        return self.shape.cad_shape(unit) if facets is None else cad_of_facets(facets, unit)

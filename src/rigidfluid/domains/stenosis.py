@@ -10,6 +10,7 @@ from pydantic import Field
 
 from rigidfluid.core.model.domain import Domain, Piece
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.arc import Arc
 from rigidfluid.domains.box import Box, BoxOptions
@@ -87,13 +88,13 @@ class Stenosis(Domain):
             inside &= arc.signed_distance(points) > 0.0
         return inside
 
-    def cad_shape(self) -> Any:
-        """The rectangle minus two disks, as a ``netgen.occ`` face."""
+    def cad_shape(self, unit: float) -> Any:
+        """The rectangle minus two disks, as a ``netgen.occ`` face with lengths over ``unit``."""
         from netgen import occ
 
-        shape = self._box.cad_shape()
+        shape = self._box.cad_shape(unit)
         for name, arc in self._bumps.items():
-            disk = occ.WorkPlane().Circle(*map(float, arc.centre), arc.radius).Face()
+            disk = occ.WorkPlane().Circle(*in_unit(np.array([*arc.centre, arc.radius]), unit).tolist()).Face()
             for side in disk.edges:
                 side.name = f"{name}_bump"
             shape = shape - disk

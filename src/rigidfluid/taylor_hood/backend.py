@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import ClassVar, final
+from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
 from pydantic import Field
@@ -28,6 +28,9 @@ from rigidfluid.core.model.types import (
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
+
+if TYPE_CHECKING:
+    from rigidfluid.taylor_hood.dimensionless import Dimensionless
 
 _PROVISIONAL = 1e-5
 """Relative residual of steps that will be solved again."""
@@ -62,7 +65,7 @@ class TaylorHoodBackend(FluidBackend):
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
         super().__init__(options, problem)
         self._numbering: Numbering | None = None
-        self._latest: tuple[BoolArray, Discretisation] | None = None
+        self._latest: tuple[BoolArray, Dimensionless] | None = None
         self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
         self._latest_attempt: tuple[FluidState, FluidState] | None = None
 
@@ -196,11 +199,13 @@ class TaylorHoodBackend(FluidBackend):
             self._latest = None
         return self._numbering
 
-    def _on(self, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+    def _on(self, mesh: Mesh, controlled: BoolArray) -> Dimensionless:
+        from rigidfluid.taylor_hood.dimensionless import Dimensionless
+
         numbering = self.numbering_of(mesh)
         if self._latest is None or not np.array_equal(self._latest[0], controlled):
             self.drop_factors()  # of other unknowns
-            self._latest = controlled, self.discretise(numbering, mesh, controlled)
+            self._latest = controlled, Dimensionless(self.discretise(numbering, mesh, controlled), mesh)
         return self._latest[1]
 
     def _matrix(self, discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
@@ -216,8 +221,10 @@ class TaylorHoodBackend(FluidBackend):
         return self._on(mesh, np.ones(self.problem.motions, dtype=bool))
 
     def _for_steady(self, mesh: Mesh) -> Discretisation:
+        from rigidfluid.taylor_hood.dimensionless import Dimensionless
+
         controlled = np.ones(self.problem.motions, dtype=bool)
-        return self.discretise_steady(self.numbering_of(mesh), mesh, controlled)
+        return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, controlled), mesh)
 
     def _any(self, mesh: Mesh) -> Discretisation:
         """On this topology, whichever bodies are controlled."""

@@ -88,7 +88,7 @@ class SparseBackend(TaylorHoodBackend):
         self._latest_attempt = None
         if self._latest is None:
             return {}
-        controlled, discretisation = self._latest
+        controlled, discretisation = self._latest[0], self._latest[1].inner
         assert isinstance(discretisation, SparseDiscretisation)
         return {"controlled": controlled.astype(float), "geometry": self._geometry} | discretisation.memory()
 
@@ -98,7 +98,7 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory and mesh is not None:
-            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool))
+            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

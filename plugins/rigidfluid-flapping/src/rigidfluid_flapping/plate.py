@@ -131,14 +131,14 @@ class Plate(Body):
             ring = np.column_stack([ring * np.sqrt(1 - height**2)[:, None], height])
         return self.closest_point(self.bounding_radius * ring)
 
-    def cad_shape(self) -> Any:
-        """A ``netgen.occ`` face (2D) or solid (3D)."""
+    def cad_shape(self, unit: float) -> Any:
+        """A ``netgen.occ`` face (2D) or solid (3D) with lengths over ``unit``."""
         from netgen import occ
 
-        a, r = float(self._reach[0]), self._radius
+        a, r = float(self._reach[0]) / unit, self._radius / unit
         if self.dimension == 2:
             return occ.WorkPlane().MoveTo(-a, -r).Line(2 * a).Arc(r, 180).Line(2 * a).Arc(r, 180).Face()
-        b = float(self._reach[2])
+        b = float(self._reach[2]) / unit
         shape = occ.Box(occ.Pnt(-a, -r, -b), occ.Pnt(a, r, b))
         for side in (-1, 1):
             shape += occ.Cylinder(occ.Pnt(side * a, 0, -b), occ.Z, r, 2 * b)

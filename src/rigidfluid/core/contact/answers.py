@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.motions import carriers, reaches
+from rigidfluid.core.mechanics.motions import carriers, reaches, twist_arms
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -79,8 +79,7 @@ def _changes(
     system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
 ) -> FloatArray:
     """Of each velocity's body the change of tightness, or of its way in a step over its radius, (c,) [1]."""
-    reach, farthest = reaches(system)
-    arm = np.where(components < system.dimension, 1.0, farthest[bodies])
+    reach, arm = reaches(system)[0], twist_arms(system)[bodies, components]
     way = np.zeros(len(reach))
     turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
     np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))

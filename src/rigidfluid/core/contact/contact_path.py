@@ -150,7 +150,9 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
     if system.law is None or len(contacts) == 0:
         return select(contacts, np.zeros(len(contacts), dtype=bool))
     speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
-    pull = np.append(np.linalg.norm(body_accelerations(system, state, start, size), axis=1), 0.0)
+    rate, d = body_accelerations(system, state, start, size), system.dimension
+    pull = np.linalg.norm(rate[:, :d], axis=1) + arms(system) * np.linalg.norm(rate[:, d:], axis=1)
+    pull = np.append(pull, 0.0)
     both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 

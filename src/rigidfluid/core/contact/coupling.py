@@ -7,7 +7,7 @@ import numpy as np
 from rigidfluid.core.contact.answers import updated_model
 from rigidfluid.core.contact.contact_path import BodyStep, near_contacts
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.motions import carriers, newly_applied, outer_load, round_motions
+from rigidfluid.core.mechanics.motions import carriers, newly_applied, outer_load, round_motions, twist_arms
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
@@ -114,12 +114,13 @@ def _correction(system: System, model: ReducedModel, step: Step, missed: FloatAr
     return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
 
-def unsteady(state: State, path: BodyStep, size: float) -> bool:
+def unsteady(system: System, state: State, path: BodyStep, size: float) -> bool:
     """Whether contacts give other impulses than in the step before, so that the path of this ``size`` is sure to be
     followed again."""
     if path.coupling is None:
         return False
-    now, before = flat(path.free_impulse), size * flat(state.free_contact)
+    arms = twist_arms(system)
+    now, before = flat(path.free_impulse) / arms, size * flat(state.free_contact) / arms
     return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
 
 
@@ -143,9 +144,10 @@ def settled(system: System, found: Coupling, path: BodyStep, state: State, candi
     by_load = size * (given(model, found.load) - given(used.model, used.load))
     by_answer = gained - given(used.model, impulse)
     missed = model.answer(d0, found.correction - used.correction) / d0
-    scale = max(map(np.linalg.norm, (before, after, gained)))
+    arm = _of(model, twist_arms(system))
+    scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
     enough = SETTLED_SHARED if model.shared else SETTLED
-    return bool(max(map(np.linalg.norm, (by_load, by_answer, missed))) <= enough * scale)
+    return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_answer, missed)) <= enough * scale
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:

@@ -163,6 +163,13 @@ def reaches(system: System) -> tuple[FloatArray, FloatArray]:
     return largest, farthest
 
 
+def twist_arms(system: System) -> FloatArray:
+    """What makes velocities of all components of twists (N, d+k): 1, and of angular ones how far a motion reaches
+    [1 | length]."""
+    farthest, d = reaches(system)[1], system.dimension
+    return np.repeat([np.ones_like(farthest), farthest], [d, 1 if d == 2 else 3], axis=0).T
+
+
 def round_motions(system: System) -> BoolArray:
     """Which motions are those of single balls, which turn in their place (N,)."""
     balls = np.array([body.radius is not None for body in system.bodies])

@@ -15,6 +15,7 @@ from rigidfluid.core.mesh.refine_surface import LONGEST, edges_of_facets
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import check_mesh, share_no_cell
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import significant
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
@@ -92,7 +93,7 @@ def _short_edges(
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     short = np.flatnonzero(length < SHORTEST * sizes.size_body)
     wanted = np.minimum(wanted_size(ends[short].mean(axis=1), bodies, pose, walls, sizes), longest[body[short]])
-    relative = length[short] / wanted
+    relative = significant(length[short] / wanted)
     order = np.argsort(relative, kind="stable")
     chosen = order[relative[order] < SHORTEST]
     edges = edges[short[chosen]]

@@ -18,6 +18,7 @@ from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, orie
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import enclosed_volume
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
@@ -77,14 +78,12 @@ def fill_between(surface: Mesh, sizes: Sizes, timeout: float) -> Mesh:
 
 
 def filled(surface: Mesh, size: float, growth: float, timeout: float) -> tuple[FloatArray, IntArray]:
-    """Vertices (M, d) and cells (C, d+1) between closed facets, made by Netgen in a process of its own.
-
-    Lengths are scaled by a power of two to about one, as Netgen takes vertices nearer than 1e-7 for one.
-    """
-    unit = 2.0 ** np.round(np.log2(np.ptp(surface.points, axis=0).max()))
+    """Vertices (M, d) and cells (C, d+1) between closed facets, made by Netgen in a process of its own."""
+    unit = mesher_unit(np.ptp(surface.points, axis=0))
+    points, longest = in_unit(surface.points, unit), in_unit(size, unit)
     with TemporaryDirectory() as folder:
         given, made = Path(folder, "given.npz"), Path(folder, "made.npz")
-        np.savez(given, points=surface.points / unit, facets=surface.facets, size=size / unit, growth=growth)
+        np.savez(given, points=points, facets=surface.facets, size=longest, growth=growth)
         try:
             # What Netgen prints is dropped, as it may print without end.
             ended = subprocess.run(

@@ -22,6 +22,7 @@ from rigidfluid.core.mesh.surface_mesh import part_of, surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, boundary_facets, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import mesher_unit
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
@@ -127,24 +128,28 @@ def level_set_mesh(
 
 def _improved(mesh: Mesh, metric: FloatArray) -> Mesh:
     """What MMG makes of a mesh with all its facets kept."""
-    return run_mmg(mesh, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric, GRADATION)
+    unit = mesher_unit(np.ptp(mesh.points, axis=0))
+    given = replace(mesh, points=mesh.points / unit)
+    made = run_mmg(given, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit, GRADATION)
+    return replace(made, points=unit * made.points)
 
 
 def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, deviation: float) -> Mesh:
     """The fluid's part of a mesh that is cut along the bodies, facets there marked by the nearest body."""
-    shifted, d = replace(mesh, markers=mesh.markers + CUT + 1), mesh.points.shape[1]
-    mmg = as_mmg(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric)
+    unit, d = mesher_unit(np.ptp(mesh.points, axis=0)), mesh.points.shape[1]
+    shifted = replace(mesh, points=mesh.points / unit, markers=mesh.markers + CUT + 1)
+    mmg = as_mmg(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit)
     mmg.set_multi_materials([{"ref": 0, "split": 1, "ref_minus": SOLID, "ref_plus": FLUID}])
     level = _distances(mesh.points, bodies, pose).min(axis=0)
     try:
         with kept_signals():
-            mmg.remesh_levelset(level[:, None], verbose=-1, hgrad=GRADATION, hausd=deviation)
+            mmg.remesh_levelset(level[:, None] / unit, verbose=-1, hgrad=GRADATION, hausd=deviation / unit)
     except RuntimeError as error:
         raise MeshError("mesh.inserter", f"MMG failed to cut ({error})", "bodies it can cut", REMEDY) from error
     _, sides = mmg.get_triangles_with_refs() if d == 2 else mmg.get_tetrahedra_with_refs()
     made = from_mmg(mmg, d)
     used, cells = np.unique(made.cells[sides == FLUID], return_inverse=True)
-    points, cells = made.points[used], cells.reshape(-1, d + 1)
+    points, cells = unit * made.points[used], cells.reshape(-1, d + 1)
     facets = boundary_facets(cells)
     marks = dict(zip(map(tuple, np.sort(made.facets, axis=1).tolist()), made.markers.tolist(), strict=True))
     markers = np.array([marks.get(tuple(facet), CUT) for facet in used[facets].tolist()]) - CUT - 1

@@ -12,13 +12,18 @@ import numpy as np
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
+from rigidfluid.core.mesh.refine_surface import on_surface
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
 
 ATTEMPTS = 8
+
+ROUNDING = 1e-9
+"""By which an edge on a body may be too long, over the longest allowed."""
 
 
 def generate_mesh(
@@ -61,8 +66,8 @@ def generate_mesh(
     """
     refuse_bodies_outside(pose, domain)
     arguments = bodies, pose, domain, size, _size_to_ask(bodies, pose, domain, size, size_body, growth, finer)
-    netgen = run_netgen(*arguments, growth, finer)
-    mesh = put_back(orient(from_netgen(netgen, domain.dimension)), len(bodies), domain, curved=True)
+    mesh = put_back(orient(run_netgen(*arguments, growth, finer)), len(bodies), domain, curved=True)
+    mesh = _on_bodies(mesh, bodies, pose, domain)
     mesh = with_exact_images(mesh, len(bodies), domain)
     refuse_touching_bodies(mesh, len(bodies))
     check_mesh(mesh, quality=0.0)
@@ -85,10 +90,10 @@ def _size_to_ask(
     asked = np.full(len(bodies), size_body)
     for _ in range(ATTEMPTS):
         surfaces = run_netgen(bodies, pose, domain, size, asked, growth, finer, surfaces_alone=True)
-        excess = longest_edges(surfaces_of(surfaces, domain.dimension), len(bodies)) / size_body
-        if np.all(excess <= 1.0):
+        excess = longest_edges(surfaces, len(bodies)) / size_body
+        if np.all(excess <= 1.0 + ROUNDING):
             return asked
-        asked = np.where(excess > 1.0, 0.95 * asked / np.maximum(excess, 1.0), asked)
+        asked = np.where(excess > 1.0 + ROUNDING, 0.95 * asked / np.maximum(excess, 1.0), asked)
     worst = int(np.argmax(excess))
     found = f"a facet of length {excess[worst] * size_body:.4g}"
     raise MeshError(f"body.{worst}", found, f"at most size_body = {size_body:g}", REMEDY)
@@ -132,15 +137,20 @@ def run_netgen(
     growth: float,
     finer: Sequence[tuple[FloatArray, float]] = (),
     surfaces_alone: bool = False,
-) -> Any:
-    """Netgen's mesh; ``size_body`` (n,) is the target edge length on each body [length]."""
+) -> Mesh:
+    """What Netgen makes, cells and facets or facets alone; ``size_body`` (n,) is the target edge length on each body
+    [length]."""
     from netgen import occ
 
+    unit = mesher_unit(domain.size)
     try:
-        shape = fluid_shape(bodies, pose, domain, size_body)
+        shape = fluid_shape(bodies, pose, domain, size_body, unit)
     except (occ.OCCException, RuntimeError) as error:
         raise _netgen_failed(error) from error
-    return netgen_mesh(shape, domain.dimension, size, growth, finer, surfaces_alone)
+    near = [(in_unit(point, unit), float(in_unit(length, unit))) for point, length in finer]
+    netgen = netgen_mesh(shape, domain.dimension, float(in_unit(size, unit)), growth, near, surfaces_alone)
+    made = (surfaces_of if surfaces_alone else from_netgen)(netgen, domain.dimension)
+    return replace(made, points=unit * made.points)
 
 
 def netgen_mesh(
@@ -152,8 +162,8 @@ def netgen_mesh(
     surfaces_alone: bool = False,
     per_radius: float | None = None,
 ) -> Any:
-    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone; edges ``per_radius`` of curvature are Netgen's
-    own choice if not given."""
+    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone, all lengths in the shape's unit; edges
+    ``per_radius`` of curvature are Netgen's own choice if not given."""
     from netgen import meshing, occ
 
     surfaces = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
@@ -189,18 +199,29 @@ def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
     return replace(mesh, points=put_on_surfaces(mesh.points, shapes, belongs))
 
 
-def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray) -> Any:
-    """The domain minus the bodies as a ``netgen.occ`` shape whose faces (edges in 2D) are named by surface number."""
+def _on_bodies(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
+    """The mesh with the vertices on bodies exactly there."""
+    points = mesh.points.copy()
+    for i in range(len(bodies)):
+        vertices = surface_vertices(mesh, i)
+        points[vertices] = on_surface(i, points[vertices], bodies, pose, domain)
+    return replace(mesh, points=points)
+
+
+def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray, unit: float) -> Any:
+    """The domain minus the bodies as a ``netgen.occ`` shape with lengths over ``unit``, whose faces (edges in 2D) are
+    named by surface number."""
     from netgen import occ
 
-    shape, placed = numbered_shape(domain, len(bodies)), []
+    shape, placed = numbered_shape(domain, len(bodies), unit), []
+    centre, longest = in_unit(pose.position, unit), in_unit(size_body, unit).tolist()
     for i, body in enumerate(bodies):
-        placed.append(turned(body.cad_shape(), pose.orientation[i]).Move(occ.Vec(*in_space(pose.position[i]))))
+        placed.append(turned(body.cad_shape(unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre[i]))))
         for side in sides(placed[i], domain.dimension):
-            side.name, side.maxh = str(i), float(size_body[i])
+            side.name, side.maxh = str(i), longest[i]
     for group in groups_apart(bodies, pose):  # one by one costs the square of their number
         shape = shape - (placed[group[0]] if len(group) == 1 else occ.Compound([placed[i] for i in group]))
-    identify(sides(shape, domain.dimension), len(bodies), domain)
+    identify(sides(shape, domain.dimension), len(bodies), domain, unit)
     return shape
 
 
@@ -220,9 +241,9 @@ def groups_apart(bodies: Sequence[Body], pose: Pose) -> list[list[int]]:
     return groups
 
 
-def numbered_shape(domain: Domain, first: int) -> Any:
-    """The domain's CAD shape, its sides named ``first``, ``first`` + 1, … in the order of the pieces."""
-    shape = domain.cad_shape()
+def numbered_shape(domain: Domain, first: int, unit: float) -> Any:
+    """The domain's CAD shape with lengths over ``unit``, its sides numbered from ``first`` on, as its pieces are."""
+    shape = domain.cad_shape(unit)
     for side in sides(shape, domain.dimension):
         if side.name not in domain.names:
             found, key = f"a side of the CAD shape named {side.name!r}, by the type {domain.name!r}", "domain.type"

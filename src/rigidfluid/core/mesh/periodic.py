@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 from rigidfluid.errors import MeshError
 
@@ -17,15 +18,15 @@ _APART = 1e-6
 """Netgen's images are so near to where they belong, over the distance of the surfaces."""
 
 
-def identify(sides: Any, first: int, domain: Domain) -> None:
-    """Let Netgen mesh periodic ``sides`` of a shape alike; they are named by surface number, the domain's from
-    ``first`` on."""
+def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
+    """Let Netgen mesh periodic ``sides`` of a shape alike, whose lengths are over ``unit``; they are named by surface
+    number, the domain's from ``first`` on."""
     from netgen import occ
 
     by_name = {side.name: side for side in sides}
     for pair in domain.periodic:
         one, two = (by_name[str(first + piece)] for piece in pair)
-        way = _way(domain, pair)
+        way = in_unit(_way(domain, pair), unit)
         moved = occ.gp_Trsf.Translation(occ.Vec(*way, *[0.0] * (3 - len(way))))
         one.Identify(two, f"{pair[0]}", occ.IdentificationType.PERIODIC, moved)
 

@@ -15,6 +15,7 @@ from rigidfluid.core.mesh.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import significant
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 
@@ -139,7 +140,7 @@ def on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: P
 def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:
     """Which edges (E,) to bisect now: those that are the longest of the given ones in every cell they belong to."""
     rank = np.empty(len(edges), dtype=np.int64)
-    rank[np.argsort(length, kind="stable")] = np.arange(len(edges))
+    rank[np.argsort(significant(length), kind="stable")] = np.arange(len(edges))
     highest = np.full(len(cells), -1)
     found = [edge_numbers(cells, pair, edges, vertices) for pair in combinations(range(cells.shape[1]), 2)]
     for number in found:

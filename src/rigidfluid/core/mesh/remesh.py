@@ -21,6 +21,7 @@ from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import mesher_unit, significant
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
@@ -193,19 +194,21 @@ def remeshed_once(
     mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
 ) -> Mesh:
     """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
-    given = replace(mesh, points=rounded_points(mesh))
+    unit = mesher_unit(np.ptp(mesh.points, axis=0))
+    given = rounded(replace(mesh, points=mesh.points / unit))
     kept = Kept(on_kept_surfaces(mesh, bodies, domain), kept_cells(mesh, bodies, size_at, layers))
-    made = run_mmg(given, kept, bodies, significant(size_at(given.points)), gradation)
-    outer = ~on_kept_surfaces(made, bodies, domain)
-    restored = with_kept_facets(made, outer, mesh, kept, given.points)
+    placed = unit * given.points
+    made = run_mmg(given, kept, bodies, significant(size_at(placed) / unit), gradation)
+    outer, made = ~on_kept_surfaces(made, bodies, domain), replace(made, points=unit * made.points)
+    restored = with_kept_facets(made, outer, mesh, kept, placed)
     new = orient(put_back(restored, bodies, domain, curved=False))
     check_mesh(new, quality=0.0)
     check_volume(new, float(cell_volumes(mesh.points, mesh.cells).sum()), "before re-meshing")
     return new
 
 
-def rounded_points(mesh: Mesh) -> FloatArray:
-    """Points rounded to a millionth of the shortest edge, (N, d).
+def rounded(mesh: Mesh) -> Mesh:
+    """The mesh with its points rounded to a millionth of the shortest edge.
 
     MMG amplifies round-off to another mesh: two runs that agree to round-off shall get the same one.
     """
@@ -213,13 +216,7 @@ def rounded_points(mesh: Mesh) -> FloatArray:
     edges = np.diff(mesh.points[mesh.cells[:, pairs]], axis=2)
     shortest = float(np.linalg.norm(edges, axis=-1).min())
     unit = 2.0 ** (np.floor(np.log2(shortest)) - 20)
-    return np.asarray(np.round(mesh.points / unit) * unit)
-
-
-def significant(values: FloatArray) -> FloatArray:
-    """Positive values rounded to 24 binary digits."""
-    fraction, exponent = np.frexp(values)
-    return np.asarray(np.ldexp(np.round(fraction * 2.0**24), exponent - 24))
+    return replace(mesh, points=np.round(mesh.points / unit) * unit)
 
 
 def lowest_quality(mesh: Mesh) -> float:

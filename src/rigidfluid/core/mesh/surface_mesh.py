@@ -8,7 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import to_world
-from rigidfluid.core.mesh.meshing import ATTEMPTS, longest_edges, netgen_mesh, put_back, run_netgen, sides, surfaces_of
+from rigidfluid.core.mesh.meshing import (
+    ATTEMPTS,
+    ROUNDING,
+    longest_edges,
+    netgen_mesh,
+    put_back,
+    run_netgen,
+    sides,
+    surfaces_of,
+)
 from rigidfluid.core.mesh.refine_surface import (
     LONGEST,
     bisect,
@@ -21,6 +30,7 @@ from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
@@ -88,16 +98,16 @@ def _without_cells(points: FloatArray, facets: IntArray, markers: IntArray) -> M
 
 def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
     """Facets of a body that has a CAD shape, in its own frame, no edge longer than size_body."""
-    asked = sizes.size_body
+    asked, unit = sizes.size_body, mesher_unit(2.0 * np.array([body.bounding_radius]))
     for _ in range(ATTEMPTS):
-        shape = body.cad_shape()
+        shape = body.cad_shape(unit)
         for side in sides(shape, body.dimension):
             side.name = "0"
-        netgen = netgen_mesh(shape, body.dimension, asked, sizes.growth, surfaces_alone=True)
+        netgen = netgen_mesh(shape, body.dimension, float(in_unit(asked, unit)), sizes.growth, surfaces_alone=True)
         found = surfaces_of(netgen, body.dimension)
-        excess = float(longest_edges(found, 1)[0]) / sizes.size_body
-        if excess <= 1.0:
-            surface = _as_mesh(Facets(found.points, found.facets, found.markers))
+        excess = float(longest_edges(found, 1)[0]) * unit / sizes.size_body
+        if excess <= 1.0 + ROUNDING:
+            surface = _as_mesh(Facets(unit * found.points, found.facets, found.markers))
             return _into_fluid(replace(surface, points=body.closest_point(surface.points)), [body])
         asked *= 0.95 / excess
     edge = f"a facet of length {excess * sizes.size_body:.4g}"
@@ -107,8 +117,7 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
 def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
     """Facets of a domain that has a CAD shape; markers are the numbers of its pieces."""
     nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
-    netgen = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
-    found = surfaces_of(netgen, domain.dimension)
+    found = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
     surface = put_back(_as_mesh(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
     return _into_fluid(surface, [piece.shape for piece in domain.pieces])
 

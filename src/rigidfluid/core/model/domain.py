@@ -69,9 +69,9 @@ class Domain(SpatialPart):
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are inside, (N,); on the boundary either may be said."""
 
-    def cad_shape(self) -> Any:
-        """The domain as a ``netgen.occ`` face (2D) or solid (3D) whose edges (2D) or faces (3D) have the names of the
-        pieces that they lie on; None of one made of `facets`."""
+    def cad_shape(self, unit: float) -> Any:
+        """The domain as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, whose edges (2D) or
+        faces (3D) have the names of the pieces that they lie on; None of one made of `facets`."""
         return None
 
     @property

@@ -108,8 +108,9 @@ class Body(Surface, SpatialPart):
     def sample_surface(self, count: int) -> FloatArray:
         """About ``count`` points spread over the surface, (N, d) [length]."""
 
-    def cad_shape(self) -> Any:
-        """The shape as a ``netgen.occ`` face (2D) or solid (3D), for the mesh generator; None with `facets`."""
+    def cad_shape(self, unit: float) -> Any:
+        """The shape as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, for the mesh generator;
+        None with `facets`."""
         return None
 
     @property

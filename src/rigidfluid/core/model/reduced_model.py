@@ -117,17 +117,18 @@ def reduced_model(
 
 
 def _root(matrix: FloatArray, shared: bool) -> FloatArray:
-    """L with L Lᵀ the matrix."""
-    value, vector = np.linalg.eigh(matrix)
-    floor = _LEAST_SHARE * float(matrix.diagonal().min()) if shared else _LEAST * value.max()
-    return np.asarray(vector * np.sqrt(np.maximum(value, floor)))
+    """L with L Lᵀ the matrix, of velocities and angular velocities: each counts in units of its own answer."""
+    unit = np.sqrt(matrix.diagonal())
+    value, vector = np.linalg.eigh(matrix / np.outer(unit, unit))
+    floor = _LEAST_SHARE if shared else _LEAST * value.max()
+    return np.asarray(unit[:, None] * vector * np.sqrt(np.maximum(value, floor)))
 
 
 _LEAST = 1e-12
 """Less of the inviscid answer than this is the rounding of none."""
 
 _LEAST_SHARE = 0.1
-"""Of the least answer of a single velocity, what a mode of many has at least where questions were shared."""
+"""Of the answers of single velocities, what a mode of many has at least where questions were shared."""
 
 
 def load_within(

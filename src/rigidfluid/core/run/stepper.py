@@ -130,7 +130,7 @@ class Stepper:
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
         """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         for number in range(MOST_ATTEMPTS):
-            provisional = number == 0 and unsteady(state, path, self._clock.size(level))
+            provisional = number == 0 and unsteady(self.system, state, path, self._clock.size(level))
             tools = self.system, self._clock, self._mesh_updater, self._watch
             candidate, step = attempt(*tools, state, level, path, provisional)
             if level < self._clock.levels and unforeseen(self.system, state, candidate):

@@ -84,7 +84,7 @@ def check_periodic(scene: Scene, backend: type[FluidBackend], domain: Domain) ->
         raise SceneError(at, found, "a backend that takes periodic surfaces", "Use backend = 'scikit-fem'.")
     if scene.domain.window is not None:
         raise SceneError(at, "'periodic' with a window", "one of both", "Remove [domain.window].")
-    if domain.cad_shape() is None:
+    if domain.facets is not None:
         found = f"'periodic' in a domain of type {domain.name!r}, which is made of facets"
         raise SceneError(at, found, "a domain with a CAD shape, as 'box'", "Choose another type.")
     for piece in domain.pieces:

@@ -86,7 +86,7 @@ def section(piece: Piece) -> Rectangle | Disk | None:
     centre, size = 0.5 * (lower + upper), upper - lower
     if len(size) == 2:
         return _segment(piece.area, plane, centre, size)
-    if plane.axis is not None and np.isclose(np.prod(np.delete(size, plane.axis)), piece.area, rtol=_SAME):
+    if plane.axis is not None and np.isclose(np.prod(np.delete(size, plane.axis)), piece.area, rtol=_SAME, atol=0.0):
         return Rectangle(centre, np.delete(size, plane.axis), np.delete(np.eye(3), plane.axis, axis=0))
     radius = float(np.sqrt(piece.area / np.pi))
     round_size = 2.0 * radius * np.sqrt(1.0 - plane.unit_normal**2)
@@ -101,7 +101,7 @@ def _composite() -> tuple[FloatArray, FloatArray]:
 
 
 def _segment(length: float, plane: Plane, centre: FloatArray, size: FloatArray) -> Rectangle | None:
-    if not np.isclose(np.linalg.norm(size), length, rtol=_SAME):
+    if not np.isclose(np.linalg.norm(size), length, rtol=_SAME, atol=0.0):
         return None
     along = np.array([-plane.unit_normal[1], plane.unit_normal[0]])
     first = along[np.argmax(np.abs(along) > _SAME)]
