@@ -201,8 +201,8 @@ and Van den Akker, Phys. Fluids 14 (2002) 4012, doi:10.1063/1.1512918, of Reynol
 {judged} {other}
 
 Agreement is claimed for this case alone. Case E1, of Reynolds number 1.5 (density .97, viscosity 3.73), is not: the
-same scene with that oil and steps of .04 reaches 3.462 cm/s with cells of .4 and 3.471 with cells of .3, 3.8 and 3.6 %
-below the measured 3.599. The cause is not known.
+same scene with that oil and steps of .04 reaches 3.462 cm/s with cells of .4 and 3.471 with cells of .3, 3.8 and
+3.6 % below the measured 3.599. The cause is not known.
 
 ## The approach to the floor
 

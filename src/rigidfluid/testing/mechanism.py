@@ -17,6 +17,7 @@ from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.scene.validation import table_of
 from rigidfluid.registry import BODY, Registry
 
 _NUDGE = 1e-6
@@ -55,7 +56,7 @@ class MechanismContract:
         for component in mechanism.components:
             shape = component.shape
             part = Registry.load().get(BODY, shape.name)
-            again = part(part.Options.model_validate(shape.options.model_dump()), mechanism.dimension)
+            again = part(part.Options.model_validate(table_of(shape.options)), mechanism.dimension)
             assert again.volume == pytest.approx(shape.volume)
 
     def test_placements_have_a_row_for_each_component(self, mechanism: Mechanism) -> None:
