@@ -68,12 +68,12 @@ def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> 
     gap = least_gap(list(design_contacts(system)), sizes)
     settled = settled_pose(system, parts.exact_detector, gap)
     meshes = _later_meshes(system, settled, gap, sizes, time.end)
-    most = start
+    falls = bool(np.any(settled.position != system.pose.position))
+    most = max(start, _count(system, settled, sizes)) if falls else start
     if meshes:
-        most = Count(*(_LATER_OVER_FIRST * number for number in max(start, _count(system, settled, sizes))))
+        most = Count(*(_LATER_OVER_FIRST * number for number in most))
     most_cost = system.backend.solver_cost(*most)
     assert most_cost is not None
-    falls = bool(np.any(settled.position != system.pose.position))
     return RunSize(start, most, gap if falls else None, start_cost, most_cost, 1 + meshes)
 
 
@@ -103,11 +103,14 @@ def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:
     """How many meshes follow the first: one for each two diameters of a body's way, of the body with the most, and one
-    for each time that a gap halves."""
+    for each time that a gap halves. A free body that is not settled goes on at its expected speed, through the domain
+    at the most."""
     diameter = 2.0 * np.array([equal_volume_radius(body) for body in system.bodies])
     fallen = np.linalg.norm(settled.position - system.pose.position, axis=1)
     speed = np.linalg.norm(system.twist.velocity, axis=1)
-    way = np.where(fallen > 0.0, fallen, speed * end)
+    if system.loads.travel_speed is not None:
+        speed = np.where(system.controlled, speed, system.loads.travel_speed)
+    way = np.where(fallen > 0.0, fallen, np.minimum(speed * end, float(np.max(system.domain.size))))
     lands = bool(np.any(fallen > 0.0))
     halvings = log2(max(2.0 * sizes.cells_per_gap * sizes.size_body / gap, 1.0)) if lands else 0.0
     return int(np.ceil(float(np.max(way / diameter)) / _DIAMETERS_OF_A_MESH + halvings))
