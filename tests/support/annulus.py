@@ -62,8 +62,8 @@ class Annulus(Domain):
         distance = np.linalg.norm(points, axis=1)
         return np.asarray((distance > self.options.inner) & (distance < self.options.outer))
 
-    def cad_shape(self) -> Any:
-        return self._round(self.options.outer, "rim") - self._round(self.options.inner, "hub")
+    def cad_shape(self, unit: float) -> Any:
+        return self._round(self.options.outer / unit, "rim") - self._round(self.options.inner / unit, "hub")
 
     def _round(self, radius: float, name: str) -> Any:
         from netgen import occ
