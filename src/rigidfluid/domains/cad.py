@@ -141,7 +141,7 @@ class Cad(Domain):
         if all(isinstance(self._forms[i], Flat) for i in numbers):
             plane = plane_around(facets, self._facets.points)
             if plane is not None:
-                centre = sum(self._area(i) * self._centre(i) for i in numbers) / area
+                centre = np.sum([self._area(i) * self._centre(i) for i in numbers], axis=0) / area
                 return Piece(name, _bounded(plane, facets, area, centre, self._exact.slack), area)
         return Piece(name, FormedSurface(facets, self._forms, self._whole), area)
 

@@ -243,8 +243,8 @@ def groups_apart(bodies: Sequence[Body], pose: Pose) -> list[list[int]]:
 
 
 def numbered_shape(domain: Domain, first: int, unit: float) -> Any:
-    """The domain's CAD shape with lengths over ``unit``, its sides named ``first``, ``first`` + 1, … in the order of the
-    pieces."""
+    """The domain's CAD shape with lengths over ``unit``, its sides named ``first``, ``first`` + 1, … in the order of
+    the pieces."""
     shape = domain.cad_shape(unit)
     for side in sides(shape, domain.dimension):
         if side.name not in domain.names:
