@@ -73,8 +73,7 @@ def _times(factor: float, value: Any) -> Any:
     """Numbers, and lists of them, multiplied; words stay."""
     if isinstance(value, Iterable) and not isinstance(value, str):
         return [_times(factor, one) for one in value]
-    kept = isinstance(value, str) or (isinstance(value, bool | int) and factor == 1.0)
-    return value if kept else factor * value
+    return value if isinstance(value, str) else value if factor == 1.0 else factor * value
 
 
 def _target(field: Table) -> str:

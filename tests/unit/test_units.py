@@ -83,8 +83,8 @@ SCENES = {
         fluid={"gravity": [0.0, 0.0, -100.0]},
         domain=CUBE,
         body=BALLS,
-        mesh={"size": 0.5, "size_body": 0.2},
-        time={"end": 0.003},
+        mesh={"size": 0.5, "size_body": 0.2, "remesh_every": 0.0002},
+        time={"end": 0.0003, "step": 0.0003},
     ),
 }
 
@@ -132,7 +132,7 @@ def around_a_ball(domain: Any, scale: float, inserter: Inserter) -> Mesh:
     d = domain.dimension
     centre = scale * np.array({2: [2.7, 1.1], 3: [0.1, 0.0, 2.0]}[d])
     body, pose = Sphere(SphereOptions(radius=0.3 * scale), d), upright(centre)
-    sizes = Sizes(0.9 * scale, 0.4 * scale)
+    sizes = Sizes(1.0 * scale, 0.5 * scale)
     return initial_mesh([body], pose, domain, surfaces_of(domain, 1), sizes, inserter)
 
 

@@ -94,7 +94,7 @@ class Stenosis(Domain):
 
         shape = self._box.cad_shape(unit)
         for name, arc in self._bumps.items():
-            disk = occ.WorkPlane().Circle(*in_unit(np.array([*arc.centre, arc.radius]), unit).tolist()).Face()
+            disk = occ.WorkPlane().Circle(*in_unit(np.append(arc.centre, arc.radius), unit).tolist()).Face()
             for side in disk.edges:
                 side.name = f"{name}_bump"
             shape = shape - disk

@@ -7,9 +7,7 @@ import numpy as np
 from rigidfluid.core.model.types import FloatArray
 
 LONGEST = 8.0
-"""Longest side of what they are given.
-
-From 1 to 16 Netgen makes the same plane meshes; of a side of 1e6 it never ends."""
+"""Longest side of what they are given; from 4 to 16 Netgen makes the same meshes in the plane."""
 
 FINENESS = 2.0**36
 """Steps in a unit to which lengths are rounded: what differs by the rounding of another system of units is the same."""
