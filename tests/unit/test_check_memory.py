@@ -10,7 +10,11 @@ from rigidfluid.backends.dry import Dry
 from rigidfluid.checks import Finding, check, run_time
 from rigidfluid.checks import memory as asked
 from rigidfluid.checks.machine_speed import machine_speed
+from rigidfluid.checks.run_size import RunSize
+from rigidfluid.core.mesh.cell_count import Count
+from rigidfluid.core.model.types import SolverCost
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import load_scene
 
 FINE_SPHERE = ["mesh.size=1.0", "mesh.size_body=0.1", "mesh.growth=0.2"]
@@ -91,6 +95,18 @@ def test_the_time_is_that_of_all_steps_and_meshes_on_this_machine(monkeypatch: p
     for share in ("least", "most"):
         assert 3.0 < slow.found[share] / fast.found[share] < 4.0
     assert slow.found["most"] / slow.found["least"] < 10.0
+
+
+def test_the_parts_of_a_run_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_time, "machine_speed", lambda: 1.0)
+    count, cost = Count(1000.0, 100.0), SolverCost("lu", 4000.0, 1e9, seconds=0.02, step_seconds=0.01)
+    size = RunSize(count, count, None, cost, cost, meshes=3)
+    smooth = 100 * 0.01 + 3 * (1000 * 3e-5 + 0.02)
+    for name, contact in (("falling_disk", 0.005), ("ellipse_xia", 0.1), ("dfg_cylinder", 0.0)):
+        scene = load_scene(SCENES / f"{name}.toml", ["time.end=1.0", "time.step=0.01"])
+        (finding,) = run_time.in_time(size, build_system(scene, to_run=False), scene.time)
+        assert finding.found["least"] == pytest.approx(0.6 * smooth)
+        assert finding.found["most"] == pytest.approx(4.5 * smooth + 100 * contact)
 
 
 @pytest.mark.parametrize(("name", "least"), [("dfg_cylinder", 1), ("hundred_disks", 10), ("vortex_induced", 2)])

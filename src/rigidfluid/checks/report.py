@@ -121,7 +121,7 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     if mesh is not None:
         size = run_size(parts, system, mesh, scene.time)
         if size is not None:
-            yield from chain(in_memory(size), in_time(size, system.dimension, scene.time))
+            yield from chain(in_memory(size), in_time(size, system, scene.time))
         yield from chain(in_the_layer(system, mesh), counted_once(system, mesh))
     for met in design_contacts(system):
         yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))

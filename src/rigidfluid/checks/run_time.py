@@ -8,6 +8,7 @@ from math import ceil
 from rigidfluid.checks.finding import Figures, Finding
 from rigidfluid.checks.machine_speed import machine_speed
 from rigidfluid.checks.run_size import RunSize
+from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import TimeTable
 
 QUESTION = "time"
@@ -19,18 +20,21 @@ in contact, where steps are solved again, halved and divided."""
 _MESH_SECONDS = {2: 3e-5, 3: 4e-4}
 """CPU seconds for each cell of a new mesh, the fluid carried over."""
 
+_CONTACT_SECONDS = {True: 0.005, False: 0.1}
+"""CPU seconds of a step through contacts of balls alone, and of other shapes, whose gaps take long to find."""
+
 _UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 
 
-def in_time(size: RunSize, dimension: int, time: TimeTable) -> Iterator[Finding]:
+def in_time(size: RunSize, system: System, time: TimeTable) -> Iterator[Finding]:
     """Say between which times of one core of this machine a run is expected to take.
 
     Parameters
     ----------
     size : RunSize
         Of the meshes.
-    dimension : int
-        Of space.
+    system : System
+        Its dimension, bodies and law.
     time : TimeTable
         Steps.
 
@@ -41,13 +45,15 @@ def in_time(size: RunSize, dimension: int, time: TimeTable) -> Iterator[Finding]
     """
     steps = ceil(time.end / time.step * (1.0 - 1e-12))
     speed = machine_speed()
+    of_cell, contact = _MESH_SECONDS[system.dimension], 0.0
+    if system.law is not None:
+        contact = _CONTACT_SECONDS[all(body.radius is not None for body in system.bodies)]
     parts = zip(_SPREAD, (size.start, size.most), (size.start_cost, size.most_cost), strict=True)
     least, most = (
-        share
-        * (steps * cost.step_seconds + size.meshes * (_MESH_SECONDS[dimension] * count.cells + cost.seconds))
-        / speed
+        share * (steps * cost.step_seconds + size.meshes * (of_cell * count.cells + cost.seconds)) / speed
         for share, count, cost in parts
     )
+    most += steps * contact / speed
     found: Figures = {"steps": steps, "meshes": size.meshes, "least": least, "most": most, "speed": speed}
     text = f"{steps} steps and some {size.meshes} meshes take {_in_words(least, most)} of one core, as fast as now"
     yield Finding("note", QUESTION, (), text, found=found)
