@@ -93,8 +93,7 @@ class _Scaled:
         self.force = _DIVERGENCE * (m.inertia * length**d + m.viscosity * length ** (d - 2))
         self.pressure = self.force / length ** (d - 1)
         self.twists = np.where(np.arange(m.mass_matrix.shape[1]) < d, 1.0, 1.0 / length)
-        self.matrix = replace(
-            m,
+        self.matrix = CoupledMatrix(
             points=m.points / length,
             node_points=m.node_points / length,
             inertia=m.inertia * length**d / self.force,
@@ -103,7 +102,7 @@ class _Scaled:
             flow=m.flow / self.pressure,
             position=m.position / length,
             mass_matrix=m.mass_matrix * self.twists[:, None] * self.twists / self.force,
-            at_once=None,
+            controlled=m.controlled,
         )
 
     def system(self, s: CoupledSystem) -> CoupledSystem:
