@@ -84,7 +84,7 @@ SCENES = {
         domain=CUBE,
         body=BALLS,
         mesh={"size": 0.5, "size_body": 0.2, "remesh_every": 0.0002},
-        time={"end": 0.0003, "step": 0.0003},
+        time={"end": 0.0003, "step": 0.0001},
     ),
 }
 

@@ -83,7 +83,7 @@ class Dimensionless:
         """The latest of a step and the latest of its masses are kept: who solves knows a matrix by its identity."""
         viscous = matrix.viscosity != 0.0
         if viscous not in self._latest or self._latest[viscous][0] is not matrix:
-            self._latest[viscous] = matrix, _Scaled(matrix, self._length)
+            self._latest[viscous] = matrix, _Scaled(matrix, self.numbering, self._length)
         return self._latest[viscous][1]
 
 
@@ -91,14 +91,14 @@ class _Scaled:
     """A ``matrix`` without dimensions; ``force`` Z [force·time/length], ``pressure`` Z/hᵈ⁻¹, and ``twists`` (d+k,), 1
     and 1/h."""
 
-    def __init__(self, m: CoupledMatrix, length: float) -> None:
+    def __init__(self, m: CoupledMatrix, numbering: Numbering, length: float) -> None:
         d = m.points.shape[1]
         self.force = _DIVERGENCE * (m.inertia * length**d + m.viscosity * length ** (d - 2))
         self.pressure = self.force / length ** (d - 1)
         self.twists = np.where(np.arange(m.mass_matrix.shape[1]) < d, 1.0, 1.0 / length)
         self.matrix = CoupledMatrix(
             points=m.points / length,
-            node_points=m.node_points / length,
+            node_points=numbering.node_points(m.points / length),  # what is recalled makes them so, to the last bit
             inertia=m.inertia * length**d / self.force,
             viscosity=m.viscosity * length ** (d - 2) / self.force,
             advection=m.advection / self.pressure,
