@@ -130,9 +130,9 @@ doi:10.1063/1.2010527), by the speed of the approach before any film; infinite c
 With e = 1 the law takes nothing: what is lost is what the flow takes, which is more the nearer the disk comes. With
 `restitution_stokes` the law takes what that leaves of the formula's loss: film and law together are the formula.
 Above St = {fast:g} they are off it by {off} at most, {judged} {highest:g}, and {ranges} apart with one range and the
-other, {meshes} with one mesh and the other. What is missing is drag on the way from half a radius to the wall and back, which
-is no film. A law cannot give back what the film has taken: where e = 1 leaves less than the formula asks for, that is
-all there is. Of impacts below St = 20 less comes back than by the formula, and below 10 nothing does.
+other, {meshes} with one mesh and the other. Part of what is missing is drag on the way from half a radius to the wall
+and back, which is no film. A law cannot give back what the film has taken: where e = 1 leaves less than the formula
+asks for, that is all there is.
 
 ## Halvings of the step
 
