@@ -33,6 +33,9 @@ KEPT = 1e-5
 """What a step may create or lose where bodies turn too far in it for one force in each contact, over the energy that it
 has."""
 
+JUST_IN = 0.999
+"""A gap over the range."""
+
 _SCALES = 0.5, 2.0
 _STILL = 1e-6
 _ROUNDING = 1e-14
@@ -121,7 +124,7 @@ def implicit_contact_step(
             driven = 0.0
             if wall_velocity is not None:
                 driven = size * float(np.sum(push * wall_velocity(start.body_b, centre(iterate.middle))))
-            stored = _stored(law, movement, start)
+            stored = _most_stored(law, movement, start, iterate)
             _refuse_to_create(law, start, iterate, before.scale * spring, stored)
             return _crossing(iterate, used, size, driven, stored)
         gap = iterate.gap
@@ -229,6 +232,13 @@ def _mean(twists: Sequence[Twist]) -> Twist:
     )
 
 
+def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate: _Iterate[M]) -> float:
+    """At the start or at the end, or by a contact that is just in range: less is not worth another step [energy]."""
+    end = replace(start, gap=iterate.gap)
+    touching = [law.energy(replace(start, gap=np.full(len(start), JUST_IN * begin))).max() for begin in law.ranges]
+    return max(_stored(law, movement, start), _stored(law, iterate.movement, end), *touching)
+
+
 def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
     """Kinetic energy of free bodies and what the contacts store [energy]."""
     twist, energy = movement.twist, float(law.energy(contacts).sum())
@@ -246,7 +256,7 @@ def _refuse_to_create(law: ForceLaw, start: Contacts, iterate: _Iterate[M], forc
     end = replace(start, gap=iterate.gap)
     created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
     if abs(created) > KEPT * stored:
-        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far,")
+        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
 
 
 def _crossing(
