@@ -12,6 +12,7 @@ from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.substep import relative_motion, relative_velocity
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
+from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -181,15 +182,15 @@ def _evaluate(
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
-    kicked = trial.twist
+    kicked = _of_motions(trial)
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
-    drifted = trial.twist
+    drifted = _of_motions(trial)
     trial.kick(wrench, 0.5 * size, place)
-    twist = _mean((movement.twist, kicked, drifted, trial.twist))
-    velocity = relative_velocity(middle, pose, twist)
+    twist = _mean((_of_motions(movement), kicked, drifted, _of_motions(trial)))
+    velocity = relative_velocity(middle, pose, component_twist(kinematics, twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
     motion = replace(motion, velocity=velocity)
@@ -225,6 +226,11 @@ def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: Fl
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
+def _of_motions(movement: BodyDynamics) -> Twist:
+    """Twists of what carries the bodies, or of the bodies where each moves by itself."""
+    return movement.twist if movement.free is None else movement.free.twist
+
+
 def _mean(twists: Sequence[Twist]) -> Twist:
     return Twist(
         np.mean([twist.velocity for twist in twists], axis=0),
@@ -235,7 +241,8 @@ def _mean(twists: Sequence[Twist]) -> Twist:
 def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate: _Iterate[M]) -> float:
     """At the start or at the end, or by a contact that is just in range: less is not worth another step [energy]."""
     end = replace(start, gap=iterate.gap)
-    touching = [law.energy(replace(start, gap=np.full(len(start), JUST_IN * begin))).max() for begin in law.ranges]
+    just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
+    touching = [float(law.energy(contacts).max()) for contacts in just_in]
     return max(_stored(law, movement, start), _stored(law, iterate.movement, end), *touching)
 
 
