@@ -12,6 +12,7 @@ from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.substep import relative_motion, relative_velocity
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
+from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -32,6 +33,9 @@ TOLERANCE = 1e-10
 KEPT = 1e-5
 """What a step may create or lose where bodies turn too far in it for one force in each contact, over the energy that it
 has."""
+
+JUST_IN = 0.999
+"""A gap over the range."""
 
 _SCALES = 0.5, 2.0
 _STILL = 1e-6
@@ -121,7 +125,7 @@ def implicit_contact_step(
             driven = 0.0
             if wall_velocity is not None:
                 driven = size * float(np.sum(push * wall_velocity(start.body_b, centre(iterate.middle))))
-            stored = _stored(law, movement, start)
+            stored = _most_stored(law, movement, start, iterate)
             _refuse_to_create(law, start, iterate, before.scale * spring, stored)
             return _crossing(iterate, used, size, driven, stored)
         gap = iterate.gap
@@ -178,15 +182,15 @@ def _evaluate(
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
-    kicked = trial.twist
+    kicked = _of_motions(trial)
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
-    drifted = trial.twist
+    drifted = _of_motions(trial)
     trial.kick(wrench, 0.5 * size, place)
-    twist = _mean((movement.twist, kicked, drifted, trial.twist))
-    velocity = relative_velocity(middle, pose, twist)
+    twist = _mean((_of_motions(movement), kicked, drifted, _of_motions(trial)))
+    velocity = relative_velocity(middle, pose, component_twist(kinematics, twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
     motion = replace(motion, velocity=velocity)
@@ -222,11 +226,24 @@ def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: Fl
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
+def _of_motions(movement: BodyDynamics) -> Twist:
+    """Twists of what carries the bodies, or of the bodies where each moves by itself."""
+    return movement.twist if movement.free is None else movement.free.twist
+
+
 def _mean(twists: Sequence[Twist]) -> Twist:
     return Twist(
         np.mean([twist.velocity for twist in twists], axis=0),
         np.mean([twist.angular_velocity for twist in twists], axis=0),
     )
+
+
+def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate: _Iterate[M]) -> float:
+    """At the start or at the end, or by a contact that is just in range: less is not worth another step [energy]."""
+    end = replace(start, gap=iterate.gap)
+    just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
+    touching = [float(law.energy(contacts).max()) for contacts in just_in]
+    return max(_stored(law, movement, start), _stored(law, iterate.movement, end), *touching)
 
 
 def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
@@ -246,7 +263,7 @@ def _refuse_to_create(law: ForceLaw, start: Contacts, iterate: _Iterate[M], forc
     end = replace(start, gap=iterate.gap)
     created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
     if abs(created) > KEPT * stored:
-        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far,")
+        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
 
 
 def _crossing(
