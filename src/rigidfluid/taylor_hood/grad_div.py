@@ -12,17 +12,17 @@ from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
 
-_CONVECTION, _VISCOSITY = 1.0, 4.0
+_CONVECTION, _VISCOSITY = 2.0, 4.0
 """Weights of ρ|u*|h and of μ. The extrapolated ½(∇·u*)u feeds divergence of wave number π/h back at up to 3/2 times
-ρ|u*|π/h; the implicit terms take (γ + 2μ)(π/h)², which is more where γ > ½ ρ|u*|h - 2μ. Twice that is taken, with which
-the lift of DFG 2D-2 is nearest to its reference."""
+ρ|u*|π/h; the implicit terms take (γ + 2μ)(π/h)², which is more where γ > ½ ρ|u*|h - 2μ. More is taken, since |u*| is the
+least of a cell: so cells at surfaces at rest, which hold the divergence down themselves, keep their drag."""
 
 
 def grad_div_coefficient(numbering: Numbering, matrix: CoupledMatrix) -> FloatArray:
     r"""Grad-div coefficient of each cell, (M,) [dynamic viscosity].
 
-    γ = max(0, ρ|u*|h - 4 μ), |u*| the root mean square over a cell's nodes, h = (d! volume)^(1/d). It vanishes where
-    the cell's Reynolds number ρ|u*|h/μ is below 4: there viscosity takes enough.
+    γ = max(0, 2 ρ|u*|h - 4 μ), |u*| the least of a cell's nodes, h = (d! volume)^(1/d). It vanishes where the cell's
+    Reynolds number ρ|u*|h/μ is below 2: there viscosity takes enough.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def grad_div_coefficient(numbering: Numbering, matrix: CoupledMatrix) -> FloatAr
     """
     cells, d = numbering.cells, numbering.dimension
     size = (factorial(d) * np.abs(cell_volumes(matrix.points[: numbering.vertices], cells))) ** (1.0 / d)
-    flow = np.sqrt(np.mean(np.sum(matrix.flow[numbering.cell_nodes] ** 2, axis=2), axis=1))
+    flow = np.linalg.norm(matrix.flow, axis=1)[numbering.cell_nodes].min(axis=1)
     return np.asarray(np.maximum(_CONVECTION * flow * size - _VISCOSITY * matrix.viscosity, 0.0))
 
 
