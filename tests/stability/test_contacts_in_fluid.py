@@ -79,7 +79,7 @@ def dropped(step: float, stepping: Stepping) -> History:
 def test_a_dropped_disk_bounces_as_high_as_at_fine_steps(step, off, lost, stepping):
     history = dropped(step, stepping)
     assert created_and_lost(history)[1] <= lost
-    assert first_rebound(history) == pytest.approx(0.0508, rel=off)
+    assert first_rebound(history) == pytest.approx(0.0505, rel=off)
 
 
 @pytest.mark.parametrize("stepping", BOTH)
@@ -100,10 +100,11 @@ def test_a_bounce(step, stepping, lost):
 
 
 @pytest.mark.parametrize("density", [3.0, 0.2])
-@pytest.mark.parametrize("step", [1.0, 0.25])
-def test_a_cradle_gains_nothing_at_fine_steps(step, density):
-    """The flow, which the mesh does not resolve, may not add energy, however long it goes on; a new mesh adds .06 %."""
-    refuse_imbalance(rigidfluid.run(scenes.cradle(step * MILLISECOND, density=density)), created=8e-4)
+@pytest.mark.parametrize(("step", "created"), [(1.0, 1e-4), (0.25, 1.2e-3), (0.125, 6e-4)])
+def test_a_cradle_gains_nothing_at_fine_steps(step, created, density):
+    """The flow, which the mesh does not resolve, may not add energy, however long it goes on. Impacts that steps just
+    fail to resolve add up to .11 %, and half of it at half the step."""
+    refuse_imbalance(rigidfluid.run(scenes.cradle(step * MILLISECOND, density=density)), created=created)
 
 
 @pytest.mark.parametrize("stepping", BOTH)
@@ -111,23 +112,23 @@ def test_a_cradle_gains_nothing_at_fine_steps(step, density):
 def test_a_cradle_hands_its_velocity_on(step, created, lost, off, stepping):
     history = rigidfluid.run(scenes.cradle(step * MILLISECOND, stepping))
     refuse_imbalance(history, created, lost)
-    assert track(history, "vx")[-1, 2] == pytest.approx(7.266, abs=off)
+    assert track(history, "vx")[-1, 2] == pytest.approx(7.169, abs=off)
 
 
 @pytest.mark.parametrize("stepping", BOTH)
 @pytest.mark.parametrize(("step", "lost"), [(4.0, 0.03), (1.0, 0.01)])
 def test_disks_that_meet_head_on_part_as_fast_as_at_fine_steps(step, lost, stepping):
-    """At .5 ms with -6.32 and 6.33. Fluid that seems to flow through the disks' surfaces, as they turn back, would
+    """At .25 ms with -6.18 and 6.21. Fluid that seems to flow through the disks' surfaces, as they turn back, would
     take 1.3 at the longer step."""
     history = rigidfluid.run(scenes.head_on(step * MILLISECOND, stepping))
-    refuse_imbalance(history, 0.003, lost)
-    np.testing.assert_allclose(track(history, "vx")[-1], [-6.32, 6.32], atol=0.06)
+    refuse_imbalance(history, 0.0035, lost)
+    np.testing.assert_allclose(track(history, "vx")[-1], [-6.18, 6.21], atol=0.06)
 
 
 @pytest.mark.parametrize("height", [0.19, 0.198, 0.206])
 def test_rebounds_depend_little_on_when_in_its_step_the_impact_is(height):
     """Against those at .125 ms, of the fall."""
-    fine = {0.19: 0.4905, 0.198: 0.5050, 0.206: 0.5198}
+    fine = {0.19: 0.4740, 0.198: 0.4849, 0.206: 0.4992}
     scene = in_fluid(repulsion("substeps", 1e-9), heavy(0.4, height), end=0.07, step=4.0 * MILLISECOND)
     assert first_rebound(rigidfluid.run(scene)) / (height - RADIUS) == pytest.approx(fine[height], rel=0.032)
 

@@ -14,8 +14,7 @@ _ROUND_OFF = 1e-9
 def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray) -> FloatArray:
     r"""Velocity V (d,) of the walls as one rigid container: Σ ∫ (n·(u - V))² over them is least [length/time].
 
-    Where there is no wall, faces of prescribed velocity are the container: a uniform stream is seen from the fluid far
-    away. Of several such V it is the slowest.
+    Of several such V it is the slowest: zero of walls at rest, and where there is no wall.
 
     Parameters
     ----------
@@ -27,8 +26,7 @@ def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray)
         Where the nodes are [length].
     """
     d = node_points.shape[1]
-    kinds = [face.condition.type for face in surfaces.faces]
-    faces = [face for face in surfaces.faces if face.condition.type == ("wall" if "wall" in kinds else "velocity")]
+    faces = [face for face in surfaces.faces if face.condition.type == "wall"]
     if all(face.condition.value is None for face in faces):
         return np.zeros(d)
     normals, outflow, fastest = np.zeros((d, d)), np.zeros(d), 0.0

@@ -14,8 +14,8 @@ from rigidfluid.taylor_hood.numbering import Numbering
 
 _CONVECTION, _VISCOSITY = 2.0, 4.0
 """Weights of ρ|u*|h and of μ. The extrapolated ½(∇·u*)u feeds divergence of wave number π/h back at up to 3/2 times
-ρ|u*|π/h; the implicit terms take (γ + 2μ)(π/h)², which is more where γ > ½ ρ|u*|h - 2μ. More is taken, since |u*| is the
-least of a cell: so cells at surfaces at rest, which hold the divergence down themselves, keep their drag."""
+ρ|u*|π/h; the implicit terms take (γ + 2μ)(π/h)², which is more where γ > ½ ρ|u*|h - 2μ. More is taken, since |u*| is
+the least of a cell: so cells at surfaces at rest, which hold the divergence down themselves, keep their drag."""
 
 
 def grad_div_coefficient(numbering: Numbering, matrix: CoupledMatrix) -> FloatArray:

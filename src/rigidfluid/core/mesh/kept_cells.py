@@ -13,7 +13,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 LAYERS = 2
 """How many layers of cells a run keeps: those at a body's vertices, and their neighbours."""
 
-KEPT_QUALITY = 0.4
+KEPT_QUALITY = 0.5
 """Least quality of a cell that is kept."""
 
 SHORTEST, LONGEST = 0.5, 1.4
