@@ -200,7 +200,8 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
         "latest_failed_remesh": "at time 0.3: mesh: found nothing",
     }
     history = History(2)
-    shares = dict.fromkeys(("created", "lost", "unaccounted", "path_friction", "put_in"), 0.0) | {"unaccounted": -1e-9}
+    parts = ("created", "lost", "unaccounted", "path_friction", "grad_div", "put_in")
+    shares = dict.fromkeys(parts, 0.0) | {"unaccounted": -1e-9}
     history.summary = figures | {"files": [tmp_path / "bodies.csv"], "energy": shares | {"warnings": []}}
     monkeypatch.setattr(rigidfluid.core.run.run, "run", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
