@@ -38,7 +38,8 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
 
     One end of the edge is taken off the mesh and its cells are drawn to the other one, which stays where it is, on the
     exact surface. No cell is changed by two collapses at a time. An edge stays where a cell would get worse than
-    LEAST_QUALITY and than all there, a facet would turn too far or get an edge that is too long, or the surface would fold.
+    LEAST_QUALITY and than all there, a facet would turn too far or get an edge that is too long, or the surface would
+    fold.
 
     Parameters
     ----------
