@@ -36,8 +36,8 @@ def rigidfluid_process(*arguments: object, path: Path) -> subprocess.CompletedPr
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Nothing is left to compile, which a new installation tells at its first run."""
-    rigidfluid_command("run", SCENE, "--set", "time.end=0.001", "--out", tmp_path_factory.mktemp("compiled") / "out")
+    """Nothing is left to compile, contacts included, which a new installation tells at its first run."""
+    rigidfluid_command("run", SCENE, "--set", "time.end=0.01", "--out", tmp_path_factory.mktemp("compiled") / "out")
 
 
 def assert_one_paragraph(stderr: str, *texts: str) -> None:
