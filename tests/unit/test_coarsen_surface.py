@@ -20,7 +20,10 @@ BOX = box(LOWER, UPPER)
 SIZES = Sizes(0.8, 0.3, 0.5)
 
 
-@pytest.fixture(scope="module", params=[ball(0.5, 3), ellipsoid(0.55, 0.55, 0.5)], ids=["ball", "ellipsoid"])
+BODIES = {"ball": ball(0.5, 3), "ellipsoid": ellipsoid(0.55, 0.55, 0.5), "three axes": ellipsoid(0.6, 0.55, 0.5)}
+
+
+@pytest.fixture(scope="module", params=BODIES.values(), ids=BODIES.keys())
 def above_a_floor(request):
     """A body with a gap of .06, the walls, its pose, its mesh, and the same bisected for the gap."""
     body, pose, walls = request.param, upright([1.0, 1.0, 0.56]), box_walls(LOWER, UPPER, 1)

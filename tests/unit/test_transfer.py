@@ -104,7 +104,9 @@ def test_what_projections_leave_is_no_burst_of_pressure(solver, monkeypatch):
     found = after_a_new_mesh(simulation, saved)
     nearest = SparseProjection.nearest
     monkeypatch.setattr(
-        SparseProjection, "nearest", lambda self, velocity, _, guess: nearest(self, velocity, 1e-12, guess)
+        SparseProjection,
+        "nearest",
+        lambda self, velocity, _, guess, held=None: nearest(self, velocity, 1e-12, guess, held),
     )
     best = after_a_new_mesh(simulation, saved)
     assert found.mesh.cells is not saved.state.mesh.cells

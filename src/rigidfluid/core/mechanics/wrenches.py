@@ -1,12 +1,8 @@
 """The only place where action = reaction and the moment arm are applied."""
 
-# numba compiles for the types that come; annotations would be a second, unchecked signature.
-# mypy: disallow-untyped-defs=False
-
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from rigidfluid.core.model.part_results import refuse_lost_forces
 from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
@@ -38,9 +34,11 @@ def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wr
     """
     wrench = nothing(pose)
     if len(contacts):
+        from rigidfluid.core.mechanics.contact_sum import accumulate
+
         refuse_lost_forces(contacts, force_on_a)
         a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
-        _accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
+        accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
     return wrench
 
 
@@ -71,28 +69,3 @@ def power(wrench: Wrench, twist: Twist) -> FloatArray:
     return np.asarray(
         np.sum(wrench.force * twist.velocity, axis=1) + np.sum(wrench.torque * twist.angular_velocity, axis=1)
     )
-
-
-@njit(cache=True)
-def _accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_on_a):
-    """Add +F at a, then -F at b, in the order of the contacts, so that a sum does not depend on how it is made."""
-    for side in range(2):
-        sign = 1.0 if side == 0 else -1.0
-        for i in range(len(body_a)):
-            body = body_a[i] if side == 0 else body_b[i]
-            if body >= len(position):
-                continue
-            x = 0.5 * (point_a[i, 0] + point_b[i, 0]) - position[body, 0]
-            y = 0.5 * (point_a[i, 1] + point_b[i, 1]) - position[body, 1]
-            u, v = sign * force_on_a[i, 0], sign * force_on_a[i, 1]
-            force[body, 0] += u
-            force[body, 1] += v
-            turning = x * v - y * u
-            if position.shape[1] == 2:
-                torque[body, 0] += turning
-            else:
-                z, w = 0.5 * (point_a[i, 2] + point_b[i, 2]) - position[body, 2], sign * force_on_a[i, 2]
-                force[body, 2] += w
-                torque[body, 0] += y * w - z * v
-                torque[body, 1] += z * u - x * w
-                torque[body, 2] += turning

@@ -27,7 +27,7 @@ PER_RADIUS = 2.0
 """Edges as long as a body's least radius of curvature over this are wanted anyway, as Netgen makes them."""
 
 LEAST_QUALITY = 0.1
-"""Quality that a cell must keep whose vertex is taken off."""
+"""Quality that a cell must keep whose vertex is taken off, or the worst that the cells there have, if that is less."""
 
 MOST_TURNED = 0.5
 """Least cosine of the angle by which a facet may turn when a vertex is taken off."""
@@ -38,7 +38,8 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
 
     One end of the edge is taken off the mesh and its cells are drawn to the other one, which stays where it is, on the
     exact surface. No cell is changed by two collapses at a time. An edge stays where a cell would get worse than
-    LEAST_QUALITY, a facet would turn too far or get an edge that is too long, or the surface would fold.
+    LEAST_QUALITY and than all there, a facet would turn too far or get an edge that is too long, or the surface would
+    fold.
 
     Parameters
     ----------
@@ -109,7 +110,9 @@ def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
     cell, number = _changed(mesh.cells, at)
     drawn = target[mesh.cells[cell]]
     stays = ~_degenerate(drawn)
-    spares[number[stays][cell_quality(mesh.points, drawn[stays]) < LEAST_QUALITY]] = False
+    least = np.full(len(pairs), LEAST_QUALITY)
+    np.minimum.at(least, number, cell_quality(mesh.points, mesh.cells[cell]))
+    spares[number[stays][cell_quality(mesh.points, drawn[stays]) < least[number[stays]]]] = False
     facet, number = _changed(mesh.facets, at)
     drawn = target[mesh.facets[facet]]
     gone = _degenerate(drawn)
