@@ -37,6 +37,7 @@ class CoupledDynamics:
     free: FreeMotions | None = None
     kinematics: Kinematics | None = None
     link_work: LinkWork | None = None
+    resisted: bool = True
 
     def __init__(
         self,

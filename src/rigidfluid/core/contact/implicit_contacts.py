@@ -67,8 +67,8 @@ def implicit_contact_step(
     """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
 
     f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
-    the way of the surfaces past each other by their mean velocity in both kicks, n and the points are those in
-    mid-step. Dampers act with the mean velocity, across the surfaces implicitly, along them with that of the iteration
+    the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
+    kicks too, n and the points are those in mid-step. Dampers act with the mean velocity, across the surfaces implicitly, along them with that of the iteration
     before. Second order where the step resolves the contact. The energy is kept in steps of any length; those in which
     bodies turn too far for that are rejected.
 
@@ -189,7 +189,8 @@ def _evaluate(
     trial.drift(0.5 * size)
     drifted = _of_motions(trial)
     trial.kick(wrench, 0.5 * size, place)
-    twist = _mean((_of_motions(movement), kicked, drifted, _of_motions(trial)))
+    drift = kicked, drifted
+    twist = _mean(drift if trial.resisted else (_of_motions(movement), *drift, _of_motions(trial)))
     velocity = relative_velocity(middle, pose, component_twist(kinematics, twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))

@@ -85,6 +85,10 @@ class JointedDynamics:
         return self._inner.friction_loss
 
     @property
+    def resisted(self) -> bool:
+        return self._inner.resisted
+
+    @property
     def mobility(self) -> FloatArray:
         """That without joints, which only make motions give way less: what is planned for it is on the safe side."""
         return self._inner.mobility

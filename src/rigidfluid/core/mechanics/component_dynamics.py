@@ -66,6 +66,11 @@ class ComponentDynamics:
         return self._motions.friction_loss
 
     @property
+    def resisted(self) -> bool:
+        """As the motions are."""
+        return self._motions.resisted
+
+    @property
     def link_work(self) -> LinkWork | None:
         """Of the motions."""
         return self._motions.link_work

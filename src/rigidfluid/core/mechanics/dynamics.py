@@ -74,6 +74,10 @@ class BodyDynamics(Protocol):
         """What a fluid's friction took that its own solutions do not see [energy]."""
 
     @property
+    def resisted(self) -> bool:
+        """Whether a fluid's friction acts in kicks too: a force then works along the way of drifts alone."""
+
+    @property
     def link_work(self) -> LinkWork | None:
         """What joints did to them so far, None without any."""
 
@@ -125,6 +129,7 @@ class DryDynamics:
     free: FreeMotions | None = None
     kinematics: Kinematics | None = None
     friction_loss: float = 0.0
+    resisted: bool = False
     link_work: LinkWork | None = None
 
     def __init__(
