@@ -10,6 +10,9 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 
 
+RADII = {"disk": 0.1}
+
+
 def history(force, torque, remeshes):
     """Of one disk, a row a step."""
     names = columns(2)
@@ -24,7 +27,7 @@ def history(force, torque, remeshes):
 
 def test_a_load_that_goes_on_straight_does_not_jump():
     line = np.linspace(0.0, 1.0, 20)
-    found = remesh_jumps(history(line, -line, [0] * 10 + [1] * 10))
+    found = remesh_jumps(history(line, -line, [0] * 10 + [1] * 10), RADII)
     assert found["disk"] == {"force": pytest.approx(0.0, abs=1e-12), "torque": pytest.approx(0.0, abs=1e-12)}
 
 
@@ -33,7 +36,7 @@ def test_a_spike_is_told_over_the_range():
     torque = np.linspace(0.0, 2.0, 20)
     spiked = torque.copy()
     spiked[11] += 0.5
-    found = remesh_jumps(history(torque, spiked, [0] * 10 + [1] * 10))
+    found = remesh_jumps(history(torque, spiked, [0] * 10 + [1] * 10), RADII)
     assert found["disk"]["torque"] == pytest.approx(0.5 / np.ptp(spiked[5:]))
     assert found["disk"]["force"] == pytest.approx(0.0, abs=1e-12)
 
@@ -49,9 +52,17 @@ def test_a_large_jump_is_noted():
 def test_a_spike_elsewhere_is_none_of_a_mesh():
     torque = np.linspace(0.0, 2.0, 20)
     torque[15] += 0.5
-    assert remesh_jumps(history(torque, torque, [0] * 10 + [1] * 10))["disk"]["torque"] < 1e-12
+    assert remesh_jumps(history(torque, torque, [0] * 10 + [1] * 10), RADII)["disk"]["torque"] < 1e-12
 
 
 def test_without_new_meshes_there_is_nothing_to_tell():
     line = np.linspace(0.0, 1.0, 20)
-    assert remesh_jumps(history(line, line, [0] * 20)) == {}
+    assert remesh_jumps(history(line, line, [0] * 20), RADII) == {}
+
+
+def test_a_torque_of_nothing_does_not_jump():
+    """A thousandth of the force times the radius counts, however small the torque is."""
+    force, noise = np.linspace(0.0, 2.0, 20), np.zeros(20)
+    noise[10] = 1e-6
+    found = remesh_jumps(history(force, noise, [0] * 10 + [1] * 10), RADII)
+    assert found["disk"]["torque"] == pytest.approx(1e-6 / (1e-4 * np.ptp(force[5:])))

@@ -21,15 +21,18 @@ _START = 5
 NOTED = 0.1
 """A jump of more than this share of the range is noted at the end of a run."""
 
+_NOISE = 1e-3
+
 _COLUMNS = {"force": ("fx", "fy", "fz"), "torque": ("t", "tx", "ty", "tz")}
 
 
-def remesh_jumps(history: History) -> dict[str, dict[str, float]]:
+def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict[str, float]]:
     """Largest jump of force and torque of each body at new meshes, over the range of each in the run [1].
 
     A jump is the distance of one of the first steps on a new mesh from the line through the two steps before it. The
-    range is the largest less the smallest of a component after the first steps; of a vector the largest one counts.
-    Empty without new meshes.
+    range is the largest less the smallest of a component after the first steps; of a vector the largest one counts. Of
+    a torque it is at least a thousandth of the force's times the bounding radius of ``radii``, by name [length]: what
+    is less is noise. Empty without new meshes.
     """
     steps = history.table("steps", ("time", "remeshes"))
     first = np.flatnonzero(np.diff(steps["remeshes"]) > 0) + 1
@@ -45,7 +48,12 @@ def remesh_jumps(history: History) -> dict[str, dict[str, float]]:
         time = bodies["time"][mine]
         rows = np.searchsorted(time, steps["time"][first] - 1e-9 * time[-1])
         values = {load: np.column_stack([bodies[axis][mine] for axis in axes]) for load, axes in loads.items()}
-        found[str(name)] = {load: _largest_jump(time, each, rows) for load, each in values.items()}
+        extent = {load: float(np.ptp(each[_START:], axis=0).max()) for load, each in values.items()}
+        extent["torque"] = max(extent["torque"], _NOISE * radii[str(name)] * extent["force"])
+        found[str(name)] = {
+            load: _largest_jump(time, each, rows) / extent[load] if extent[load] > 0.0 else 0.0
+            for load, each in values.items()
+        }
     return found
 
 
@@ -62,12 +70,11 @@ def jump_remarks(jumps: Mapping[str, Mapping[str, float]]) -> list[Remark]:
 
 
 def _largest_jump(time: FloatArray, values: FloatArray, first: IntArray) -> float:
-    """Largest jump of ``values`` (s, c) at the rows ``first``, over their range."""
-    extent = float(np.ptp(values[_START:], axis=0).max())
+    """Largest jump of ``values`` (s, c) at the rows ``first``."""
     jump = 0.0
     for row in first:
         slope = (values[row - 1] - values[row - 2]) / (time[row - 1] - time[row - 2])
         after = slice(row, row + _AFTER)
         expected = values[row - 1] + np.multiply.outer(time[after] - time[row - 1], slope)
         jump = max(jump, float(np.abs(values[after] - expected).max()))
-    return jump / extent if extent > 0.0 else 0.0
+    return jump

@@ -48,11 +48,12 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
     mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.backend.problem
-    length = max(body.bounding_radius for body in system.bodies)
+    radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
+    length = max(radii.values())
     remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
     inertia = system.backend.needs_mesh and problem is not None and problem.inertia
     remarks += start_remarks(found.get("cycles", {}), inertia, length)
-    jumps = remesh_jumps(simulation.history) if simulation.counts.remeshes else {}
+    jumps = remesh_jumps(simulation.history, radii) if simulation.counts.remeshes else {}
     remarks += jump_remarks(jumps)
     return {
         "status": status,
