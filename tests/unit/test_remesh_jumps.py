@@ -9,7 +9,6 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 
-
 RADII = {"disk": 0.1}
 
 
