@@ -389,7 +389,7 @@ def _wet_impacts() -> Iterator[Case]:
     yield from _in_fluid("spin 1e3", scene, two, two, sub(4) + imp(4))
     scene = partial(floor_hit, velocity=[0.0, -80.0], angular_velocity=[1e4])
     lost, again = Demand("energy lost", at_most=0.2), Demand("rejected steps", at_most=2.0)
-    known = {run: (lost,) for run in sub(1) + imp(1)} | {run: (again,) for run in imp(4)}
+    known = dict.fromkeys(sub(1) + imp(1), (lost,)) | dict.fromkeys(imp(4), (again,))
     yield from _in_fluid("spin 1e4", scene, two, two, sub(4), known)
     scene = partial(floor_hit, detector={"detector": "narrow_band"})
     yield from _in_fluid("contacts from the mesh, thrown", scene, two, two, sub(4) + imp(4))
