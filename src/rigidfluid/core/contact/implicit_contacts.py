@@ -68,16 +68,10 @@ def implicit_contact_step(
 
     f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
     the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
-<<<<<<< HEAD
-    kicks too, n and the points are those in mid-step. Dampers act with the mean velocity, across the surfaces
-    implicitly, along them with that of the iteration before. Second order where the step resolves the contact. The
-    energy is kept in steps of any length; those in which bodies turn too far for that are rejected.
-=======
     kicks too, n and the points are those in mid-step.
     Dampers act with the mean velocity, across the surfaces implicitly, along them with that of the iteration
     before. Second order where the step resolves the contact. The energy is kept in steps of any length; those in which
     bodies turn too far for that are rejected.
->>>>>>> fixb
 
     Parameters
     ----------
