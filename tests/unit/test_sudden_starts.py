@@ -66,7 +66,7 @@ def test_a_free_body_goes_with_a_stream_that_begins_at_once(density: float) -> N
     assert speed[0] == pytest.approx(alone, rel=2e-3 if density == 1.0 else 0.15)
     assert np.abs(np.diff(speed[:4])).max() < 0.01 * speed[0]
     impulsive = density * np.pi * 0.15**2 * abs(1.0 - speed[0]) / 0.02
-    assert np.abs(force).max() < 0.2 * (1.0 + impulsive)  # a start that shakes it has 3.5
+    assert np.abs(force).max() < 0.2 * impulsive + 0.1  # a start that shakes it has 3.5
     assert history.summary["energy"]["warnings"] == []
 
 

@@ -70,12 +70,13 @@ class Assembly(Protocol):
 @dataclass(frozen=True, eq=False)
 class _Assembled:
     """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``stiffness``, P of the
-    ``constraint``."""
+    ``constraint``; ``grad_div`` (M,) in K."""
 
     of: CoupledMatrix
     stiffness: sparse.csr_array
     constraint: Constraint
     masses: FloatArray
+    grad_div: FloatArray
 
     @property
     def twists(self) -> slice:
@@ -152,9 +153,9 @@ class SparseDiscretisation:
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
         assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
         zero = np.zeros(self.numbering.vertices)
-        given, load = np.concatenate([s.given.ravel(), s.pressure_jump]), np.concatenate([s.load.ravel(), zero])
-        frame = np.concatenate([np.broadcast_to(s.matrix.frame, s.given.shape).ravel(), zero])
-        known = assembled.stiffness @ (given - frame) if given.any() or frame.any() else 0.0
+        given = np.concatenate([(s.given - s.matrix.frame).ravel(), s.pressure_jump])
+        load = np.concatenate([s.load.ravel(), zero])
+        known = assembled.stiffness @ given if given.any() else 0.0
         right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
@@ -168,12 +169,13 @@ class SparseDiscretisation:
         twist = s.twist.copy()
         twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
         velocity, pressure = np.split(everything, [s.given.size])
-        reaction = (assembled.stiffness @ (everything - frame) - load)[: s.given.size]
+        reaction = (assembled.stiffness @ everything - load)[: s.given.size]
         jump_load = None
         if s.pressure_jump.any():
             of_jump = assembled.stiffness @ np.concatenate([np.zeros(s.given.size), s.pressure_jump])
             jump_load = -of_jump[: s.given.size].reshape(s.given.shape)
-        return Solution(velocity.reshape(s.given.shape), pressure, twist, reaction.reshape(s.given.shape), jump_load)
+        velocity = velocity.reshape(s.given.shape) + s.matrix.frame
+        return Solution(velocity, pressure, twist, reaction.reshape(s.given.shape), jump_load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.controlled
@@ -238,7 +240,7 @@ class SparseDiscretisation:
         grad_div = grad_div_coefficient(self.numbering, m)
         stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow, grad_div)
         self._constraint.place(m.node_points, m.position)
-        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled])
+        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled], grad_div)
 
     def _parts(self, assembled: _Assembled) -> Parts:
         """What a preconditioner is made from, which is noted."""
@@ -248,8 +250,8 @@ class SparseDiscretisation:
         def reduced() -> sparse.csr_array:
             return self._reduced_matrix(stiffness).filled(stiffness, masses)
 
-        grad_div = grad_div_coefficient(self.numbering, m)
-        return Parts(self._constraint, stiffness, masses, m.points, m.inertia, m.viscosity, grad_div, reduced)
+        weights = m.inertia, m.viscosity, assembled.grad_div
+        return Parts(self._constraint, stiffness, masses, m.points, *weights, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
         """Whether its factors are of a step of another length or order, which serve badly."""

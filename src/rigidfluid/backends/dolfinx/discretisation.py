@@ -107,16 +107,16 @@ class PetscDiscretisation:
         reduced, free = self._reduced(s.matrix), ~s.matrix.controlled
         none = np.zeros(len(space.owned_vertices))
         given = np.concatenate([s.given[space.owned_nodes].ravel(), none])
-        frame = np.concatenate([np.tile(s.matrix.frame, len(space.owned_nodes)), none])
+        given -= np.concatenate([np.tile(s.matrix.frame, len(space.owned_nodes)), none])
         load = np.concatenate([space.owned_sums(s.load), none])
-        right_side = reduced.collect(load - reduced.times(given - frame))
+        right_side = reduced.collect(load - reduced.times(given))
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
         scale = max(self._solver.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
         enough = tolerance * scale
         correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
-        return self._solution(s, reduced, guess + correction, given, frame, load)
+        return self._solution(s, reduced, guess + correction, given, load)
 
     def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
@@ -158,21 +158,16 @@ class PetscDiscretisation:
         return float(self.surfaces.ranks.sum(own))
 
     def _solution(
-        self,
-        system: CoupledSystem,
-        reduced: Reduced,
-        x: FloatArray,
-        given: FloatArray,
-        frame: FloatArray,
-        load: FloatArray,
+        self, system: CoupledSystem, reduced: Reduced, x: FloatArray, given: FloatArray, load: FloatArray
     ) -> Solution:
+        """The solution of which x (columns,) is the reduced one; ``given`` is seen from the container."""
         space, constraint, ranks = self._topology.space, self._constraint, self.surfaces.ranks
         everything = reduced.expand(x) + given
         size = space.owned_nodes.size * space.numbering.dimension
         reaction = np.zeros_like(system.given)
-        missing = reduced.times(everything - frame) - load
-        reaction[space.owned_nodes] = missing[:size].reshape(-1, system.given.shape[1])
+        reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
         twist = system.twist.copy()
         free = ~system.matrix.controlled
         twist[free] = ranks.bcast(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
-        return Solution(space.velocities(everything[:size]), space.pressures(everything[size:]), twist, reaction)
+        velocity = space.velocities(everything[:size]) + system.matrix.frame
+        return Solution(velocity, space.pressures(everything[size:]), twist, reaction)

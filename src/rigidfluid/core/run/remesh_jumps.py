@@ -43,14 +43,14 @@ def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict
     loads = {load: tuple(name for name in names if name in of_load) for load, of_load in _COLUMNS.items()}
     bodies = history.table("bodies", ("time", "body", *loads["force"], *loads["torque"]))
     found = {}
-    for name in dict.fromkeys(bodies["body"]):
+    for name, radius in radii.items():
         mine = bodies["body"] == name
         time = bodies["time"][mine]
         rows = np.searchsorted(time, steps["time"][first] - 1e-9 * time[-1])
         values = {load: np.column_stack([bodies[axis][mine] for axis in axes]) for load, axes in loads.items()}
         extent = {load: float(np.ptp(each[_START:], axis=0).max()) for load, each in values.items()}
-        extent["torque"] = max(extent["torque"], _NOISE * radii[str(name)] * extent["force"])
-        found[str(name)] = {
+        extent["torque"] = max(extent["torque"], _NOISE * radius * extent["force"])
+        found[name] = {
             load: _largest_jump(time, each, rows) / extent[load] if extent[load] > 0.0 else 0.0
             for load, each in values.items()
         }
