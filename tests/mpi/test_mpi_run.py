@@ -74,11 +74,16 @@ def succeeded(result):
     return result
 
 
+VECTORS = [("fx", "fy"), ("cfx", "cfy"), ("vx", "vy")]
+"""Columns held against the whole vector: a path found by trial solves its first trial to five digits."""
+
+
 def assert_same_tables(folders, names, rtol):
     for name in names:
         expected, found = (table(folder / name) for folder in folders)
         for column, values in expected.items():
-            atol = 1e-8
+            whole = next((vector for vector in VECTORS if column in vector), ())
+            atol = max([1e-8, *(rtol * np.abs(expected[entry]).max() for entry in whole)])
             if column.startswith("residual"):  # small differences of energies, with the round-off of those
                 atol = max(atol, 1e-7 * expected["kinetic"].max())
             np.testing.assert_allclose(found[column], values, rtol=rtol, atol=atol, err_msg=f"{name} {column}")
@@ -122,7 +127,7 @@ def test_two_processes_see_the_impact_that_one_does(mpirun, tmp_path, backend):
 
 def test_a_run_goes_on_with_other_numbers_of_processes(mpirun, tmp_path, backend):
     """From one to two, from two to three, and back to one: new meshes before and after."""
-    chosen = {"fluid__backend": f'"{backend}"', "fluid__tolerance": 1e-13}
+    chosen = {"fluid__backend": f'"{backend}"'}
     succeeded(mpirun(1, *fall(tmp_path / "one", **chosen)))
     succeeded(mpirun(1, *fall(tmp_path / "more", time__end=0.02, **chosen)))
     for count, end in ((2, 0.032), (3, 0.044), (1, 0.056)):
