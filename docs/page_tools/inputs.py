@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import sys
 from collections.abc import Iterable
@@ -58,8 +59,24 @@ def hashes(paths: Iterable[Path]) -> Inputs:
 
 
 def file_hash(path: Path) -> str:
-    """Of all bytes of a file; empty where there is none."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16] if path.is_file() else ""
+    """Hash of a file, of a module without its prose; empty if the file is missing."""
+    if not path.is_file():
+        return ""
+    content = _code(path.read_text(encoding="utf-8")).encode() if path.suffix == ".py" else path.read_bytes()
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _code(source: str) -> str:
+    """Syntax tree of a module without docstrings, comments and layout, as text: no figure depends on those."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(body := getattr(node, "body", None), list):
+            node.body = [line for line in body if not _is_text(line)]
+    return ast.dump(tree)
+
+
+def _is_text(line: ast.stmt) -> bool:
+    return isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant) and isinstance(line.value.value, str)
 
 
 def merged(one: Inputs, other: Inputs) -> Inputs:

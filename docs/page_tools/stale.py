@@ -10,6 +10,10 @@ from page_tools.inputs import Inputs, changed
 from page_tools.places import INPUTS, PAGES
 
 
+SHOWN = 4
+"""Number of changed inputs that are named."""
+
+
 def recorded(folder: Path = INPUTS) -> dict[str, Inputs]:
     """What each page was made from, by its name."""
     return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))}
@@ -22,4 +26,5 @@ def stale(pages: Path = PAGES, inputs: Path = INPUTS) -> Iterator[tuple[str, str
         if name not in known:
             yield name, "made before its inputs were recorded"
         elif files := changed(known[name]):
-            yield name, f"{len(files)} of {len(known[name])} inputs have changed: {', '.join(files)}"
+            more = ", …" if len(files) > SHOWN else ""
+            yield name, f"{len(files)} of {len(known[name])} inputs have changed: {', '.join(files[:SHOWN])}{more}"

@@ -205,7 +205,7 @@ def test_runs_by_several_versions_of_a_file_count_as_changed() -> None:
     assert changed(both) == [name]
 
 
-def test_a_changed_byte_makes_a_page_stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changed_code_makes_a_page_stale_and_changed_prose_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("page_tools.inputs.ROOT", "page_tools.page.INPUTS", "page_tools.stale.INPUTS"):
         monkeypatch.setattr(module, tmp_path)
     source = tmp_path / "src.py"
@@ -213,6 +213,8 @@ def test_a_changed_byte_makes_a_page_stale(tmp_path: Path, monkeypatch: pytest.M
     page.write(Page("Page", "Text."), "page", {}, tmp_path)
     assert dict(stale(tmp_path, tmp_path)) == {"page": "made before its inputs were recorded"}
     page.write_inputs("page", hashes([source]), tmp_path)
+    assert dict(stale(tmp_path, tmp_path)) == {}
+    source.write_text('"""Prose."""\n\na = 1  # prose\n"""Prose."""\n')
     assert dict(stale(tmp_path, tmp_path)) == {}
     source.write_text("a = 2\n")
     assert dict(stale(tmp_path, tmp_path)) == {"page": "1 of 1 inputs have changed: src.py"}
