@@ -9,7 +9,6 @@ from pathlib import Path
 from page_tools.inputs import Inputs, changed
 from page_tools.places import INPUTS, PAGES
 
-
 SHOWN = 4
 """Number of changed inputs that are named."""
 

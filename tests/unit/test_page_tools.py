@@ -205,7 +205,7 @@ def test_runs_by_several_versions_of_a_file_count_as_changed() -> None:
     assert changed(both) == [name]
 
 
-def test_changed_code_makes_a_page_stale_and_changed_prose_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changed_code_makes_a_page_stale_and_prose_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("page_tools.inputs.ROOT", "page_tools.page.INPUTS", "page_tools.stale.INPUTS"):
         monkeypatch.setattr(module, tmp_path)
     source = tmp_path / "src.py"
