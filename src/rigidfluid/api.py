@@ -16,7 +16,7 @@ from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import (
@@ -29,6 +29,7 @@ from rigidfluid.core.model.interfaces import (
     Part,
     PartOptions,
 )
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
     Advance,

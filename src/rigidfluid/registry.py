@@ -109,6 +109,10 @@ class Registry:
         """Names of all parts of a kind, in the order they were found."""
         return [entry.name for entry in self.entries if entry.kind is kind]
 
+    def installed(self, kind: Kind[P]) -> list[type[P]]:
+        """Classes of a kind whose packages are all there, in the order they were found."""
+        return [cast(type[P], entry.part) for entry in self.entries if entry.kind is kind and entry.available]
+
     def get(self, kind: Kind[P], name: str, subject: str | None = None) -> type[P]:
         """The class of this name.
 

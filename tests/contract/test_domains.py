@@ -11,7 +11,7 @@ from mesh_tools import nobody
 from wedge import wedge
 
 from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions

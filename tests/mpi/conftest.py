@@ -44,7 +44,7 @@ def mpirun(mpi):
     def run(count, *arguments, **variables):
         process = mpi(count, *arguments, **variables)
         try:
-            said, complaint = process.communicate(timeout=300)
+            said, complaint = process.communicate(timeout=900)
         except subprocess.TimeoutExpired:
             process.terminate()  # killed, mpirun would leave its processes behind
             process.communicate()

@@ -165,7 +165,7 @@ def test_ctrl_c_on_one_process_ends_all_with_a_summary(mpi, mpirun, tmp_path, ba
     while not (tmp_path / "fields" / "000001.pvtu").exists() and process.poll() is None:
         time.sleep(0.02)
     os.kill(int((tmp_path / "run.lock").read_text()), signal.SIGINT)
-    _, complaint = process.communicate(timeout=300)
+    _, complaint = process.communicate(timeout=900)
     assert process.returncode != 0
     assert complaint.count("Interrupted.") == 1
     assert "Traceback" not in complaint

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 

@@ -13,7 +13,7 @@ import pytest
 
 import rigidfluid
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
-from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.boundary_samples import quadrature

@@ -8,9 +8,10 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.detector_choice import choose_detector
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import cheapest_detector
 from rigidfluid.errors import SceneError
+from rigidfluid.registry import Registry
 
 ELLIPSE = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "angle": 0.5, "density": 1.25, "position": [0.3, 0.16]}
 DISK = {"type": "sphere", "radius": 0.08, "density": 1.25, "position": [0.3, 0.105]}
@@ -75,14 +76,47 @@ def test_auto_takes_the_cheapest_detector_that_is_exact():
     chosen = build_system(scene(ELLIPSE, {}))
     assert (chosen.detector.name, chosen.detector_why) == ("ellipsoid", "chosen as all bodies are balls or ellipsoids")
     bodies = [ellipsoid(0.1, 0.05), ball(0.1)]
-    assert [cheapest_detector(bodies, BOX, mesh)[0] for mesh in (True, False)] == ["ellipsoid"] * 2
+    assert chosen_names(bodies) == ["ellipsoid", "ellipsoid"]
 
     class Cross(Sphere):
         name = "cross"
         radius = None
 
     bodies.append(Cross(Cross.Options(radius=0.1), 2))
-    assert [cheapest_detector(bodies, BOX, mesh)[0] for mesh in (True, False)] == ["narrow_band", "brute_force"]
+    assert chosen_names(bodies) == ["narrow_band", "brute_force"]
+
+
+def chosen_names(bodies):
+    """Detectors that ``auto`` takes with a mesh and without."""
+    return [choose_detector(bodies, BOX.pieces, mesh, Registry.load())[0].name for mesh in (True, False)]
+
+
+ELLIPSES = """
+from rigidfluid.api import hookimpl
+from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+
+
+class Ellipses(EllipsoidDetector):
+    name = "ellipses"
+    cost = 0.5 * EllipsoidDetector.cost
+
+    @classmethod
+    def exact_for(cls, bodies, pieces):
+        plane = all(body.semi_axes is not None and len(body.semi_axes) == 2 for body in bodies)
+        return "all bodies are ellipses" if plane else None
+
+
+@hookimpl
+def rigidfluid_detectors():
+    return [Ellipses]
+"""
+
+
+def test_auto_takes_a_cheaper_detector_of_a_plugin(install):
+    install(ELLIPSES, "ellipses", "ellipses_plugin")
+    assert chosen_names([ellipsoid(0.1, 0.05)]) == ["ellipses", "ellipses"]
+    assert chosen_names([ellipsoid(0.1, 0.05, 0.07)]) == ["ellipsoid", "ellipsoid"]
+    assert build_system(scene(ELLIPSE, {})).detector_why == "chosen as all bodies are ellipses"
 
 
 def test_a_detector_that_needs_a_mesh_is_refused_without_one():

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of
 
@@ -73,8 +74,14 @@ class BruteForceDetector(Detector):
     """
 
     name: ClassVar[str] = "brute_force"
+    cost: ClassVar[float] = 4e5
     Options: ClassVar[type[PartOptions]] = BruteForceOptions
     options: BruteForceOptions
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why any shapes are met, at any cost."""
+        return "the shapes are of any kind, and there is no mesh or no law"
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone."""

@@ -7,8 +7,10 @@ from typing import ClassVar
 
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, is_round
+from rigidfluid.detectors.round_pieces import is_whole
 from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError
 
@@ -37,6 +39,7 @@ class EllipsoidDetector(Detector):
     """
 
     name: ClassVar[str] = "ellipsoid"
+    cost: ClassVar[float] = 50.0
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
@@ -48,6 +51,14 @@ class EllipsoidDetector(Detector):
             if wall.shape.plane is None and not is_round(wall.shape):
                 _refuse(f"the wall {wall.name!r}", "walls that are flat or round")
         self._contacts = SmoothContacts(bodies, walls)
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why ellipsoids between flat walls, round bumps and whole round hollows are met exactly, or None."""
+        if any(body.semi_axes is None for body in bodies):
+            return None
+        walls_taken = all(piece.shape.plane or is_whole(piece) for piece in pieces)
+        return "all bodies are balls or ellipsoids" if walls_taken else None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone.

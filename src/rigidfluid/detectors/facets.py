@@ -15,11 +15,13 @@ from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.core.model.wall import Wall, is_round, radius_of
 from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoid, ellipsoid_touches
 from rigidfluid.detectors.facet_features import Features, features_of
+from rigidfluid.detectors.round_pieces import is_whole
 from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError
 
@@ -68,6 +70,7 @@ class FacetDetector(Detector):
     """
 
     name: ClassVar[str] = "facets"
+    cost: ClassVar[float] = 5e3
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         super().__init__(options, bodies, walls)
@@ -89,6 +92,15 @@ class FacetDetector(Detector):
         self._long = np.array(long, dtype=np.int64)
         closed = [wall for wall in walls if not isinstance(wall.shape, FacetSurface)]
         self._long_contacts = SmoothContacts([bodies[index] for index in long], closed)
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why ellipsoids and bodies of facets between flat, round and facet walls are met exactly, or None."""
+        if any(body.semi_axes is None and body.facets is None for body in bodies):
+            return None
+        long = any(body.semi_axes is not None and body.radius is None for body in bodies)
+        walls_taken = all(_is_taken(piece, long) for piece in pieces)
+        return "all bodies are balls, ellipsoids or made of facets" if walls_taken else None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap), from the shapes alone."""
@@ -331,6 +343,13 @@ def _contacts(a: int, b: int, touches: Touches, radius_a: float, radius_b: float
         radius_b=np.full(count, radius_b, dtype=float),
         at_wall=np.full(count, at_wall),
     )
+
+
+def _is_taken(piece: Piece, long: bool) -> bool:
+    """Whether a piece is of facets, flat or round; ``long``: some bodies are ellipsoids that are no balls."""
+    if isinstance(piece.shape, FacetSurface) or piece.shape.plane:
+        return True
+    return is_whole(piece) if long else is_round(piece.shape)
 
 
 def _refuse(detector: str, found: str, allowed: str) -> None:

@@ -12,4 +12,5 @@ class FastMarchingDetector(MarchingDetector):
     """Marches a field from each body that has something near, over all of the mesh."""
 
     name: ClassVar[str] = "fast_marching"
+    cost: ClassVar[float] = 2e5
     whole_domain: ClassVar[bool] = True

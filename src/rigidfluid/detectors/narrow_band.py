@@ -31,6 +31,7 @@ class NarrowBandDetector(MarchingDetector):
     """
 
     name: ClassVar[str] = "narrow_band"
+    cost: ClassVar[float] = 1e5
     whole_domain: ClassVar[bool] = False
     Options: ClassVar[type[PartOptions]] = NarrowBandOptions
     options: NarrowBandOptions

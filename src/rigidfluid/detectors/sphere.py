@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.model.contacts import in_order
 from rigidfluid.core.model.facet_surface import nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of
 from rigidfluid.errors import SceneError
@@ -44,6 +45,7 @@ class SphereDetector(Detector):
     """
 
     name: ClassVar[str] = "sphere"
+    cost: ClassVar[float] = 1.0
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         from rigidfluid.core.contact.near_pairs import NearPairs
@@ -55,6 +57,11 @@ class SphereDetector(Detector):
         self._surfaces = np.array([surface for surface, _ in flat], dtype=np.int64)
         self._planes = np.array([[plane.point, plane.unit_normal] for _, plane in flat], dtype=float)
         self._curved = [wall for wall in walls if not wall.shape.plane]
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why balls alone are met exactly; None if a body is no ball."""
+        return "all bodies are balls" if all(body.radius is not None for body in bodies) else None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the positions alone."""

@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.mesher_unit import in_unit
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.errors import SceneError

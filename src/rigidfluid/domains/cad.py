@@ -10,11 +10,12 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.mesh.meshing import netgen_mesh, sides, surfaces_of
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.plane_of_facets import plane_around
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray

@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
@@ -58,7 +59,7 @@ class Channel(Domain):
                 allowed = f"a name other than {', '.join(taken)}"
                 raise SceneError(f"{AT}.{number}.name", repr(name), allowed, "Rename it.")
         self._refuse_outside()
-        refuse_overlap(self._obstacles, {piece.name: piece.shape for piece in self._box.pieces})
+        refuse_overlap(self._obstacles, self._box.pieces)
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:

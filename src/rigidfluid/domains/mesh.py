@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors, enclosed_volume, place
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh

@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.setup.detector_choice import exact_detector
 from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name
 from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.domains.placed import PlacedBody
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import DETECTOR, Registry
+from rigidfluid.registry import Registry
 
 AT = "domain.obstacle"
 """Where obstacles stand in a scene."""
@@ -47,19 +48,18 @@ def placed_obstacles(tables: Sequence[NestedBodyTable], dimension: int) -> dict[
     }
 
 
-def refuse_overlap(obstacles: dict[str, PlacedBody], surfaces: dict[str, Surface]) -> None:
-    """Raise SceneError for obstacles that touch each other or one of the ``surfaces`` around them."""
+def refuse_overlap(obstacles: dict[str, PlacedBody], pieces: Sequence[Piece]) -> None:
+    """Raise SceneError for obstacles that touch each other or one of the ``pieces`` around them."""
     if not obstacles:
         return
     shapes = [obstacle.shape for obstacle in obstacles.values()]
     poses = [obstacle.pose for obstacle in obstacles.values()]
     pose = Pose(np.concatenate([one.position for one in poses]), np.concatenate([one.orientation for one in poses]))
-    walls = [Wall(len(shapes) + i, name, surface) for i, (name, surface) in enumerate(surfaces.items())]
-    balls = all(shape.radius is not None for shape in shapes)
-    detector = Registry.load().get(DETECTOR, "sphere" if balls else "brute_force")
+    walls = [Wall(len(shapes) + i, piece.name, piece.shape) for i, piece in enumerate(pieces)]
+    detector = exact_detector(shapes, pieces, Registry.load())
     contacts = detector(detector.Options(), shapes, walls).detect(pose, None, 0.0)
     if len(contacts):
-        names = [*obstacles, *surfaces]
+        names = [*obstacles, *(piece.name for piece in pieces)]
         worst = int(np.argmin(contacts.gap))
         a, b = (int(numbers[worst]) for numbers in (contacts.body_a, contacts.body_b))
         place, depth = poses[a].position[0].tolist(), abs(contacts.gap[worst])

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import ClassVar, final
 
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.marching.options import MarchingOptions
@@ -43,6 +44,12 @@ class MarchingDetector(Detector):
         super().__init__(options, bodies, walls)
         how = options.accuracy, options.multiple, self.whole_domain, options.threads
         self._finder = ContactFinder(bodies, walls, *how)
+
+    @final
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why any shapes are met, exactly to the facets of their mesh."""
+        return "the shapes are of any kind, and there is a mesh and a law"
 
     @final
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cache
 from typing import ClassVar
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.testing.arrangement import (
@@ -95,6 +97,23 @@ class DetectorContract:
         """Aspect ratios up to 5 at random tilts, each other and walls, against a search over both surfaces."""
         self._check_gaps(ellipsoids, _searched_gaps(ellipsoids, 1.01 * self.reach), self.reach)
 
+    def test_what_it_is_exact_for_it_takes_and_meets_exactly(self, arrangement: Arrangement) -> None:
+        """What `exact_for` claims, on which ``auto`` relies: gaps to 1e-10, whatever ``gap_tolerance`` is."""
+        pieces = [Piece(wall.name, wall.shape, math.inf) for wall in arrangement.walls]
+        made = self.make_detector(arrangement)
+        if made.exact_for(arrangement.bodies, pieces) is None:
+            pytest.skip("this detector does not claim to be exact for these shapes")
+        if made.needs_mesh:
+            pytest.skip("this detector is exact to the facets of its mesh")
+        self._check_gaps(arrangement, _searched_gaps(arrangement, 1.01 * self.reach), self.reach, 1e-10)
+
+    def test_what_it_refuses_it_is_not_exact_for(self) -> None:
+        """With ``balls_only``: no claim of exactness for ellipsoids."""
+        if not self.balls_only:
+            pytest.skip("this detector takes other shapes than balls")
+        balls = self.make_detector(single_ball(2))
+        assert balls.exact_for(random_ellipsoids(2, 0).bodies, ()) is None
+
     def test_points_are_on_the_surfaces_and_a_gap_apart(self, arrangement: Arrangement) -> None:
         """point_a = point_b + gap · normal, normals of length 1, and both points on their surfaces."""
         contacts = self.detect(arrangement, self.reach)
@@ -178,10 +197,17 @@ class DetectorContract:
         found = _placed_back(self.detect(small, scale * self.reach), np.eye(arrangement.dimension), origin, scale)
         self._check_same(self.detect(arrangement, self.reach), found)
 
-    def _check_gaps(self, arrangement: Arrangement, expected: dict[tuple[int, int], float], reach: float) -> None:
-        """Every pair that is surely within reach, none that is beyond, each with the expected gap."""
+    def _check_gaps(
+        self,
+        arrangement: Arrangement,
+        expected: dict[tuple[int, int], float],
+        reach: float,
+        tolerance: float | None = None,
+    ) -> None:
+        """Find every pair that is surely within reach, none that is beyond, each with the expected gap."""
         contacts = self.detect(arrangement, reach)
-        pairs, depths, slack = _pairs(contacts), self.depths(arrangement), self.gap_tolerance
+        pairs, depths = _pairs(contacts), self.depths(arrangement)
+        slack = self.gap_tolerance if tolerance is None else tolerance
         excess = {pair: slack + depths[[min(surface, len(depths) - 1) for surface in pair]].sum() for pair in expected}
         assert len(pairs) > 0
         assert pairs == sorted(set(pairs))

@@ -13,7 +13,8 @@ from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.refine_surface import bisect, edges_of_facets, middles_on_surfaces, one_per_cell
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 
 _PROBES = 400

@@ -16,6 +16,7 @@ from rigidfluid.api import (
     IntArray,
     Mesh,
     PartOptions,
+    Piece,
     Plane,
     Pose,
     Wall,
@@ -51,6 +52,7 @@ class CoalDetector(Detector):
     """
 
     name: ClassVar[str] = "coal"
+    cost: ClassVar[float] = 300.0
     requires: ClassVar[Mapping[str, str]] = {"coal": "coal (`pip install coal`)"}
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
@@ -60,6 +62,12 @@ class CoalDetector(Detector):
         self._bounding = self._axes.max(axis=1)
         self._radii = np.array([np.nan if body.radius is None else body.radius for body in bodies])
         self._narrow = NarrowPhase(self._axes)
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why balls and ellipsoids between flat walls are met exactly, or None."""
+        taken = all(body.semi_axes is not None for body in bodies) and all(piece.shape.plane for piece in pieces)
+        return "all bodies are balls or ellipsoids and all walls flat" if taken else None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone."""

@@ -3,31 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import SpatialPart
-from rigidfluid.core.model.surface import Surface
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoolArray, FloatArray
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A piece of the domain's boundary that conditions can be set on by its name.
-
-    ``shape``: the surface it lies on; of a flat piece all of its plane, if that does not go on inside. ``area`` of the
-    piece [length^(d-1)]. ``coordinates``: from points (N, d) of the piece to its own coordinates (N, d-1), each from 0
-    to 1 and with equal areas for equal parts; profiles are given in them, and a piece without them has none.
-    """
-
-    name: str
-    shape: Surface
-    area: float
-    coordinates: Callable[[FloatArray], FloatArray] | None = None
 
 
 class Domain(SpatialPart):

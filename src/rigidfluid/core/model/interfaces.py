@@ -18,6 +18,7 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import (
@@ -192,11 +193,33 @@ class Detector(Part):
     """
 
     needs_mesh: ClassVar[bool] = False
+    cost: ClassVar[float] = math.inf
+    """Time for a near pair over that of `sphere` for two balls [1]; ``auto`` takes the cheapest that is exact."""
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         self.options = options
         self.bodies = tuple(bodies)
         self.walls = tuple(walls)
+
+    @classmethod
+    def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
+        """Reason why gaps between these shapes are exact, with a mesh exact to its facets; None if they may not be.
+
+        ``auto`` asks this of every installed detector, and `rigidfluid check` prints "chosen as" and the reason.
+
+        Parameters
+        ----------
+        bodies : sequence of Body
+            The shapes of the scene.
+        pieces : sequence of Piece
+            The pieces of the domain's boundary.
+
+        Returns
+        -------
+        str or None
+            A clause such as "all bodies are balls"; None, as here, keeps a detector from being chosen.
+        """
+        return None
 
     def preferred_reach(self, law_range: float) -> float:
         """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""

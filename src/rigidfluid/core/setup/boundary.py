@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.setup.boundary_values import prescribed_pressure, prescribed_velocity, pressure_drop, wall_velocity

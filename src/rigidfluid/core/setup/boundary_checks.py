@@ -21,8 +21,9 @@ from rigidfluid.core.setup.time_factor import check_rows
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.domain import Domain, Piece
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
+    from rigidfluid.core.model.piece import Piece
     from rigidfluid.core.scene.scene import BoundaryTable, Scene
 
 ACROSS = 1e-12

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.model.domain import Domain, Piece
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary import boundary_table, table_key

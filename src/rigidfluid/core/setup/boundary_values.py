@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
-from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.profiles import Rectangle, couette, poiseuille, section

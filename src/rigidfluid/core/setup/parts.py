@@ -5,17 +5,15 @@ from __future__ import annotations
 import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import pi
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rigidfluid.core.model.domain import Domain, Piece
-from rigidfluid.core.model.facet_surface import FacetSurface
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
-from rigidfluid.core.model.wall import is_round, radius_of
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
+from rigidfluid.core.setup.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
 from rigidfluid.core.setup.mechanisms import with_components
 from rigidfluid.core.setup.periodic import periodic_pairs
@@ -29,11 +27,8 @@ if TYPE_CHECKING:
 P = TypeVar("P", bound=Part)
 
 AUTO = "auto"
-"""What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+"""What a scene says that leaves the choice of its detector to `choose_detector`."""
 
-
-_ROUNDING = 1e-6
-"""Of the area of a surface."""
 
 _KNOWN: dict[int, Parts] = {}
 """Of the scenes that exist, by their id."""
@@ -99,7 +94,7 @@ def select_plugins(scene: Scene) -> Parts:
     _refuse_detector(detector, mesh)
     _refuse_contact_keys(scene.contact, detector, laws)
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
-    exact = exact_detector(bodies, domain, registry)
+    exact = exact_detector(bodies, domain.pieces, registry)
     refuse_quick_mechanisms(mechanisms, scene.time)
     refuse_overlap_along(mechanisms, scene.time.end, exact)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
@@ -125,63 +120,6 @@ def known_parts(scene: Scene) -> Parts:
         _KNOWN[id(scene)] = select_plugins(scene.model_copy())  # itself it would live for ever
         weakref.finalize(scene, _KNOWN.pop, id(scene))
     return _KNOWN[id(scene)]
-
-
-def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tuple[str, str]:
-    """The cheapest detector that is exact for these bodies between these surfaces.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes.
-    domain : Domain
-        Its surfaces.
-    mesh : bool
-        Whether there is a mesh around them, and no need to know gaps beyond the range of a law.
-
-    Returns
-    -------
-    str, str
-        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
-        walls are flat, round bumps or whole round hollows; ``facets`` where there are polygons and polyhedra too, and
-        walls may be of facets; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
-    """
-    if all(body.radius is not None for body in bodies):
-        return "sphere", "all bodies are balls"
-    reason = "not all bodies are ellipsoids"
-    if all(body.semi_axes is not None for body in bodies):
-        if all(piece.shape.plane or _is_whole(piece) for piece in domain.pieces):
-            return "ellipsoid", "all bodies are balls or ellipsoids"
-        reason = "not all bodies are balls and not all walls are flat or round"
-    elif all(body.semi_axes is not None or body.facets is not None for body in bodies):
-        long = any(body.semi_axes is not None and body.radius is None for body in bodies)
-        if all(_meets_facets(piece, long) for piece in domain.pieces):
-            return "facets", "all bodies are balls, ellipsoids or made of facets"
-        reason = "not all bodies are balls and a wall is neither flat nor round nor made of facets"
-    if mesh:
-        return "narrow_band", f"{reason}, and there is a mesh and a law"
-    return "brute_force", f"{reason}, and there is no mesh or no law"
-
-
-def _meets_facets(piece: Piece, long: bool) -> bool:
-    """Whether the detector of facets takes a piece; ``long``: some bodies are ellipsoids that are no balls."""
-    if isinstance(piece.shape, FacetSurface) or piece.shape.plane:
-        return True
-    return _is_whole(piece) if long else is_round(piece.shape)
-
-
-def _is_whole(piece: Piece) -> bool:
-    """Whether a piece is round, and a hollow has no end that bodies could meet."""
-    if not is_round(piece.shape):
-        return False
-    radius, dimension = radius_of(piece.shape), len(piece.shape.bounds[0])
-    whole = 2.0 * pi * abs(radius) if dimension == 2 else 4.0 * pi * radius**2
-    return radius > 0 or piece.area > (1.0 - _ROUNDING) * whole
-
-
-def exact_detector(bodies: Sequence[Body], domain: Domain, registry: Registry) -> type[Detector]:
-    """The cheapest detector that is exact for these bodies between these surfaces and needs no mesh."""
-    return registry.get(DETECTOR, cheapest_detector(bodies, domain, mesh=False)[0])
 
 
 def _domain(scene: Scene, registry: Registry) -> Domain:
@@ -218,8 +156,8 @@ def _detector(
 ) -> tuple[type[Detector], str]:
     if table.detector != AUTO:
         return registry.get(DETECTOR, table.detector), "the scene names it"
-    name, why = cheapest_detector(bodies, domain, mesh)
-    return registry.get(DETECTOR, name), f"chosen as {why}"
+    detector, why = choose_detector(bodies, domain.pieces, mesh, registry)
+    return detector, f"chosen as {why}"
 
 
 def _refuse_detector(detector: type[Detector], mesh: bool) -> None:

@@ -10,8 +10,9 @@ from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.domain import Domain, Piece
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
+    from rigidfluid.core.model.piece import Piece
     from rigidfluid.core.scene.scene import Scene
 
 _APART = 1e-12

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.domain import Piece
+from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 

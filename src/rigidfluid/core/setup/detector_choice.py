@@ -1,0 +1,26 @@
+"""The cheapest detector that is exact for the shapes of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rigidfluid.core.model.interfaces import Body, Detector
+from rigidfluid.core.model.piece import Piece
+from rigidfluid.registry import DETECTOR, Registry
+
+
+def choose_detector(
+    bodies: Sequence[Body], pieces: Sequence[Piece], mesh: bool, registry: Registry
+) -> tuple[type[Detector], str]:
+    """Cheapest installed detector that is exact for ``bodies`` between ``pieces``, and its reason.
+
+    Without ``mesh`` none that needs one is asked. The built-in `brute_force` takes all shapes.
+    """
+    usable = [part for part in registry.installed(DETECTOR) if mesh or not part.needs_mesh]
+    reasons = {part: reason for part in usable if (reason := part.exact_for(bodies, pieces))}
+    return min(reasons.items(), key=lambda found: found[0].cost)
+
+
+def exact_detector(bodies: Sequence[Body], pieces: Sequence[Piece], registry: Registry) -> type[Detector]:
+    """Cheapest detector that is exact for these bodies between these pieces and needs no mesh."""
+    return choose_detector(bodies, pieces, False, registry)[0]
