@@ -26,7 +26,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.contact": (62, 35),
     "core.joints": (29, 9),
     "core.mechanics": (39, 37),
-    "core.mesh": (30, 28),
     "core.model": (81, 9),
     "core.output": (24, 9),
     "core.run": (40, 9),

@@ -39,24 +39,10 @@ FLAT = 1e-9
 
 
 def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
-    """The mesh with its edges on bodies and curved walls bent through the nearest points of the surface.
+    """Bend the edges on bodies and curved walls of a whole, straight mesh through the nearest points of the surface.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Whole, straight, its vertices on their surfaces, the bodies at ``pose``.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-
-    Returns
-    -------
-    Mesh
-        The same cells and surfaces; in 3D, vertices in the fluid give way where bent edges come near. Edges in which
-        surfaces meet stay straight, and those of cells too thin to bend.
+    In 3D, vertices in the fluid give way where bent edges come near. Edges in which surfaces meet stay straight, and
+    those of cells too thin to bend.
     """
     edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
     apart = ~_on_others(mesh, edges, surface)

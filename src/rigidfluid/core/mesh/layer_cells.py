@@ -30,18 +30,10 @@ class ThinnestLayer(NamedTuple):
 def thinnest_layer(
     bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float, size_body: float
 ) -> ThinnestLayer | None:
-    """The layer with the fewest cells of the mean edge on its body; None where nothing moves.
+    """Boundary layer with the fewest cells of the mean edge on its body; None where nothing moves.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The n shapes.
-    speeds : (n,) array
-        Between body and fluid [length/time].
-    kinematic_viscosity : float
-        ν [length²/time].
-    size_body : float
-        Longest edge on the bodies [length].
+    ``speeds`` (n,) are those between body and fluid [length/time], ``size_body`` is the longest edge on bodies
+    [length].
     """
     if not np.any(speeds > 0.0):
         return None

@@ -32,13 +32,8 @@ def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
 
 
 def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
-    """The mesh with the vertices of the second surface of each pair exactly where those of the first are displaced to.
-
-    Raises
-    ------
-    MeshError
-        If they are not near there.
-    """
+    """Put the vertices of the second surface of each periodic pair exactly where those of the first are displaced to;
+    raises MeshError if they are not near there."""
     for pair in domain.periodic:
         points, way = mesh.points.copy(), _way(domain, pair)
         one, two = (surface_vertices(mesh, bodies + piece) for piece in pair)

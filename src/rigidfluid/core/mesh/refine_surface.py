@@ -35,26 +35,6 @@ def refine_surface(
     those whose bisection would flatten or invert a cell: in a gap a vertex may be nearer to a facet than the surface
     above it. Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the
     polygon's error stays far below the gap.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Mesh whose vertices lie on their surfaces, the bodies at ``pose``.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-
-    Returns
-    -------
-    Mesh
-        The same mesh if no edge is too long.
     """
     refused: set[tuple[int, int]] = set()
     while True:
