@@ -27,7 +27,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.joints": (29, 9),
     "core.mechanics": (39, 37),
     "core.model": (81, 9),
-    "core.output": (24, 9),
     "core.run": (40, 9),
     "core.scene": (8, 5),
     "core.setup": (39, 35),

@@ -1,4 +1,4 @@
-"""What the energy balance of a run says of it: energy that came from nowhere or vanished, and why it did."""
+"""Judge the energy balance of a run: energy that came from nowhere or vanished, and why it did."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces and
-    driven bodies had. What is wrong at a time is the residual and what re-meshing took. ``created``: the lowest that it
-    was after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction
-    between the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction,
-    until the end. ``grad_div``: what stabilisation took until the end, no part of the others.
+    driven bodies had. The error at a time is the residual and what re-meshing took. ``created``: the lowest that it was
+    after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction between
+    the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction, until
+    the end. ``grad_div``: what stabilisation took until the end, no part of the others.
     """
 
     put_in: float
@@ -104,14 +104,8 @@ def energy_account(energy: Table) -> EnergyAccount:
 
 
 def energy_warnings(energy: Table) -> list[EnergyWarning]:
-    """Of energy created, of energy lost, of energy unaccounted for at the end that is neither, and of energy that
-    stabilisation took; where noticeable.
-
-    Parameters
-    ----------
-    energy : mapping of str to (s,) array
-        The table of energies by column [energy].
-    """
+    """Warn of energy created, lost, or unaccounted for at the end and neither of these, and of energy that
+    stabilisation took, if noticeable; ``energy``: the table by column (s,) [energy]."""
     account, sums = energy_account(energy), _lost_by_cause(energy)
     lost = energy["residual"] + energy["transfer_loss"]
     friction = energy["path_friction"]
@@ -147,7 +141,7 @@ def _put_in(energy: Table) -> float:
 
 
 def _excess(balance: FloatArray) -> FloatArray:
-    """What a sum (s,) has grown by since the first step; zero before that."""
+    """Growth of a sum (s,) since the first step; zero before that."""
     excess: FloatArray = balance - balance[:2][-1]
     excess[0] = 0.0
     return excess
