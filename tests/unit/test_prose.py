@@ -27,7 +27,7 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.joints": (29, 9),
     "core.mechanics": (39, 37),
     "core.model": (81, 9),
-    "core.run": (40, 9),
+    "core.run": (1, 0),
     "core.scene": (8, 5),
     "core.setup": (39, 35),
     "detectors": (25, 12),

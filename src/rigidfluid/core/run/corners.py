@@ -21,8 +21,8 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
 
 
 def begun_anew(system: System, clock: Clock, state: State) -> State:
-    """At a corner or jump and one step after it, the state without its past, from which nothing can be extrapolated;
-    else the same.
+    """State without its past, from which nothing can be extrapolated, at a corner or jump and one step after it; else
+    the same.
 
     The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start. After a jump that a
     caller has prescribed the level is known already.

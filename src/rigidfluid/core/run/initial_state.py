@@ -1,4 +1,4 @@
-"""Where a run starts."""
+"""State at which a run starts."""
 
 from __future__ import annotations
 

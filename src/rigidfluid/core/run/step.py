@@ -41,14 +41,11 @@ def attempt(
     path: BodyStep,
     provisional: bool,
 ) -> tuple[State, Step]:
-    """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
+    """Attempt one step of this level, the bodies to the end of ``path``: the candidate state there, and the step that
+    led there.
 
-    One that is ``provisional`` shows where another path leads, and is not to be accepted.
-
-    Raises
-    ------
-    StepRejected
-        When bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
+    A ``provisional`` candidate shows where another path leads, and is not to be accepted. Raises StepRejected where
+    bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
     """
     size = clock.size(level)
     time = clock.time(state.tick + clock.ticks(level))
@@ -159,7 +156,8 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 
 
 def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:
-    """What enters by the boundary, what drives bodies and joints in the fluid, what fluid and dampers dissipate."""
+    """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
+    dissipated by fluid and dampers."""
     given, where = given_twist(step)
     control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
     if step.links is not None and advance.link_force is not None:
@@ -171,9 +169,10 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
-    """Where a step begins anew at a corner of a stroke, with the power of its own forces at its start: half of an
-    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps. Without
-    inertia there is no impulse, and the rates after the corner are unknown until the step is made."""
+    """Ledger before a step. If the step begins anew at a corner of a stroke, it has the power of the step's own forces
+    at its start: half of an impulse acts on the rates before the corner, half on those after it, and nothing of it on
+    later steps. Without inertia there is no impulse, and the rates after the corner are unknown until the step is
+    made."""
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger
@@ -186,8 +185,8 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
-    """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, of wrenches from
-    outside, and of dampers."""
+    """Work of a step [energy]: of the free bodies' weight, of what drives bodies and walls against contacts and
+    inertia, of wrenches from outside, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     free = float(fallen[~system.controlled].sum())
     driven = path.actuator_work + by_actuators + _applied_work(state, path.pose)
@@ -195,7 +194,7 @@ def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> 
 
 
 def _applied_work(state: State, pose: Pose) -> float:
-    """Of wrenches from outside, on the way from a state to a ``pose`` of the bodies [energy]."""
+    """Work of wrenches from outside, on the way from a state to a ``pose`` of the bodies [energy]."""
     if state.applied is None:
         return 0.0
     turned = rotation_between(state.pose.orientation, pose.orientation)

@@ -33,8 +33,9 @@ MOST_ATTEMPTS = 4
 
 @dataclass
 class Counts:
-    """Of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes made
-    after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of them."""
+    """Counts of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes
+    made after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of
+    them."""
 
     rejected: int = 0
     unsettled: int = 0
@@ -46,21 +47,10 @@ class Counts:
 class Stepper:
     """Takes steps, and counts what happens to them.
 
-    Parameters
-    ----------
-    system : System
-        What moves; it may be replaced between steps by one with another motion of its controlled bodies.
-    clock : Clock
-        Ticks and levels of steps.
-    mesh_updater : MeshUpdater
-        Of the mesh.
-    watch : Stopwatch
-        Of the stages of a step.
-    tolerance : float, optional
-        Of a step's local error [1]; None for steps as long as the clock allows.
-
-    ``propose`` gives the level of the next step after a state, before gaps and rejections shorten it: the step
-    controller. Another may be put in the place of `longest`, or of `StepController.propose` with a tolerance.
+    The ``system`` may be replaced between steps by one with another motion of its controlled bodies. ``tolerance``: of
+    a step's local error [1]; None for steps as long as the clock allows. ``propose`` gives the level of the next step
+    after a state, before gaps and rejections shorten it: the step controller. Another may be put in the place of
+    `longest`, or of `StepController.propose` with a tolerance.
     """
 
     def __init__(

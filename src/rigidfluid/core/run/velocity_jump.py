@@ -68,4 +68,4 @@ _LONGER = 2.0
 """So many times the latest step is the next at most: a controller answers to twice the way then."""
 
 _ROUNDING = 1e-9
-"""Of a number of halvings."""
+"""Rounding of a number of halvings."""
