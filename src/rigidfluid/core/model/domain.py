@@ -87,7 +87,7 @@ class Domain(SpatialPart):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What to tell a user of how it was read or made; each is a sentence without its full stop."""
+        """Remarks for a user on how it was read or made; each is a sentence without its full stop."""
         return ()
 
     @property

@@ -1,7 +1,8 @@
-"""What a fluid backend, a detector, a force law, a body type and a mechanism must do; `domain` has what a domain must.
+"""Abstract classes of a fluid backend, a detector, a force law, a body type and a mechanism; `domain` has that of a
+domain.
 
-Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
-keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
+Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the keys it
+reads from its table of the scene file (``Options``). Importing the class must not import those packages.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ class PartOptions(BaseModel):
 
 
 class Part(ABC):
-    """What all kinds have in common."""
+    """Replaceable part: its name, the packages it requires and its options."""
 
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
@@ -120,7 +121,7 @@ class Body(Surface, SpatialPart):
 
     @property
     def given_centre(self) -> FloatArray:
-        """Where the centre of mass is in the frame that the options are in, (d,) [length]."""
+        """Centre of mass in the frame that the options are in, (d,) [length]."""
         return np.zeros(self.dimension)
 
 
@@ -150,11 +151,11 @@ class Mechanism(SpatialPart):
     @property
     @abstractmethod
     def components(self) -> Sequence[Component]:
-        """What it consists of, m of them; the type of each shape is one that a scene can name."""
+        """Components, m of them; the type of each shape is one that a scene can name."""
 
     @abstractmethod
     def placement(self, time: float) -> Pose:
-        """Where the components are in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
+        """Pose of the components in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
         orientations [rad | 1]."""
 
     def rate(self, time: float) -> Twist:
@@ -231,10 +232,10 @@ class ForceLaw(Part):
     dissipative: bool = False
     """Whether it has damping; else damping is zero."""
     overlap: Literal["repels", "attracts", "unbounded"] = "repels"
-    """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
+    """Behaviour of the energy's force at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
     StepRejected."""
     loads: Loads | None = None
-    """What its strength follows from, in a law that sets it by them; bodies of equal loads then meet alike."""
+    """Loads from which a law sets its strength; bodies of equal loads then meet alike."""
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         self.options = options
@@ -286,7 +287,7 @@ class FluidBackend(Part):
     periodic_faces: ClassVar[bool] = False
     """Whether it takes periodic conditions."""
     state_format: ClassVar[str | None] = None
-    """What its state holds, by a name. Backends of one name resume each other's runs, and by `joined` and `cut` those
+    """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
@@ -296,7 +297,7 @@ class FluidBackend(Part):
         self.problem = problem
 
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
-        """What solves Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
+        """Solver of Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
 
         ``stiffness`` (N, N) is symmetric and has this rank's cells alone.
         """
@@ -304,9 +305,9 @@ class FluidBackend(Part):
 
     @abstractmethod
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
-        """The fluid at the start, as `FluidProblem.initial` says, and its kinetic energy.
+        """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
 
-        At "rest" it was so when its bodies were set in motion with ``twist``.
+        A fluid at "rest" was so until its bodies were set in motion with ``twist``.
         """
 
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
@@ -355,8 +356,8 @@ class FluidBackend(Part):
         """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
 
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
-        """What steps on a mesh of about so many ``cells``, and ``facets`` on its boundary, are going to take; None
-        where the backend does not know."""
+        """Expected cost of steps on a mesh of about so many ``cells``, and ``facets`` on its boundary; None where the
+        backend does not know."""
         return None
 
     @abstractmethod
@@ -364,7 +365,7 @@ class FluidBackend(Part):
         """Drop every cache, so that the next step depends on the given state alone."""
 
     def memory(self) -> FluidState:
-        """What the next step depends on beside the given state, to the last bit: named arrays for a checkpoint.
+        """Data on which the next step depends beside the given state, to the last bit: named arrays for a checkpoint.
 
         A backend that does not say drops its caches.
         """

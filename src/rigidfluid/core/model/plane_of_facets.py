@@ -13,10 +13,10 @@ FLAT = 1e-10
 
 
 def plane_around(facets: Facets, points: FloatArray) -> Plane | None:
-    """The plane of all ``facets`` if they lie in one, and all ``points`` (N, d) of the domain on its one side.
+    """Plane of all ``facets`` if they lie in one, and all ``points`` (N, d) of the domain on its one side.
 
-    Where the domain is on both sides of it, as at a corner that points inwards, the plane goes on inside: then the
-    facets alone are the wall.
+    If the domain is on both sides of it, as at a corner that points inwards, the plane goes on inside: then the facets
+    alone are the wall.
     """
     tolerance = FLAT * float(np.ptp(points, axis=0).max())
     plane = _plane_of(facets, tolerance)

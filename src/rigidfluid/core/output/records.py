@@ -141,7 +141,7 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
         return
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
     if system.window is not None:  # nothing is known of the fluid outside
-        outside = ~system.window.at(state.pose).contains(probes)
+        outside = ~system.window.meshed_domain(state.pose).contains(probes)
         velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
         yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))
