@@ -1,4 +1,4 @@
-"""How many cells and boundary facets a mesh is going to have, from the sizes that are wanted alone."""
+"""Expected number of cells and boundary facets of a mesh, from the wanted sizes alone."""
 
 from __future__ import annotations
 

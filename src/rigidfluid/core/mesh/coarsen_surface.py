@@ -84,7 +84,8 @@ def _short_edges(
 
 
 def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
-    """Which of the ``pairs`` (E, 2), whose cells are apart, can be collapsed; edges are to be ``wanted`` (E,) long."""
+    """Whether each of the ``pairs`` (E, 2), whose cells are apart, can be collapsed, (E,); edges are to be ``wanted``
+    (E,) long."""
     at = np.full(len(mesh.points), -1)
     at[pairs[:, 0]] = np.arange(len(pairs))
     target = _targets(mesh, pairs)
@@ -132,7 +133,7 @@ def _changed(simplices: IntArray, at: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _degenerate(simplices: IntArray) -> BoolArray:
-    """Which simplices have a vertex twice."""
+    """Whether each simplex has a vertex twice, (M,)."""
     ordered = np.sort(simplices, axis=1)
     return np.asarray((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
 

@@ -45,5 +45,5 @@ def is_due(reference: Pose, before: Pose, after: Pose, sizes: Sizes) -> bool:
 
 
 def _farthest(reference: Pose, pose: Pose) -> float:
-    """How far any body is from its place in another pose [length]."""
+    """Largest distance of a body from its place in another pose [length]."""
     return float(np.linalg.norm(pose.position - reference.position, axis=1).max())

@@ -95,7 +95,7 @@ def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:
 
 
 def _on_others(mesh: Mesh, edges: IntArray, surface: IntArray) -> BoolArray:
-    """Which edges (E, 2) are on facets of other surfaces than the ``surface`` (E,) they are listed for."""
+    """Whether each edge (E, 2) is also on facets of other surfaces than the ``surface`` (E,) it is listed for, (E,)."""
     shared = np.zeros(len(edges), dtype=bool)
     if mesh.points.shape[1] == 2:
         return shared  # an edge is a facet

@@ -1,4 +1,4 @@
-"""How many cells lie across the boundary layers on bodies, and what is to be said where they are few."""
+"""Number of cells across the boundary layers on bodies, and the least that forces need."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
 FEWEST_CELLS = 0.95
-"""With fewer a torque was eight times as large, or of the other sign, for some twenty steps after each new mesh."""
+"""Fewest cells across a layer: with fewer a torque was eight times as large, or of the other sign, for some twenty
+steps after each new mesh."""
 
 
 class ThinnestLayer(NamedTuple):

@@ -28,7 +28,7 @@ from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
 
 ADAPTATIONS = 4
-"""How often MMG brings the domain's mesh nearer to the wanted size before it cuts."""
+"""Number of times that MMG brings the domain's mesh nearer to the wanted size before it cuts."""
 
 GRADATION = 1.3
 """Ratio of neighbouring edges that MMG may use."""
@@ -40,10 +40,10 @@ FLUID, SOLID = 2, 3
 """References that MMG gives to the cells outside and inside the bodies."""
 
 DEVIATION = {2: 0.01, 3: 0.25}
-"""How far the facets of a cut may be off the level that MMG interpolates, over size_body, by dimension."""
+"""Largest distance of a cut's facets from the level that MMG interpolates, over size_body, by dimension."""
 
 ROUNDS = 12
-"""How often vertices are moved towards the shapes, and cells improved."""
+"""Largest number of times that vertices are moved towards the shapes, and cells improved."""
 
 LEAST_QUALITY = 0.1
 """Moving vertices onto the shapes leaves cells at this quality, or at half of what they had if that was less."""

@@ -13,7 +13,7 @@ from rigidfluid.errors import MeshError
 
 
 class Kept(NamedTuple):
-    """Which ``facets`` (F,) and ``cells`` (M,) of a mesh MMG has to keep."""
+    """Whether MMG has to keep each of the ``facets`` (F,) and ``cells`` (M,) of a mesh."""
 
     facets: BoolArray
     cells: BoolArray

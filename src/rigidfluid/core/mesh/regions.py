@@ -15,7 +15,7 @@ from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 CELLS_PER_RADIUS = 4.0
-"""So many edges are as long as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
+"""Number of edges as long together as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
 
 
 class Region(Protocol):

@@ -36,10 +36,11 @@ BISECTABLE = 4.0
 """Kept edges at most this many times longer than wanted are left to bisection; longer ones may cut through the gap."""
 
 GENERATIONS = 8
-"""How often the first mesh is generated, each time finer where an edge is too long for the gap it faces."""
+"""Largest number of times that the first mesh is generated, each time finer where an edge is too long for the gap it
+faces."""
 
 ROUNDS = 4
-"""How often cells are improved around edges that could not be bisected."""
+"""Largest number of times that cells are improved around edges that could not be bisected."""
 
 WORST_QUALITY = 0.02
 """A re-made mesh with a cell at or below this quality is refused."""
@@ -145,7 +146,8 @@ def best_remeshed(
 def remeshed_once(
     mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
 ) -> Mesh:
-    """One call of MMG, its result repaired by round-off and checked; ``size_at(points)`` is the wanted size (N,)."""
+    """Re-mesh by one call of MMG, repair round-off and check the result; ``size_at(points)`` is the wanted size
+    (N,)."""
     unit = mesher_unit(np.ptp(mesh.points, axis=0))
     given = rounded(replace(mesh, points=mesh.points / unit))
     kept = Kept(on_kept_surfaces(mesh, bodies, domain), kept_cells(mesh, bodies, size_at, layers))

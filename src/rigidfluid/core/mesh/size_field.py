@@ -35,7 +35,7 @@ class Sizes:
 
     @property
     def smallest(self) -> float:
-        """For a gap, cells are never wanted smaller than size_body / 2^refinements [length]."""
+        """Smallest size wanted for a gap, size_body / 2^refinements [length]."""
         return self.size_body / 2.0**self.refinements
 
 

@@ -53,7 +53,7 @@ def smooth_fluid(mesh: Mesh) -> Mesh:
 
 
 def _directions(dimension: int) -> FloatArray:
-    """Along the axes and the diagonals, unit vectors (3^d - 1, d)."""
+    """Unit vectors along the axes and the diagonals, (3^d - 1, d)."""
     directions = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=dimension) if any(one)])
     return np.asarray(directions / np.linalg.norm(directions, axis=1, keepdims=True))
 

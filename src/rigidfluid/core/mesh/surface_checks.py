@@ -77,7 +77,7 @@ def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
 
 
 def _within_reach(number: int, body: Body, bodies: Sequence[Body], pose: Pose) -> BoolArray:
-    """Which other bodies' bounding balls overlap that of one, (n,)."""
+    """Whether each other body's bounding ball overlaps that of one, (n,)."""
     radii = np.array([other.bounding_radius for other in bodies])
     distance = np.linalg.norm(pose.position - pose.position[number], axis=1)
     distance[number] = np.inf

@@ -14,7 +14,7 @@ from rigidfluid.errors import MeshError
 REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."
 
 _ROUNDINGS = 16.0
-"""How many roundings of a coordinate, of ε max|x| each, a vertex of the boundary may be away from its place."""
+"""Roundings of a coordinate, of ε max|x| each, that a vertex of the boundary may be away from its place."""
 
 
 def boundary_facets(cells: IntArray) -> IntArray:
@@ -42,8 +42,8 @@ def orient(mesh: Mesh) -> Mesh:
 
 
 def share_no_cell(cells: IntArray, chosen: IntArray, vertices: int) -> BoolArray:
-    """Which of the ``chosen`` vertices (E,) no cell has two of: those that come first of them in all their cells; the
-    ``vertices`` are counted."""
+    """Whether each of the ``chosen`` vertices is the first of them in all its cells, (E,), so that no cell has two with
+    True; ``vertices`` is the number of all."""
     rank = np.full(vertices, len(chosen))
     np.minimum.at(rank, chosen, np.arange(len(chosen)))
     least = rank[cells].min(axis=1)

@@ -26,5 +26,5 @@ def in_order(parts: Sequence[Contacts]) -> Contacts:
 
 
 def middle(contacts: Contacts) -> FloatArray:
-    """Half-way between the contact points, (m, d) [length]."""
+    """Middle between the contact points, (m, d) [length]."""
     return np.asarray(0.5 * (contacts.point_a + contacts.point_b))

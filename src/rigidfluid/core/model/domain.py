@@ -67,7 +67,7 @@ class Domain(SpatialPart):
 
     @abstractmethod
     def contains(self, points: FloatArray) -> BoolArray:
-        """Which of ``points`` (N, d) are inside, (N,); on the boundary either may be said."""
+        """Whether each of ``points`` (N, d) is inside, (N,); on the boundary either may be said."""
 
     def cad_shape(self, unit: float) -> Any:
         """The domain as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, whose edges (2D) or

@@ -33,7 +33,7 @@ class Power:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """Done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
+    """Work done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
     contacts took, and what friction took between the fluid's solutions, ``drag_loss`` where the fluid has no inertia
     and that is known for certain."""
 
@@ -96,7 +96,8 @@ class Ledger:
 
     @property
     def put_in(self) -> float:
-        """Energy stored at the start, and that which came in since as far as more came in than went out the same way."""
+        """Energy stored at the start, and that which came in since, as far as more came in than went out the same
+        way."""
         return self.initial + sum(max(work, 0.0) for work in (self.gravity, self.boundary, self.control))
 
     @property

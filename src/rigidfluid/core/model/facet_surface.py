@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
 
 _TOUCHING = 1e-8
-"""Over the size of the surface: nearer points have no direction from an edge or a corner."""
+"""Distance, over the size of the surface, below which points have no direction from an edge or a corner."""
 
 _CORNER = np.array([0, 1, 0, 2, 0, 1, 0])
 """A corner of the vertex, edge or inside of a facet that each number of bits (less one) stands for."""
@@ -193,7 +193,8 @@ class FacetSurface(Surface):
 
 
 def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: float) -> BoolArray:
-    """Which places (m,) are farther than ``touching`` [length] from the first of their point, and from those before.
+    """Whether each place is farther than ``touching`` [length] from the first of its point, and from those before,
+    (m,).
 
     Rounding may say of a point over an end of facets that it is an inside of one and the end of another.
     """

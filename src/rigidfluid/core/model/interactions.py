@@ -32,7 +32,7 @@ class Interaction:
     smallest_gap: float | None = None
 
     def acts_in(self, contacts: Contacts) -> BoolArray:
-        """Which contacts (m,) are its own, whatever their gaps."""
+        """Whether each contact is its own, whatever the gap, (m,)."""
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
             chosen &= contacts.at_wall == (self.between == "walls")
@@ -42,7 +42,7 @@ class Interaction:
 
 
 def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) any of the interactions acts in."""
+    """Whether any of the interactions acts in each contact, (m,)."""
     each = [interaction.acts_in(contacts) for interaction in interactions]
     return np.asarray(np.any(each, axis=0), dtype=bool) if each else np.zeros(len(contacts), dtype=bool)
 

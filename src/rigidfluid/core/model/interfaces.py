@@ -107,7 +107,7 @@ class Body(Surface, SpatialPart):
 
     @abstractmethod
     def sample_surface(self, count: int) -> FloatArray:
-        """About ``count`` points spread over the surface, (N, d) [length]."""
+        """Points spread over the surface, about ``count`` of them, (N, d) [length]."""
 
     def cad_shape(self, unit: float) -> Any:
         """The shape as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, for the mesh generator;
@@ -159,7 +159,7 @@ class Mechanism(SpatialPart):
         orientations [rad | 1]."""
 
     def rate(self, time: float) -> Twist:
-        """How the placement changes, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
+        """Rate of the placement, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
         m, k = len(self.components), 1 if self.dimension == 2 else 3
         return Twist(np.zeros((m, self.dimension)), np.zeros((m, k)))
 
@@ -321,12 +321,12 @@ class FluidBackend(Part):
 
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
-        """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+        """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
 
     @abstractmethod
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
-        """How the twists answer in this ``step`` to each of c ``impulses`` (c, n, d+k) on the free bodies
-        [force·time | force·length·time]; asked of backends with a mesh alone."""
+        """Impulse response: the twists that each of c ``impulses`` (c, n, d+k) on the free bodies gives in this
+        ``step`` [force·time | force·length·time]; asked of backends with a mesh alone."""
 
     @abstractmethod
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
@@ -353,7 +353,8 @@ class FluidBackend(Part):
 
     @abstractmethod
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
+        """Number of unknowns of one step on this mesh, with the twists of the ``controlled`` motions (N,)
+        prescribed."""
 
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
         """Expected cost of steps on a mesh of about so many ``cells``, and ``facets`` on its boundary; None where the

@@ -53,9 +53,9 @@ class GroundLink:
 
 @dataclass(frozen=True, slots=True)
 class LinkReading:
-    """One joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge its ``angle``
-    [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body, about the point
-    of the joint [force | force·length]."""
+    """Reading of one joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge
+    its ``angle`` [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body,
+    about the point of the joint [force | force·length]."""
 
     name: str
     gap: float

@@ -17,12 +17,12 @@ _GIBIBYTE = 2.0**30
 REMEDY = (
     'Set fluid.solver = "schur" in 3D, raise mesh.size and mesh.size_body, or share the run with backend "dolfinx".'
 )
-"""Against factors that are too large."""
+"""Remedy against factors that are too large."""
 
 
 def available_memory() -> float:
-    """Memory that this process may still take [byte]: what the system has, what its control group (version 2) and its
-    limit of addresses leave. Infinite where none tells."""
+    """Memory that this process may still take [byte], infinite where none tells: the least of what the system has, and
+    what its control group (version 2) and its limit of addresses leave."""
     return min(_system_memory(), _group_memory(), _address_space())
 
 

@@ -9,7 +9,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
 FLAT = 1e-10
-"""Over the size of the surface: points that are less off a plane lie in it."""
+"""Distance from a plane, over the size of the surface, below which points lie in it."""
 
 
 def plane_around(facets: Facets, points: FloatArray) -> Plane | None:

@@ -101,7 +101,7 @@ class Ranks(ABC):
 
 
 class Alone(Ranks):
-    """One process that holds everything."""
+    """Single process that holds everything."""
 
     rank = 0
     size = 1

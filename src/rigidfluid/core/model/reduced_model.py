@@ -1,4 +1,5 @@
-"""How a few bodies in a fluid answer to their contacts within a step: with a mass matrix and a friction matrix."""
+"""Reduced model of a few bodies in a fluid, and of their response to contacts within a step: mass and resistance
+matrices."""
 
 from __future__ import annotations
 
@@ -11,15 +12,15 @@ from rigidfluid.core.model.types import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """When the bodies of some velocities were asked for their answers: ``tightness`` (c,) of their contacts [1], and
-    the ``velocity`` (c,) itself."""
+    """Conditions under which the impulse response of some velocities was evaluated: ``tightness`` (c,) of their
+    contacts [1], and the ``velocity`` (c,) itself."""
 
     tightness: FloatArray
     velocity: FloatArray
 
     @property
     def arrays(self) -> tuple[FloatArray, FloatArray]:
-        """Both."""
+        """Tightness and velocity."""
         return self.tightness, self.velocity
 
 
@@ -111,7 +112,7 @@ def _root(matrix: FloatArray, shared: bool) -> FloatArray:
 
 
 _LEAST = 1e-12
-"""Less of the inviscid answer than this is the rounding of none."""
+"""Least share of the inviscid answer; less is the rounding of none."""
 
 _LEAST_SHARE = 0.1
 """Least answer of a mode of many velocities, over the answers of single ones, where questions were shared."""

@@ -86,7 +86,7 @@ class ErrorEstimate:
 
     @property
     def restarted(self) -> ErrorEstimate:
-        """After a change of the motion at once: unknown, over the same scales."""
+        """Estimate after a change of the motion at once: unknown, over the same scales."""
         return replace(self, steps=0, error=math.inf, with_contacts=math.inf)
 
 
@@ -112,8 +112,8 @@ class CarriedState:
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """One step earlier, of the motions: what second order in time needs. ``applied``: the mean wrench from outside in
-    the step since then, None without any."""
+    """Pose and twist of the motions one step earlier, for second order in time. ``applied``: the mean wrench from
+    outside in the step since then, None without any."""
 
     pose: Pose
     twist: Twist

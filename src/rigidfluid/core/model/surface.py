@@ -105,12 +105,12 @@ class Plane(Surface):
 
     @property
     def radius(self) -> float:
-        """Infinite."""
+        """Radius of curvature, infinite."""
         return np.inf
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Infinite where the plane has no end [length]."""
+        """Corners of the box around the plane, infinite where it has no end [length]."""
         return self._bounds
 
     def signed_distance(self, points: FloatArray) -> FloatArray:

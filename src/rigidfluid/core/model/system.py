@@ -107,7 +107,7 @@ class System:
 
     @property
     def controlled_motions(self) -> BoolArray:
-        """Which of the motions are given (N,)."""
+        """Whether the twist of each motion is prescribed, (N,)."""
         return self.controlled if self.mechanisms is None else self.mechanisms.controlled
 
     @property

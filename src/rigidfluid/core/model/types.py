@@ -21,7 +21,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 _FROM_RADII: FloatArray = np.empty(0)
-"""In place of effective radii that are not given."""
+"""Placeholder for effective radii that are not given, and follow from the radii of curvature."""
 
 FluidState = Mapping[str, FloatArray]
 """State of a fluid backend between steps, as named arrays, so that a checkpoint can hold it unchanged."""
@@ -85,7 +85,7 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How the surfaces of each contact move, for forces that depend on it.
+    """Relative motion of the surfaces of each contact, for forces that depend on it.
 
     ``velocity`` (m, d) of a relative to b, both as rigid bodies, half-way between the contact points [length/time];
     ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass].
@@ -209,7 +209,8 @@ class BoundaryCondition:
 
 @dataclass(frozen=True, slots=True)
 class Kinematics:
-    """How n components follow N motions at one moment: component twist = G u + g, free wrench = Gᵀ component wrench.
+    """Kinematics of n components on N motions at one moment: component twist = G u + g, free wrench = Gᵀ component
+    wrench.
 
     Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
     leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
@@ -260,7 +261,7 @@ class FluidProblem:
 
     @property
     def motions(self) -> int:
-        """How many motions carry the bodies."""
+        """Number of motions that carry the bodies."""
         return self.bodies if self.carrier is None else max(self.carrier) + 1
 
     @property
@@ -324,7 +325,7 @@ class SolverCost:
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """How the twists of all bodies, or of the motions that carry them, answer to impulses on them, (c, n, d+k) each
+    """Response of the twists of all bodies, or of the motions that carry them, to impulses on them, (c, n, d+k) each
     for c impulses.
 
     ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end

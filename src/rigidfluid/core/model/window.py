@@ -37,7 +37,7 @@ class Window:
 
     @property
     def way(self) -> float:
-        """How far it can go until it reaches the end of the domain [length]."""
+        """Distance that it can go until it reaches the end of the domain [length]."""
         return self.sign * (self._end - self.ahead)
 
     @property
@@ -52,7 +52,7 @@ class Window:
         return across[self.sign], across[-self.sign]
 
     def displacement(self, pose: Pose) -> float:
-        """Along the axis since the start, while the bodies are at ``pose`` [length]."""
+        """Displacement along the axis since the start, while the bodies are at ``pose`` [length]."""
         gone = self.sign * float(pose.position[self.body, self.axis] - self.start)
         return self.sign * min(max(gone, 0.0), self.way)
 

@@ -14,10 +14,11 @@ from rigidfluid.core.model.types import FloatArray
 Table = Mapping[str, NDArray[Any]]
 
 NOTICEABLE, SERIOUS = 0.01, 0.05
-"""From these shares on, energy created, lost or unaccounted for is worth a warning and a serious one."""
+"""Shares of the energy put in from which on energy created, lost or unaccounted for is worth a warning, and a serious
+one."""
 
 STABILISED = 0.05
-"""From this share of what was put in on, what grad-div stabilisation took is worth a warning."""
+"""Share of the energy put in from which on the loss by grad-div stabilisation is worth a warning."""
 
 _TOLD = 0.1
 """A cause of less than this part of what was created or lost is not told."""
@@ -129,7 +130,7 @@ def energy_warnings(energy: Table) -> list[EnergyWarning]:
 
 
 def per_cent(share: float) -> str:
-    """To two digits; what is below a millionth is nothing."""
+    """Percentage to two digits; a share below a millionth is nothing."""
     value = 100.0 * share if abs(share) >= 1e-6 else 0.0
     return f"{value:.2g} %" if abs(value) < 100.0 else f"{value:.0f} %"
 

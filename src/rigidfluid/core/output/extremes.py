@@ -11,7 +11,7 @@ from rigidfluid.core.model.types import FloatArray, Twist
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """Until now: ``smallest_gap`` [length], and the ``highest_speed`` of each body (n,) [length/time]."""
+    """Extremes until now: ``smallest_gap`` [length], and the ``highest_speed`` of each body (n,) [length/time]."""
 
     smallest_gap: float
     highest_speed: FloatArray

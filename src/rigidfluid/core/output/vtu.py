@@ -101,7 +101,7 @@ def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
 
 
 def _joined(pieces: Sequence[Fields]) -> Fields:
-    """One mesh, with a single node where several pieces have the same to rounding."""
+    """Join pieces to one mesh, with a single node where several have the same to rounding."""
     from scipy.spatial import cKDTree
 
     points = np.concatenate([piece.points for piece in pieces])

@@ -143,7 +143,7 @@ def checkpoint_name(rank: int) -> str:
 
 
 def ranks_of_run(out: Path) -> int:
-    """How many ranks have written the latest checkpoint in a folder; raises OutputError where there is none."""
+    """Number of ranks that have written the latest checkpoint in a folder; raises OutputError where there is none."""
     latest, count = read_origin(out / CHECKPOINT)
     for path in _checkpoints(out)[1:]:
         latest, count = max((latest, count), read_origin(path))

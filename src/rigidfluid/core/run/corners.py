@@ -47,9 +47,9 @@ def _is_corner(system: System, clock: Clock, tick: int) -> bool:
 
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:
-    """The first tick after this at which there is a corner; infinite without any.
+    """First tick after this at which there is a corner; infinite without any.
 
-    Between two ticks that is the earlier one, so that the rate there is still that before the corner.
+    A corner between two ticks is at the earlier one, so that the rate there is still that before the corner.
     """
     corner = _next_corner(system, clock.time(tick))
     while math.isfinite(corner) and clock.tick_until(corner) <= tick:

@@ -1,4 +1,4 @@
-"""How far mechanisms get in each cycle of their strokes."""
+"""Displacement and rotation of mechanisms in each cycle of their strokes."""
 
 from __future__ import annotations
 

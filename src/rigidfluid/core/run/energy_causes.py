@@ -1,4 +1,5 @@
-"""Why a step left energy unaccounted for: it began anew, its mesh was new, or contacts pushed otherwise than before."""
+"""Cause of the energy that a step left unaccounted for: it began anew, its mesh was new, or contacts pushed otherwise
+than before."""
 
 from __future__ import annotations
 

@@ -21,5 +21,5 @@ def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
 
 
 def inserter_of(table: MeshTable | None) -> Inserter:
-    """How the bodies come into the first mesh."""
+    """Way in which the bodies come into the first mesh."""
     return BY_SHAPE if table is None else Inserter(table.inserter, table.mesher_timeout)

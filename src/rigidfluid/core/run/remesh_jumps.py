@@ -1,4 +1,4 @@
-"""How far the fluid's forces on bodies jump where a new mesh is made."""
+"""Jumps of the fluid's forces on bodies where a new mesh is made."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
 
 
 def _redistributed(backend: FluidBackend, parts: list[Checkpoint]) -> list[Checkpoint]:
-    """For each process of the ``backend`` one; what is the same for all is the first's."""
+    """Checkpoint for each process of the ``backend``; what is the same for all is the first's."""
     states = _cut(backend, _joined(backend, [part.state for part in parts]))
     return [replace(parts[0], state=state, memory={}, ranks=len(states)) for state in states]
 

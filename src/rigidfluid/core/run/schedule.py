@@ -25,5 +25,5 @@ class Schedule:
         return tick >= min(self._clock.tick_from((number + 1) * self._every), self._clock.last_tick)
 
     def met(self, tick: int) -> None:
-        """It was met in the state at this ``tick``."""
+        """Record that it was met in the state at this ``tick``."""
         self.latest = self._clock.time(tick)

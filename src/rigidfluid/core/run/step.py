@@ -1,4 +1,4 @@
-"""One attempted step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
+"""Attempts one step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _applied(system: System, state: State, step: Step) -> Wrench | None:
 
 
 def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad | None:
-    """In a fluid the joints' forces follow from its solution, else from the path."""
+    """Load of the joints: in a fluid their forces follow from its solution, else from the path."""
     if system.linkage is None or step.links is None or advance.link_force is None:
         return path.link
     wrench = np.tensordot(advance.link_force, step.links.rows, axes=1)
@@ -141,13 +141,13 @@ def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
 
 
 def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float) -> float:
-    """In contacts and springs [energy]."""
+    """Energy stored in contacts and springs [energy]."""
     in_springs = 0.0 if system.linkage is None else system.linkage.spring_energy(motions, time)
     return in_springs + contact_energy(system, contacts)
 
 
 def contact_energy(system: System, contacts: Contacts) -> float:
-    """Stored in the contacts [energy]."""
+    """Energy stored in the contacts [energy]."""
     if system.law is None or len(contacts) == 0:
         return 0.0
     energy = system.law.energy(contacts)

@@ -1,4 +1,4 @@
-"""How long a step may be for the sake of its error: the longest whose local error is tolerated."""
+"""Length of a step for the sake of its error: the longest whose local error is tolerated."""
 
 from __future__ import annotations
 

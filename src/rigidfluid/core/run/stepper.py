@@ -1,4 +1,4 @@
-"""From one accepted state to the next: the longest step that is allowed, halved until it succeeds."""
+"""Takes a run from one accepted state to the next: by the longest step that is allowed, halved until it succeeds."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ class Stepper:
         return replace(path, pose=bodies, free=replace(path.free, pose=motions))
 
     def _end(self, state: State, level: int) -> float:
-        """When a step of this level ends [time]."""
+        """Time when a step of this level ends [time]."""
         return self._clock.time(state.tick + self._clock.ticks(level))
 
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
