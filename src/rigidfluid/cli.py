@@ -94,7 +94,7 @@ View = Annotated[
 MovieSize = Annotated[int, typer.Option("--size", help="Points along the longer side.", min=50, max=4000)]
 FramesPerSecond = Annotated[int, typer.Option("--fps", help="Pictures a second.", min=1, max=100)]
 
-LAUNCH = Launch.of()
+LAUNCH = Launch.read()
 """This process among those that share a run; the first one speaks for all."""
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)

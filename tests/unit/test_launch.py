@@ -39,7 +39,7 @@ def command(monkeypatch, rank, *arguments):
     ],
 )
 def test_launchers_say_who_is_who(environment, rank, size):
-    assert Launch.of(environment) == Launch(rank, size)
+    assert Launch.read(environment) == Launch(rank, size)
 
 
 def test_what_loading_makes_is_not_searched_for_garbage():

@@ -63,7 +63,7 @@ def test_no_body_makes_no_cut():
 
 def test_vertices_that_do_not_come_onto_their_shape_are_refused(monkeypatch):
     monkeypatch.setattr(level_set, "ROUNDS", 1)
-    monkeypatch.setattr(level_set, "_as_far_as_cells_allow", lambda mesh, _: mesh.points)
+    monkeypatch.setattr(level_set, "_move_within_quality", lambda mesh, _: mesh.points)
     with pytest.raises(MeshError, match=r"body.[01]: found vertices up to .* off the shape"):
         level_set_mesh(*in_a_dish(2), timeout=60.0)
 
@@ -72,6 +72,6 @@ def test_vertices_stop_where_they_would_invert_a_cell():
     mesh = level_set_mesh([], nobody(2), dish(), [], Sizes(0.5, 0.05), timeout=60.0)
     target = mesh.points.copy()
     target[0] += 5.0
-    moved = level_set._as_far_as_cells_allow(mesh, target)
+    moved = level_set._move_within_quality(mesh, target)
     assert cell_quality(moved, mesh.cells).min() >= min(0.1, cell_quality(mesh.points, mesh.cells).min())
     assert not np.array_equal(moved[0], target[0])

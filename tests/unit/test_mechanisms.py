@@ -231,7 +231,7 @@ def test_components_do_not_repel_each_other():
 def test_buoyancy_turns_what_is_heavy_at_one_end():
     table = pair(ratio=4.0, angle=0.0)
     it = run(scene(table, density=1.5, gravity=[0.0, -9.81], end=0.2, step=1e-3))
-    lever = it.system.mechanisms.at(it.system.mechanisms.pose, 0.0).arm[:, 0]
+    lever = it.system.mechanisms.kinematics(it.system.mechanisms.pose, 0.0).arm[:, 0]
     torque = lever @ it.system.weight[:, 1]
     expected = torque / it.system.mechanisms.inertia(0.0)[0, 0, 0]
     early = run(scene(table, density=1.5, gravity=[0.0, -9.81], end=0.01, step=1e-3))

@@ -75,7 +75,7 @@ def test_it_goes_with_the_body_up_to_the_domain_s_end_and_never_back(at: float, 
     window, start = long_box(2)
     there = Pose(np.array([[1.3, at]]), start.orientation)
     assert window.interval(there) == pytest.approx(interval, rel=0, abs=1e-14)
-    lower, upper = window.at(there).extent
+    lower, upper = window.meshed_domain(there).extent
     assert (lower[1], upper[1]) == window.interval(there)
     assert (lower[0], upper[0]) == (0.0, 2.0)
 
@@ -92,7 +92,7 @@ def test_a_window_may_look_up() -> None:
 def test_a_mesh_goes_with_a_ball_as_it_is(dimension: int) -> None:
     window, start = long_box(dimension)
     body = [ball(0.25, dimension)]
-    mesh = generate_mesh(body, start, window.at(start), 0.6, 0.2, 0.3)
+    mesh = generate_mesh(body, start, window.meshed_domain(start), 0.6, 0.2, 0.3)
     motion = MeshMotion(mesh, body, window.domain, start, window=window)
     there = Pose(start.position - [0.0, 4.0, 0.0][:dimension], start.orientation)
     np.testing.assert_allclose(motion.move(there), mesh.points - [0.0, 4.0, 0.0][:dimension], rtol=0, atol=1e-12)
@@ -104,7 +104,7 @@ def test_a_mesh_goes_with_a_ball_as_it_is(dimension: int) -> None:
 def test_a_mesh_in_parts_goes_as_the_whole_does() -> None:
     window, start = long_box(2)
     body, there = [ball(0.25)], upright([1.1, 6.0])
-    mesh = generate_mesh(body, start, window.at(start), 0.6, 0.2, 0.3)
+    mesh = generate_mesh(body, start, window.meshed_domain(start), 0.6, 0.2, 0.3)
     expected = MeshMotion(mesh, body, window.domain, start, window=window).move(there)
 
     def moved(ranks: Any) -> Any:

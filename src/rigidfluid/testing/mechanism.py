@@ -130,7 +130,7 @@ class MechanismContract:
         """Poses of the components change by G u with the motion's pose, and by g with time."""
         carried, pose, twist = _carried(mechanism)
         for time in self.times:
-            kinematics = carried.at(pose, time)
+            kinematics = carried.kinematics(pose, time)
 
             def moved(way: float, time: float = time) -> Pose:
                 motion = Pose(
@@ -151,7 +151,7 @@ class MechanismContract:
         carried, pose, _ = _carried(mechanism)
         random, d = np.random.default_rng(5), mechanism.dimension
         for time in self.times:
-            kinematics = carried.at(pose, time)
+            kinematics = carried.kinematics(pose, time)
             rows = random.normal(size=kinematics.given.shape)
             on_whole = flat(free_wrench(kinematics, Wrench(rows[:, :d], rows[:, d:])))
             expected = jacobian(kinematics).T @ rows.ravel()
@@ -163,7 +163,7 @@ class MechanismContract:
         carried, pose, twist = _carried(mechanism)
         mass, inertia = _masses(mechanism)
         for time in self.times:
-            kinematics = carried.at(pose, time)
+            kinematics = carried.kinematics(pose, time)
             assert np.abs(mass @ kinematics.arm).max() <= self.tolerance * mass.sum() * self._length(mechanism)
             parts = momentum(mass, inertia, carried.poses(pose, time), component_twist(kinematics, twist))
             d = mechanism.dimension

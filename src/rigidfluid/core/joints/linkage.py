@@ -211,7 +211,7 @@ class JointLinkage:
     def _bodies(self, motions: Pose, time: float) -> tuple[Pose, Kinematics | None]:
         if self._mechanisms is None:
             return motions, None
-        return self._mechanisms.poses(motions, time), self._mechanisms.at(motions, time)
+        return self._mechanisms.poses(motions, time), self._mechanisms.kinematics(motions, time)
 
     def _given(self, bodies: Pose, kinematics: Kinematics | None, time: float) -> FloatArray:
         """Of the bodies' twists what no free motion has a share in (n, d+k)."""

@@ -110,7 +110,7 @@ class ComponentDynamics:
             pull = pull + np.linalg.norm(np.einsum("nij,nj->ni", self._motions.inverse_inertia, torque), axis=1)
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
         turning = (pull + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
-        later = self._mechanisms.at(self._motions.pose, self._time + time)
+        later = self._mechanisms.kinematics(self._motions.pose, self._time + time)
         change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
         return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
 
@@ -134,4 +134,4 @@ class ComponentDynamics:
     def _place(self) -> None:
         motions = self._motions.pose
         self.pose: Pose = self._mechanisms.poses(motions, self._time)
-        self.kinematics: Kinematics = self._mechanisms.at(motions, self._time)
+        self.kinematics: Kinematics = self._mechanisms.kinematics(motions, self._time)

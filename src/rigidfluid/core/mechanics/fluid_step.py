@@ -22,7 +22,7 @@ def step_to(
     """The step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
     derivative = derivative_weights(size, state.past_step)
     mechanisms = system.mechanisms
-    kinematics = None if mechanisms is None else mechanisms.at(pose, time)
+    kinematics = None if mechanisms is None else mechanisms.kinematics(pose, time)
     mass_matrix, load = _newton_euler(system, state, time, size, pose, impulse, derivative, kinematics)
     return Step(
         time=time,

@@ -66,7 +66,7 @@ class CarriedBodies:
         orientation = compose(motions.orientation[carrier], relative.orientation)
         return Pose(motions.position[carrier] + arm, orientation)
 
-    def at(self, motions: Pose, time: float) -> Kinematics:
+    def kinematics(self, motions: Pose, time: float) -> Kinematics:
         """Arms R s, and what relative motion adds, R ds/dt and R ν."""
         relative, orientation = self._relative(time), motions.orientation[self.carrier]
         velocity, spin = relative.twist.velocity, relative.twist.angular_velocity

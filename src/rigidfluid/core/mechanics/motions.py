@@ -46,7 +46,7 @@ def carried_bodies(system: System, motions: Pose, twist: Twist, time: float) -> 
     """Poses and twists of the bodies, evaluated from those of the motions at a ``time``."""
     if system.mechanisms is None:
         return motions, twist
-    return system.mechanisms.poses(motions, time), component_twist(system.mechanisms.at(motions, time), twist)
+    return system.mechanisms.poses(motions, time), component_twist(system.mechanisms.kinematics(motions, time), twist)
 
 
 def kinematics_now(system: System, state: State) -> Kinematics | None:
@@ -106,7 +106,7 @@ def body_accelerations(system: System, state: State, time: float, size: float) -
     rate, mechanisms = accelerations(system, state), system.mechanisms
     if mechanisms is None:
         return rate
-    now, later = (mechanisms.at(state.free_pose, when) for when in (time, time + size))
+    now, later = (mechanisms.kinematics(state.free_pose, when) for when in (time, time + size))
     d, carrier, arm = system.dimension, now.carrier, now.arm
     spin = state.free_twist.angular_velocity[carrier]
     turning = cross(rate[carrier, d:], arm) + cross(spin, cross(spin, arm))

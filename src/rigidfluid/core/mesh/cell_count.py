@@ -1,4 +1,4 @@
-"""How many cells and boundary facets a mesh is going to have, from the sizes that are wanted alone."""
+"""Expected number of cells and boundary facets of a mesh, from the wanted sizes alone."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.model.wall import Wall
 
 _CELLS = {2: 2.42, 3: 11.1}
-"""In a volume of h^d, fitted to meshes made; of regular simplices with edges h it would be 2.3 and 8.5."""
+"""Number of cells in a volume of h^d, fitted to meshes made; of regular simplices with edges h it would be 2.3 and
+8.5."""
 
 _FACETS = {2: 2.0, 3: 4.6}
-"""In a volume of h^d within h/2 of the boundary, of regular simplices."""
+"""Number of facets in a volume of h^d within h/2 of the boundary, of regular simplices."""
 
 _MOST_BOXES = 500_000
-"""Of more the size at their middle is taken for all of them."""
+"""Number of boxes beyond which none is halved: the size at each box's middle is then taken for all of it."""
 
 
 class Count(NamedTuple):
@@ -33,28 +34,10 @@ class Count(NamedTuple):
 
 
 def expected_count(domain: Domain, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Count:
-    """Cells and boundary facets of a mesh, c ∫ h^-d over the fluid and f ∫ h^-d within h/2 of its boundary, h the
-    `made_size`.
+    """Expected number of cells c ∫ h^-d over the fluid, within 15 %, and of boundary facets f ∫ h^-d within h/2 of its
+    boundary, h the `made_size`.
 
     Boxes are halved until they are smaller than the size at their middle, and count if that is in the fluid.
-
-    Parameters
-    ----------
-    domain : Domain
-        The part of it that is meshed.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        What decides the size.
-
-    Returns
-    -------
-    Count
-        Cells within 15 %.
     """
     lower, upper = domain.extent
     dimension = len(lower)

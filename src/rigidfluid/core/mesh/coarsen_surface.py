@@ -34,30 +34,12 @@ MOST_TURNED = 0.5
 
 
 def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
-    """Collapse edges of smooth bodies that are too short, shortest first, until none can be collapsed.
+    """Collapse edges of smooth bodies in 3D that are too short, shortest first, until none can be collapsed.
 
     One end of the edge is taken off the mesh and its cells are drawn to the other one, which stays where it is, on the
     exact surface. No cell is changed by two collapses at a time. An edge stays where a cell would get worse than
     LEAST_QUALITY and than all there, a facet would turn too far or get an edge that is too long, or the surface would
-    fold.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        In 3D, its vertices on their surfaces, the bodies at ``pose``.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-
-    Returns
-    -------
-    Mesh
-        The same mesh if no edge is too short, or where what comes out is not closed by its facets.
+    fold. The mesh is returned unchanged if no edge is too short, or if the result is not closed by its facets.
     """
     given = mesh
     longest = np.array([0.0 if body.least_radius is None else body.least_radius / PER_RADIUS for body in bodies])
@@ -85,8 +67,8 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
 def _short_edges(
     mesh: Mesh, longest: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
 ) -> tuple[IntArray, FloatArray]:
-    """Of each short edge the vertex to take off and the one that stays, (E, 2), both ways, and the wanted size (E,), no
-    more than the ``longest`` (n,) of its body; the shortest over that first."""
+    """Short edges as pairs (E, 2) of the vertex to take off and the one that stays, both ways, and the wanted size
+    (E,), no more than the ``longest`` (n,) of their body; the shortest over that first."""
     on_smooth = np.zeros(mesh.markers.max() + 1, dtype=bool)
     on_smooth[: len(longest)] = longest > 0.0
     edges, body = edges_of_facets(mesh, on_smooth[mesh.markers])
@@ -102,7 +84,8 @@ def _short_edges(
 
 
 def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
-    """Which of the ``pairs`` (E, 2), whose cells are apart, can be collapsed; edges are to be ``wanted`` (E,) long."""
+    """Whether each of the ``pairs`` (E, 2), whose cells are apart, can be collapsed, (E,); edges are to be ``wanted``
+    (E,) long."""
     at = np.full(len(mesh.points), -1)
     at[pairs[:, 0]] = np.arange(len(pairs))
     target = _targets(mesh, pairs)
@@ -136,7 +119,7 @@ def _collapsed(mesh: Mesh, pairs: IntArray) -> tuple[Mesh, IntArray]:
 
 
 def _targets(mesh: Mesh, pairs: IntArray) -> IntArray:
-    """What becomes of each vertex, (N,)."""
+    """Vertex that each vertex is drawn to, (N,): itself unless one of the ``pairs`` (E, 2) takes it off."""
     target = np.arange(len(mesh.points))
     target[pairs[:, 0]] = pairs[:, 1]
     return target
@@ -150,7 +133,7 @@ def _changed(simplices: IntArray, at: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _degenerate(simplices: IntArray) -> BoolArray:
-    """Which simplices have a vertex twice."""
+    """Whether each simplex has a vertex twice, (M,)."""
     ordered = np.sort(simplices, axis=1)
     return np.asarray((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
 

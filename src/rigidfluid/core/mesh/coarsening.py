@@ -17,16 +17,10 @@ MOST_COARSENED = 1.4
 
 
 def has_coarsened(made: FloatArray, now: FloatArray, ranks: Ranks) -> bool:
-    """Whether r > MOST_COARSENED · max(r₀, 1) in a cell of the whole mesh, r the cell's relative size, r₀ when made.
+    """Whether r > MOST_COARSENED · max(r₀, 1) in a cell of the whole mesh, r the cell's relative size ``now`` (M,), r₀
+    when ``made`` (M,) [1].
 
     A mesh just made has r = r₀, so it never asks for another at once.
-
-    Parameters
-    ----------
-    made, now : (M,) array
-        Relative sizes of this rank's cells when the mesh was made, and now [1].
-    ranks : Ranks
-        Who has the other cells.
     """
     return bool(ranks.greatest(float((now / np.maximum(made, 1.0)).max())) > MOST_COARSENED)
 
@@ -51,5 +45,5 @@ def is_due(reference: Pose, before: Pose, after: Pose, sizes: Sizes) -> bool:
 
 
 def _farthest(reference: Pose, pose: Pose) -> float:
-    """How far any body is from its place in another pose [length]."""
+    """Largest distance of a body from its place in another pose [length]."""
     return float(np.linalg.norm(pose.position - reference.position, axis=1).max())

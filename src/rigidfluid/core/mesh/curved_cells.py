@@ -32,17 +32,11 @@ class CurvedCells:
         self.bent = np.where(found >= 0, order[found], -1)[at_curves]
 
     def least_jacobian(self, geometry: FloatArray) -> FloatArray:
-        """Least det ∂x/∂X of each cell's quadratic map over that of its straight one, at its nodes (C,).
+        """Least det ∂x/∂X of each cell's quadratic map over that of its straight one, at its nodes (C,), for a geometry
+        (N + K, d) [length].
 
-        Parameters
-        ----------
-        geometry : (N + K, d) array
-            Of the mesh [length].
-
-        Notes
-        -----
-        x = Σ λᵢ xᵢ + Σ 4 λₐ λ_b δₐ_b with the shift δ of each edge's middle, so that
-        ∂x/∂X = E + Σ 4 δ (λₐ ∇λ_b + λ_b ∇λₐ)ᵀ. Exact for one bent edge, whose determinant is linear.
+        x = Σ λᵢ xᵢ + Σ 4 λₐ λ_b δₐ_b with the shift δ of each edge's middle, so that ∂x/∂X = E + Σ 4 δ (λₐ ∇λ_b + λ_b
+        ∇λₐ)ᵀ. Exact for one bent edge, whose determinant is linear.
         """
         corners = geometry[self.cells]
         edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
@@ -57,5 +51,5 @@ class CurvedCells:
         return np.asarray((np.linalg.det(jacobian) / np.linalg.det(edges)[:, None]).min(axis=1))
 
     def quality(self, geometry: FloatArray) -> FloatArray:
-        """That of the straight cells times what bending leaves of them, (C,) [1]."""
+        """Quality of the straight cells times their `least_jacobian`, zero where that is negative, (C,) [1]."""
         return cell_quality(geometry[: self._vertices], self.cells) * np.maximum(self.least_jacobian(geometry), 0.0)

@@ -39,24 +39,10 @@ FLAT = 1e-9
 
 
 def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
-    """The mesh with its edges on bodies and curved walls bent through the nearest points of the surface.
+    """Bend the edges on bodies and curved walls of a whole, straight mesh through the nearest points of the surface.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Whole, straight, its vertices on their surfaces, the bodies at ``pose``.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-
-    Returns
-    -------
-    Mesh
-        The same cells and surfaces; in 3D, vertices in the fluid give way where bent edges come near. Edges in which
-        surfaces meet stay straight, and those of cells too thin to bend.
+    In 3D, vertices in the fluid give way where bent edges come near. Edges in which surfaces meet stay straight, and
+    those of cells too thin to bend.
     """
     edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
     apart = ~_on_others(mesh, edges, surface)
@@ -109,7 +95,7 @@ def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:
 
 
 def _on_others(mesh: Mesh, edges: IntArray, surface: IntArray) -> BoolArray:
-    """Which edges (E, 2) are on facets of other surfaces than the ``surface`` (E,) they are listed for."""
+    """Whether each edge (E, 2) is also on facets of other surfaces than the ``surface`` (E,) it is listed for, (E,)."""
     shared = np.zeros(len(edges), dtype=bool)
     if mesh.points.shape[1] == 2:
         return shared  # an edge is a facet

@@ -18,23 +18,10 @@ _Piece = tuple[tuple[NDArray[Any], ...], CurvedEdges | None]
 
 
 def partition(mesh: Mesh, parts: int) -> IntArray:
-    """Part of each cell, by halving the cells' centres across their longest extent until there are enough parts.
+    """Part of each cell (M,), from 0 to ``parts`` - 1, by halving the cells' centres across their longest extent.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        The whole.
-    parts : int
-        How many parts; they differ by one cell at most for each halving.
-
-    Returns
-    -------
-    (M,) array
-        Numbers from 0 to ``parts`` - 1.
-
-    Notes
-    -----
-    Recursive coordinate bisection, Berger and Bokhari (1987), DOI 10.1109/TC.1987.1676942.
+    Parts differ by one cell at most for each halving. Recursive coordinate bisection, Berger and Bokhari (1987), DOI
+    10.1109/TC.1987.1676942.
     """
     owner = np.zeros(len(mesh.cells), dtype=np.int64)
     _halve(mesh.points[mesh.cells].mean(axis=1), np.arange(len(mesh.cells)), 0, parts, owner)
@@ -42,20 +29,8 @@ def partition(mesh: Mesh, parts: int) -> IntArray:
 
 
 def distributed(mesh: Mesh | None, ranks: Ranks) -> Mesh:
-    """This rank's part of a mesh; alone, the very mesh.
-
-    Parameters
-    ----------
-    mesh : Mesh or None
-        The whole, on the root; of the others None.
-    ranks : Ranks
-        Who gets a part.
-
-    Returns
-    -------
-    Mesh
-        Own cells and all their vertices, both in the order of the whole.
-    """
+    """Part of the root's ``mesh`` that this rank gets, with all vertices of its cells, both in the order of the whole;
+    alone, the very mesh. The other ranks give None."""
     if ranks.size == 1:
         assert mesh is not None
         return mesh
@@ -93,12 +68,13 @@ def whole(mesh: Mesh) -> Mesh | None:
 
 
 def joined(parts: Sequence[Mesh]) -> Mesh:
-    """As `whole`, from all parts in the order of ranks."""
+    """Join all parts of a mesh, in the order of ranks, to the `whole`."""
     return parts[0] if len(parts) == 1 else _joined([_piece(part) for part in parts])
 
 
 def _piece(mesh: Mesh) -> _Piece:
-    """What the whole takes from a part: owned vertices, cells and facets by their numbers there, and curved edges."""
+    """Contribution of a part to the whole: owned vertices, cells and facets by their numbers there, and curved
+    edges."""
     assert mesh.part is not None
     part, own = mesh.part, mesh.part.owned
     curved = None if mesh.curved is None else replace(mesh.curved, vertices=part.vertices[mesh.curved.vertices])
@@ -162,7 +138,7 @@ def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, own
 
 
 def _part_of_curves(curved: CurvedEdges | None, vertices: IntArray, cells: IntArray) -> CurvedEdges | None:
-    """Those at a part's ``cells``, by the part's own numbers of its ``vertices``; None where there are none."""
+    """Curved edges at a part's ``cells``, by the part's own numbers of its ``vertices``; None where there are none."""
     if curved is None:
         return None
     inside = np.isin(curved.vertices, vertices).all(axis=1)

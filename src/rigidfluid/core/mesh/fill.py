@@ -35,33 +35,11 @@ def fill_mesh(
     sizes: Sizes,
     timeout: float = MESHER_TIMEOUT,
 ) -> Mesh:
-    """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, between facets that stay as they are.
+    """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, between the facets of `surface_mesh`, which stay to the last
+    bit.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes, in the scene's order.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        Ω.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-    timeout : float
-        Seconds after which the mesher is stopped.
-
-    Returns
-    -------
-    Mesh
-        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Facets and their vertices, to the last
-        bit, are those of `surface_mesh`.
-
-    Raises
-    ------
-    MeshError
-        When a surface is open, two cross, a body is outside, or Netgen makes no valid mesh in time.
+    Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises MeshError where a surface is open, two
+    cross, a body is outside, or Netgen makes no valid mesh within ``timeout`` [s].
     """
     surface = surface_mesh(bodies, pose, domain, walls, sizes)
     refuse_unfillable(surface, bodies, pose, domain)

@@ -1,4 +1,4 @@
-"""How the bodies of a scene come into its first mesh."""
+"""Way in which the bodies of a scene come into its first mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Way = Literal["cad", "fill", "level_set"]
 
 @dataclass(frozen=True, slots=True)
 class Inserter:
-    """The way, and how long it may take.
+    """Way of making the first mesh, and how long it may take.
 
     ``way``: "cad", Netgen meshes the difference of CAD shapes; "fill", it fills between the facets of domain and
     bodies; "level_set", MMG cuts bodies out of a mesh of the domain. None: "cad" where all have CAD shapes, else

@@ -11,7 +11,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 
 LAYERS = 2
-"""How many layers of cells a run keeps: those at a body's vertices, and their neighbours."""
+"""Number of layers of cells that a run keeps: those at a body's vertices, and their neighbours."""
 
 KEPT_QUALITY = 0.5
 """Least quality of a cell that is kept."""

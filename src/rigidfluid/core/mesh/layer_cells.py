@@ -1,4 +1,4 @@
-"""How many cells lie across the boundary layers on bodies, and what is to be said where they are few."""
+"""Number of cells across the boundary layers on bodies, and the least that forces need."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
 FEWEST_CELLS = 0.95
-"""With fewer a torque was eight times as large, or of the other sign, for some twenty steps after each new mesh."""
+"""Fewest cells across a layer: with fewer a torque was eight times as large, or of the other sign, for some twenty
+steps after each new mesh."""
 
 
 class ThinnestLayer(NamedTuple):
@@ -30,18 +31,10 @@ class ThinnestLayer(NamedTuple):
 def thinnest_layer(
     bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float, size_body: float
 ) -> ThinnestLayer | None:
-    """The layer with the fewest cells of the mean edge on its body; None where nothing moves.
+    """Boundary layer with the fewest cells of the mean edge on its body; None where nothing moves.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The n shapes.
-    speeds : (n,) array
-        Between body and fluid [length/time].
-    kinematic_viscosity : float
-        ν [length²/time].
-    size_body : float
-        Longest edge on the bodies [length].
+    ``speeds`` (n,) are those between body and fluid [length/time], ``size_body`` is the longest edge on bodies
+    [length].
     """
     if not np.any(speeds > 0.0):
         return None

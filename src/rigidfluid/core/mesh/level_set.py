@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fill import fill_between
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.mmg import as_mmg, from_mmg, keep_facets, run_mmg, with_kept_facets
+from rigidfluid.core.mesh.mmg import from_mmg, keep_facets, mmg_mesh, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import on_surface
 from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
@@ -28,22 +28,22 @@ from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
 
 ADAPTATIONS = 4
-"""How often MMG brings the domain's mesh nearer to the wanted size before it cuts."""
+"""Number of times that MMG brings the domain's mesh nearer to the wanted size before it cuts."""
 
 GRADATION = 1.3
 """Ratio of neighbouring edges that MMG may use."""
 
 CUT = 9
-"""What MMG marks the facets of a cut with, less one; no surface may have this number meanwhile."""
+"""Marker that `from_mmg` gives to the facets of a cut; those of surfaces are shifted beyond it meanwhile."""
 
 FLUID, SOLID = 2, 3
-"""What MMG marks the cells of either side with."""
+"""References that MMG gives to the cells outside and inside the bodies."""
 
 DEVIATION = {2: 0.01, 3: 0.25}
-"""How far the facets of a cut may be off the level that MMG interpolates, over size_body, by dimension."""
+"""Largest distance of a cut's facets from the level that MMG interpolates, over size_body, by dimension."""
 
 ROUNDS = 12
-"""How often vertices are moved towards the shapes, and cells improved."""
+"""Largest number of times that vertices are moved towards the shapes, and cells improved."""
 
 LEAST_QUALITY = 0.1
 """Moving vertices onto the shapes leaves cells at this quality, or at half of what they had if that was less."""
@@ -64,36 +64,10 @@ def level_set_mesh(
     """Mesh of the domain minus the bodies, {x ∈ Ω: min_i d_i(x) > 0}, its facets on bodies cut by MMG.
 
     The domain's facets, halved near bodies, stay. Vertices of the cut are moved onto the exact shapes as far as the
-    cells allow, cells are improved, and so on until all are there.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes, in the scene's order.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        Ω.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-    timeout : float
-        Seconds after which the mesher of the domain is stopped.
-
-    Returns
-    -------
-    Mesh
-        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
-
-    Raises
-    ------
-    MeshError
-        When MMG fails, a body gets no facets, or vertices do not come onto their shape.
-
-    Notes
-    -----
-    The way of Van Landeghem et al., appendix, with the vertices put back onto the shapes.
+    cells allow, cells are improved, and so on until all are there: the way of Van Landeghem et al., appendix, with the
+    vertices put back onto the shapes. Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises
+    MeshError where MMG fails, the domain is not filled within ``timeout`` [s], a body gets no facets, or vertices do
+    not come onto their shape.
     """
 
     def size_at(points: FloatArray) -> FloatArray:
@@ -109,7 +83,7 @@ def level_set_mesh(
     mesh = _cut(mesh, bodies, pose, size_at(mesh.points), DEVIATION[domain.dimension] * sizes.size_body)
     for _ in range(ROUNDS):
         target = _on_shapes(mesh, bodies, pose, domain)
-        mesh = replace(mesh, points=_as_far_as_cells_allow(mesh, target))
+        mesh = replace(mesh, points=_move_within_quality(mesh, target))
         mesh = orient(_improved(mesh, size_at(mesh.points)))
         off = np.linalg.norm(_on_shapes(mesh, bodies, pose, domain) - mesh.points, axis=1)
         if off.max() <= ON_SHAPE * sizes.size_body:
@@ -127,7 +101,7 @@ def level_set_mesh(
 
 
 def _improved(mesh: Mesh, metric: FloatArray) -> Mesh:
-    """What MMG makes of a mesh with all its facets kept."""
+    """Re-mesh by MMG to the wanted size ``metric`` (N,) [length], with all facets kept."""
     unit = mesher_unit(np.ptp(mesh.points, axis=0))
     given = replace(mesh, points=mesh.points / unit)
     made = run_mmg(given, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit, GRADATION)
@@ -138,7 +112,7 @@ def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, dev
     """The fluid's part of a mesh that is cut along the bodies, facets there marked by the nearest body."""
     unit, d = mesher_unit(np.ptp(mesh.points, axis=0)), mesh.points.shape[1]
     shifted = replace(mesh, points=mesh.points / unit, markers=mesh.markers + CUT + 1)
-    mmg = as_mmg(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit)
+    mmg = mmg_mesh(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit)
     mmg.set_multi_materials([{"ref": 0, "split": 1, "ref_minus": SOLID, "ref_plus": FLUID}])
     level = _distances(mesh.points, bodies, pose).min(axis=0)
     try:
@@ -162,7 +136,7 @@ def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, dev
 
 
 def _distances(points: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:
-    """Of points (N, d) from each body, (n, N) [length]."""
+    """Distance of points (N, d) from each body, (n, N) [length]."""
     return np.array([distance_to_body(pose, i, body, points) for i, body in enumerate(bodies)])
 
 
@@ -175,7 +149,7 @@ def _on_shapes(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -
     return points
 
 
-def _as_far_as_cells_allow(mesh: Mesh, target: FloatArray) -> FloatArray:
+def _move_within_quality(mesh: Mesh, target: FloatArray) -> FloatArray:
     """Points (N, d) moved towards ``target`` (N, d), each halfway back as long as it spoils a cell."""
     share, points = np.ones((len(target), 1)), target
     allowed = np.minimum(LEAST_QUALITY, 0.5 * cell_quality(mesh.points, mesh.cells))

@@ -40,25 +40,11 @@ NEARLY_TANGLED = 2.0 * TANGLED
 class MeshUpdater:
     """Moves the mesh of a run, and re-makes it where its quality, its cells' sizes, a gap or its age asks for that.
 
-    Parameters
-    ----------
-    system : System
-        Bodies, walls and backend.
-    sizes : Sizes or None
-        Wanted cell sizes; None without a fluid, and then there is no mesh.
-    quality : float
-        A moved mesh whose worst cell falls below this, or is nearly tangled, and below half of what it was when made,
-        is re-made.
-    pause : int
-        For so many ticks after a mesh could not be made, none is tried unless a cell is nearly tangled.
-    oldest : int or None
-        A mesh of so many ticks is re-made; None for any age.
-    wake : Wake or None
-        Finer cells behind moving bodies, on each mesh but the first.
-    inserter : Inserter
-        How the bodies come into the first mesh.
-    watch : callable, optional
-        Times a stage by its name; the carrying over of the fluid is the stage "transfer".
+    Without a fluid ``sizes`` is None and there is no mesh. A moved mesh is re-made when its worst cell falls below
+    ``quality``, or is nearly tangled, and below half of what it was when made; and after ``oldest`` ticks, None for any
+    age. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly tangled. ``wake``
+    asks for finer cells behind moving bodies, on each mesh but the first, which ``inserter`` makes. ``watch`` times a
+    stage by its name; the carrying over of the fluid is the stage "transfer".
     """
 
     def __init__(
@@ -154,7 +140,7 @@ class MeshUpdater:
         return distributed(made, ranks)
 
     def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:
-        """Of the order that is asked for, where the backend takes it."""
+        """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
         s = self._system
         assert self._sizes is not None
         if self._sizes.order == 1 or not s.backend.curved_cells:
@@ -256,7 +242,8 @@ def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> floa
 
 
 def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes) -> BoolArray:
-    """Where a gap that the mesh must resolve has halved, or has opened to four times, since the mesh was made."""
+    """Whether each gap that the mesh must resolve has halved, or opened to four times, since the mesh was made,
+    (n,)."""
     finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
     ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
     return (ratio < 0.5) | (ratio > 4.0)

@@ -21,7 +21,7 @@ MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]
 
 
 def factorised(mesh: Mesh, matrix: csc_array, held: BoolArray) -> Extension:
-    """By factors, in one process."""
+    """Extension of boundary values by factors of the matrix, in one process."""
     return FactorisedExtension(matrix, held)
 
 
@@ -31,24 +31,9 @@ class MeshMotion:
     Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
     (of a ball only its translation); vertices on a flat surface across an axis slide along it, so their normal
     coordinate is fixed and the natural condition holds along the surface; on other surfaces of the domain x = X.
+    ``extension`` makes the solver from the mesh, its stiffness matrix and the held vertices of one component. If a
+    ``window`` of the domain is meshed, the mesh's ends go with it.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        The reference: the mesh that the last re-meshing made.
-    bodies : sequence of Body
-        The shapes.
-    domain : Domain
-        What they are in.
-    reference_pose : Pose
-        Where they are on the reference mesh.
-    extension : callable
-        Makes the solver from the mesh, its stiffness matrix and the held vertices of one component.
-    window : Window, optional
-        The part of the domain that the mesh fills, where it is not all: the mesh's ends go with it.
-
-    Notes
-    -----
     Equation (ALE) of Van Landeghem et al., arXiv:2402.19093; τ after Kanchi and Masud, DOI 10.1002/fld.1512.
     """
 
@@ -76,18 +61,8 @@ class MeshMotion:
         self._solves = [extension(mesh, matrix, held) for held in self._held.T]
 
     def move(self, pose: Pose) -> FloatArray:
-        """Geometry of the mesh when the bodies are at ``pose``.
-
-        Parameters
-        ----------
-        pose : Pose
-            The new pose.
-
-        Returns
-        -------
-        (N + K, d) array
-            Vertices, and middles of curved edges; those of a body lie on its surface [length].
-        """
+        """Geometry (N + K, d) of the mesh when the bodies are at ``pose``: vertices and middles of curved edges, those
+        of a body on its surface [length]."""
         displacement = np.zeros_like(self._points)
         displacement[self._on_bodies] = self._rigid_displacement(pose, self._body, self._points[self._on_bodies])
         if self._window is not None:
@@ -99,7 +74,7 @@ class MeshMotion:
         return moved if self._curved is None else np.concatenate([moved, self._moved_middles(self._curved, pose)])
 
     def _moved_middles(self, curved: CurvedEdges, pose: Pose) -> FloatArray:
-        """Of curved edges: those on a body move with it, those on walls stay (K, d)."""
+        """Middles of curved edges (K, d) [length]: those on a body move with it, those on walls stay."""
         middles = curved.middles.copy()
         on_body = curved.surface < len(self._turns)
         middles[on_body] += self._rigid_displacement(pose, curved.surface[on_body], middles[on_body])
@@ -118,8 +93,8 @@ class MeshMotion:
 
 
 def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Which components of the displacement are given, (N, d): the normal one on a flat surface of the domain that lies
-    across an axis and is not periodic, all on other surfaces and on bodies."""
+    """Whether each component of the displacement is prescribed, (N, d): the normal one on a flat surface of the domain
+    that lies across an axis and is not periodic, all on other surfaces and on bodies."""
     planes = [None] * bodies + [piece.shape.plane for piece in domain.pieces]
     held = np.zeros(mesh.points.shape, dtype=bool)
     for surface, plane in enumerate(planes):

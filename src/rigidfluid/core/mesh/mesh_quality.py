@@ -10,43 +10,17 @@ from rigidfluid.core.model.types import FloatArray, IntArray
 
 
 def cell_volumes(points: FloatArray, cells: IntArray) -> FloatArray:
-    """Signed volume of every simplex, V = det(x_1 - x_0, …, x_d - x_0) / d!.
-
-    Parameters
-    ----------
-    points : (N, d) array
-        Vertices [length].
-    cells : (M, d+1) array
-        Vertex numbers of each simplex.
-
-    Returns
-    -------
-    (M,) array
-        Area or volume, negative for an inverted simplex [length^d].
-    """
+    """Signed volume of every simplex, V = det(x_1 - x_0, …, x_d - x_0) / d!, negative for an inverted one, (M,)
+    [length^d]."""
     return _signed_volumes(_corners(points, cells))
 
 
 def cell_quality(points: FloatArray, cells: IntArray) -> FloatArray:
-    """Shape of every simplex, q = (V / V_d)^(2/d) / mean(l²): 1 for a regular simplex, 0 for a flat or inverted one.
+    """Shape quality of every simplex, q = (V / V_d)^(2/d) / mean(l²), (M,): 1 for a regular simplex, 0 for a flat or
+    inverted one.
 
-    V_d = √(d+1) / (d! 2^(d/2)) is the volume of the regular simplex of unit edges; the mean goes over all edges.
-
-    Parameters
-    ----------
-    points : (N, d) array
-        Vertices [length].
-    cells : (M, d+1) array
-        Vertex numbers of each simplex.
-
-    Returns
-    -------
-    (M,) array
-        Quality in [0, 1].
-
-    Notes
-    -----
-    The mean-ratio measure of Liu and Joe (1994), DOI 10.1007/BF01955874.
+    V_d = √(d+1) / (d! 2^(d/2)) is the volume of the regular simplex of unit edges; the mean goes over all edges. The
+    mean-ratio measure of Liu and Joe (1994), DOI 10.1007/BF01955874.
     """
     corners = _corners(points, cells)
     relative = _relative_volumes(corners)

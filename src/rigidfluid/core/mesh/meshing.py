@@ -23,7 +23,7 @@ from rigidfluid.errors import MeshError, PluginError
 ATTEMPTS = 8
 
 ROUNDING = 1e-9
-"""By which an edge on a body may be too long, over the longest allowed."""
+"""Relative excess over the longest edge allowed on a body that counts as rounding."""
 
 
 def generate_mesh(
@@ -37,32 +37,10 @@ def generate_mesh(
 ) -> Mesh:
     """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, the vertices of each surface's facets on that surface.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes, in the scene's order.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        Ω.
-    size : float
-        Longest edge wanted far from the bodies [length].
-    size_body : float
-        Longest edge allowed on a body [length].
-    growth : float
-        How fast the cell size grows with the distance to a body [1].
-    finer : sequence of ((d,) array, float)
-        Points where the edges must be shorter, and how long they may be [length].
-
-    Returns
-    -------
-    Mesh
-        Markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
-
-    Raises
-    ------
-    MeshError
-        When a body leaves the domain, or Netgen makes no valid mesh.
+    ``size`` is the longest edge wanted far from the bodies, ``size_body`` the longest allowed on them [length],
+    ``growth`` that of the size with the distance to a body [1]; at the points (d,) of ``finer`` edges are at most as
+    long as given there [length]. Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises
+    MeshError where a body leaves the domain, or Netgen makes no valid mesh.
     """
     refuse_bodies_outside(pose, domain)
     arguments = bodies, pose, domain, size, _size_to_ask(bodies, pose, domain, size, size_body, growth, finer)
@@ -138,7 +116,7 @@ def run_netgen(
     finer: Sequence[tuple[FloatArray, float]] = (),
     surfaces_alone: bool = False,
 ) -> Mesh:
-    """What Netgen makes, cells and facets or facets alone; ``size_body`` (n,) is the target edge length on each body
+    """Mesh by Netgen, cells and facets or facets alone; ``size_body`` (n,) is the target edge length on each body
     [length]."""
     from netgen import occ
 

@@ -13,7 +13,7 @@ from rigidfluid.errors import MeshError
 
 
 class Kept(NamedTuple):
-    """Which ``facets`` (F,) and ``cells`` (M,) of a mesh MMG has to keep."""
+    """Whether MMG has to keep each of the ``facets`` (F,) and ``cells`` (M,) of a mesh."""
 
     facets: BoolArray
     cells: BoolArray
@@ -27,7 +27,7 @@ def keep_facets(mesh: Mesh, facets: BoolArray) -> Kept:
 def run_mmg(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray, gradation: float) -> Mesh:
     """Re-mesh by MMG, which has to keep what is ``kept`` and the corners of the domain."""
     try:
-        mmg = as_mmg(mesh, kept, bodies, metric)
+        mmg = mmg_mesh(mesh, kept, bodies, metric)
         with kept_signals():
             mmg.remesh(verbose=-1, hgrad=gradation)
     except RuntimeError as error:
@@ -35,7 +35,7 @@ def run_mmg(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray, gradation: 
     return from_mmg(mmg, mesh.points.shape[1])
 
 
-def as_mmg(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray) -> Any:
+def mmg_mesh(mesh: Mesh, kept: Kept, bodies: int, metric: FloatArray) -> Any:
     """MMG's mesh with its wanted size ``metric`` (N,); its references are the markers and 1."""
     import mmgpy
 

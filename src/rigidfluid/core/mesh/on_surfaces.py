@@ -32,8 +32,8 @@ def put_on_surfaces(points: FloatArray, shapes: Sequence[Surface], belongs: Bool
 def closest_on_all(shapes: Sequence[Surface], points: FloatArray) -> FloatArray:
     """Points of the intersection of shapes, near ``points`` (N, d), nearest where all are flat, (N, d) [length].
 
-    By Newton's steps onto the tangent planes of the curved ones. One shape after the other would leave all but the
-    last.
+    Curved shapes are reached by Newton's steps onto all tangent planes at once: one shape after the other would leave
+    all but the last.
     """
     if len(shapes) == 1:
         return shapes[0].closest_point(points)

@@ -32,13 +32,8 @@ def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
 
 
 def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
-    """The mesh with the vertices of the second surface of each pair exactly where those of the first are displaced to.
-
-    Raises
-    ------
-    MeshError
-        If they are not near there.
-    """
+    """Put the vertices of the second surface of each periodic pair exactly where those of the first are displaced to;
+    raises MeshError if they are not near there."""
     for pair in domain.periodic:
         points, way = mesh.points.copy(), _way(domain, pair)
         one, two = (surface_vertices(mesh, bodies + piece) for piece in pair)
@@ -53,7 +48,7 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
 
 
 def on_periodic_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Which facets (F,) are on periodic surfaces, where the one stays as the other is."""
+    """Whether each facet is on a periodic surface, whose mesh stays that of its image, (F,)."""
     return np.isin(mesh.markers - bodies, [piece for pair in domain.periodic for piece in pair])
 
 

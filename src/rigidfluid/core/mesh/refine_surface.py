@@ -35,26 +35,6 @@ def refine_surface(
     those whose bisection would flatten or invert a cell: in a gap a vertex may be nearer to a facet than the surface
     above it. Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the
     polygon's error stays far below the gap.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Mesh whose vertices lie on their surfaces, the bodies at ``pose``.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-
-    Returns
-    -------
-    Mesh
-        The same mesh if no edge is too long.
     """
     refused: set[tuple[int, int]] = set()
     while True:
@@ -114,8 +94,8 @@ def middles_on_surfaces(
 
 
 def on_kept_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Which facets (F,) lie on bodies or on surfaces of the domain that are not flat, or periodic: MMG must not move
-    those."""
+    """Whether each facet lies on a body or on a surface of the domain that is not flat, or periodic, and that MMG must
+    not move, (F,)."""
     kept = [True] * bodies + [piece.shape.plane is None for piece in domain.pieces]
     return np.array(kept)[mesh.markers] | on_periodic_surfaces(mesh, bodies, domain)
 
@@ -138,7 +118,7 @@ def on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: P
 
 
 def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:
-    """Which edges (E,) to bisect now: those that are the longest of the given ones in every cell they belong to."""
+    """Whether each edge is bisected now, (E,): if it is the longest of the given ones in every cell it belongs to."""
     rank = np.empty(len(edges), dtype=np.int64)
     rank[np.argsort(significant(length), kind="stable")] = np.arange(len(edges))
     highest = np.full(len(cells), -1)
@@ -152,7 +132,7 @@ def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices:
 
 
 def spares_cells(mesh: Mesh, edges: IntArray, middles: FloatArray) -> BoolArray:
-    """Which of ``edges`` (E, 2), of which no cell has two, can be bisected with all cells above FLAT (E,)."""
+    """Whether each of ``edges`` (E, 2), of which no cell has two, can be bisected with all cells above FLAT, (E,)."""
     cells, _ = halved(mesh.cells, edges, len(mesh.points))
     cut = cells[cells.max(axis=1) >= len(mesh.points)]
     flat = cell_quality(np.concatenate([mesh.points, middles]), cut) <= FLAT

@@ -15,7 +15,7 @@ from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 CELLS_PER_RADIUS = 4.0
-"""So many edges are as long as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
+"""Number of edges as long together as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
 
 
 class Region(Protocol):
@@ -62,7 +62,8 @@ class RefinedCapsule:
 
 @dataclass(frozen=True, slots=True)
 class Wake:
-    """Where a body has been for ``time`` [time], if its velocity was the present one; cells there have one ``size``.
+    """Region that a body has crossed within ``time`` [time] at its present velocity; cells there have one ``size``
+    [length].
 
     A length would need a direction, which a body at rest does not have: x - time·U shrinks to the body with U.
     """
@@ -94,22 +95,10 @@ class CurvedWall:
 
 
 def curved_walls(domain: Domain, size: float, size_wall: float | None) -> tuple[CurvedWall, ...]:
-    """The curved pieces of the boundary that ask for cells finer than ``size`` [length].
+    """Curved pieces of the boundary, in their order, that ask for cells finer than ``size`` [length].
 
-    Parameters
-    ----------
-    domain : Domain
-        Whose boundary.
-    size : float
-        Edge length far from all surfaces [length].
-    size_wall : float or None
-        Longest edge on curved pieces; if None, the least radius of curvature over CELLS_PER_RADIUS, where that is
-        known [length].
-
-    Returns
-    -------
-    tuple of CurvedWall
-        In the order of the pieces.
+    Edges there are at most ``size_wall`` long [length]; if None, the least radius of curvature over CELLS_PER_RADIUS,
+    if that is known.
     """
     found = []
     for shape in (piece.shape for piece in domain.pieces):

@@ -17,22 +17,12 @@ from rigidfluid.core.model.wall import Wall
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What decides the cell size.
+    """Parameters of the wanted cell size.
 
-    Parameters
-    ----------
-    size, size_body : float
-        Edge length far from the bodies, and on a body [length].
-    growth : float
-        Growth of the size with the distance to a body [1].
-    cells_per_gap : float
-        How many cells lie across a gap.
-    refinements : int
-        How often size_body may be halved for that.
-    order : int
-        Of the cells at bodies and curved walls: 1 straight, 2 curved.
-    regions : tuple of Region
-        Where cells have a size of their own, unless they are finer anyway.
+    ``size``: edge length far from the bodies, ``size_body``: that on a body [length]; ``growth`` of the size with the
+    distance to a body [1]; ``cells_per_gap``: number of cells across a gap, for which size_body is halved at most
+    ``refinements`` times; ``order`` of the cells at bodies and curved walls: 1 straight, 2 curved; ``regions`` with a
+    size of their own, unless cells are finer there anyway.
     """
 
     size: float
@@ -45,35 +35,18 @@ class Sizes:
 
     @property
     def smallest(self) -> float:
-        """For a gap, cells are never wanted smaller than size_body / 2^refinements [length]."""
+        """Smallest size wanted for a gap, size_body / 2^refinements [length]."""
         return self.size_body / 2.0**self.refinements
 
 
 def wanted_size(
     points: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
 ) -> FloatArray:
-    """Cell size at points, h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)).
+    """Wanted edge length at points (N, d), h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)), (N,) [length].
 
-    h_open is `size_away_from_gaps`, d₁ the distance to the nearest body, d₂ that to the next body or the nearest wall,
-    so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off it. Two walls make no gap.
-
-    Parameters
-    ----------
-    points : (N, d) array
-        Where the size is wanted [length].
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The numbers of the formula.
-
-    Returns
-    -------
-    (N,) array
-        Wanted edge length [length].
+    h_open is `size_away_from_gaps`, h_min `Sizes.smallest`, d₁ the distance to the nearest body, d₂ that to the next
+    body or the nearest wall, so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off
+    it. Two walls make no gap.
     """
     first, second = two_nearest_bodies(points, bodies, pose, reach_of_bodies(sizes))
     return size_between(points, first, second, walls, sizes)
@@ -92,7 +65,7 @@ def size_between(
 
 
 def size_away_from_gaps(points: FloatArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:
-    """What `wanted_size` would be if no gap had to be resolved, (N,) [length].
+    """Wanted edge length without regard to gaps, (N,) [length].
 
     h = min(size, size_body + growth·d₁, size_r + growth·d_r for each region r at the distance d_r).
     """

@@ -27,18 +27,9 @@ thus decided by their order."""
 def smooth_fluid(mesh: Mesh) -> Mesh:
     """Move vertices that lie on no surface until their cells are good, or no move makes the worst of them better.
 
-    Each vertex tries moves along the axes and the diagonals and takes the best one, and then shorter ones where none
-    is better. No cell has two of its vertices moved at a time, so that no cell gets worse than the worst around it.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Whole; its curved edges count as they are bent.
-
-    Returns
-    -------
-    Mesh
-        The same cells, facets and curved edges.
+    Each vertex tries moves along the axes and the diagonals and takes the best one, and then shorter ones where none is
+    better. No cell has two of its vertices moved at a time, so that no cell gets worse than the worst around it. The
+    mesh must be whole; its curved edges count as they are bent.
     """
     near, movable = _around_bad_cells(mesh)
     geometry, step = mesh.geometry.copy(), FIRST * _shortest_edges(mesh.points, near.cells)
@@ -62,7 +53,7 @@ def smooth_fluid(mesh: Mesh) -> Mesh:
 
 
 def _directions(dimension: int) -> FloatArray:
-    """Along the axes and the diagonals, unit vectors (3^d - 1, d)."""
+    """Unit vectors along the axes and the diagonals, (3^d - 1, d)."""
     directions = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=dimension) if any(one)])
     return np.asarray(directions / np.linalg.norm(directions, axis=1, keepdims=True))
 
@@ -96,7 +87,7 @@ def _worst_at_vertices(mesh: Mesh) -> Callable[[FloatArray], FloatArray]:
 
 
 def _shortest_edges(points: FloatArray, cells: IntArray) -> FloatArray:
-    """Of the ``cells`` at each vertex, infinite at others, (N,) [length]."""
+    """Shortest edge of the ``cells`` at each vertex, infinite at others, (N,) [length]."""
     first, second = np.triu_indices(cells.shape[1], 1)
     length = np.linalg.norm(points[cells[:, first]] - points[cells[:, second]], axis=2).min(axis=1, initial=np.inf)
     return _least_at_vertices(cells, length, len(points))

@@ -19,23 +19,10 @@ _MEND = "Mend the surface: each edge of a facet belongs to one other facet, all 
 
 
 def refuse_unfillable(surface: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> None:
-    """Refuse what a mesher would fail on, or never end with.
+    """Refuse a closed surface of `surface_mesh` that a mesher would fail on, or never end with.
 
-    Parameters
-    ----------
-    surface : Mesh
-        All facets around the fluid, as `surface_mesh` makes them.
-    bodies : sequence of Body
-        The shapes.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-
-    Raises
-    ------
-    MeshError
-        Names the surface and the place: where it is open, where two cross, which body is outside or in another.
+    The MeshError names the surface and the place: where it is open, where two cross, which body is outside or in
+    another.
     """
     names = [*(f"body.{i}" for i in range(len(bodies))), *(f"domain surface {name!r}" for name in domain.names)]
     _refuse_open(surface, names)
@@ -90,7 +77,7 @@ def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
 
 
 def _within_reach(number: int, body: Body, bodies: Sequence[Body], pose: Pose) -> BoolArray:
-    """Which other bodies' bounding balls overlap that of one, (n,)."""
+    """Whether each other body's bounding ball overlaps that of one, (n,)."""
     radii = np.array([other.bounding_radius for other in bodies])
     distance = np.linalg.norm(pose.position - pose.position[number], axis=1)
     distance[number] = np.inf

@@ -38,42 +38,21 @@ from rigidfluid.errors import MeshError
 
 
 def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
-    """All facets around the fluid, none longer than LONGEST times the wanted size, their normals into the fluid.
+    """Mesh without cells: all facets around the fluid, none longer than LONGEST times the wanted size, normals into the
+    fluid.
 
     Shapes that have facets keep them; all others are meshed by Netgen, each on its own, their vertices exactly on them.
-    Edges still too long, as those of walls near bodies, are halved.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes, in the scene's order.
-    pose : Pose
-        Where they are.
-    domain : Domain
-        What they are in.
-    walls : sequence of Wall
-        The walls whose gaps are resolved.
-    sizes : Sizes
-        The wanted size.
-
-    Returns
-    -------
-    Mesh
-        Without cells; markers are surface numbers: bodies 0 … n-1, then the domain's pieces.
-
-    Raises
-    ------
-    MeshError
-        When Netgen cannot mesh a shape.
+    Edges still too long, as those of walls near bodies, are halved. Markers are surface numbers: bodies 0 … n-1, then
+    the domain's pieces. Raises MeshError where Netgen cannot mesh a shape.
     """
     parts = []
     for i, body in enumerate(bodies):
-        own = _as_mesh(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
+        own = _mesh_of_facets(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
         parts.append(replace(own, points=to_world(pose, i, own.points), markers=np.full(len(own.facets), i)))
     if domain.facets is None:
         outer = _meshed_domain(domain, sizes)
     else:
-        outer = put_back(_as_mesh(domain.facets), 0, domain, curved=False)
+        outer = put_back(_mesh_of_facets(domain.facets), 0, domain, curved=False)
     parts.append(replace(outer, markers=len(bodies) + outer.markers))
     return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
 
@@ -85,7 +64,7 @@ def part_of(surface: Mesh, chosen: BoolArray) -> Mesh:
     return _without_cells(surface.points[used], facets, surface.markers[chosen])
 
 
-def _as_mesh(facets: Facets) -> Mesh:
+def _mesh_of_facets(facets: Facets) -> Mesh:
     """The vertices that facets use, and the facets."""
     whole = _without_cells(facets.points, facets.vertices, facets.markers)
     return part_of(whole, np.ones(len(facets.vertices), dtype=bool))
@@ -107,7 +86,7 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
         found = surfaces_of(netgen, body.dimension)
         excess = float(longest_edges(found, 1)[0]) * unit / sizes.size_body
         if excess <= 1.0 + ROUNDING:
-            surface = _as_mesh(Facets(unit * found.points, found.facets, found.markers))
+            surface = _mesh_of_facets(Facets(unit * found.points, found.facets, found.markers))
             return _into_fluid(replace(surface, points=body.closest_point(surface.points)), [body])
         asked *= 0.95 / excess
     edge = f"a facet of length {excess * sizes.size_body:.4g}"
@@ -118,7 +97,7 @@ def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
     """Facets of a domain that has a CAD shape; markers are the numbers of its pieces."""
     nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
     found = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
-    surface = put_back(_as_mesh(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
+    surface = put_back(_mesh_of_facets(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
     return _into_fluid(surface, [piece.shape for piece in domain.pieces])
 
 

@@ -14,22 +14,11 @@ from rigidfluid.errors import MeshError
 REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."
 
 _ROUNDINGS = 16.0
-"""How many roundings of a coordinate, of ε max|x| each, a vertex of the boundary may be away from its place."""
+"""Roundings of a coordinate, of ε max|x| each, that a vertex of the boundary may be away from its place."""
 
 
 def boundary_facets(cells: IntArray) -> IntArray:
-    """Facets that belong to one cell only, (F, d), vertex numbers ascending, rows in lexicographic order.
-
-    Parameters
-    ----------
-    cells : (M, d+1) array
-        Vertex numbers of each simplex.
-
-    Returns
-    -------
-    (F, d) array
-        Vertex numbers of each boundary facet.
-    """
+    """Facets that belong to one cell only, (F, d), vertex numbers ascending, rows in lexicographic order."""
     corners = np.sort(cells, axis=1)
     picks = np.array(list(combinations(range(cells.shape[1]), cells.shape[1] - 1)))
     facets, count = _distinct(corners[:, picks].reshape(-1, cells.shape[1] - 1))
@@ -53,8 +42,8 @@ def orient(mesh: Mesh) -> Mesh:
 
 
 def share_no_cell(cells: IntArray, chosen: IntArray, vertices: int) -> BoolArray:
-    """Which of the ``chosen`` vertices (E,) no cell has two of: those that come first of them in all their cells; the
-    ``vertices`` are counted."""
+    """Whether each of the ``chosen`` vertices is the first of them in all its cells, (E,), so that no cell has two with
+    True; ``vertices`` is the number of all."""
     rank = np.full(vertices, len(chosen))
     np.minimum.at(rank, chosen, np.arange(len(chosen)))
     least = rank[cells].min(axis=1)
@@ -65,20 +54,8 @@ def share_no_cell(cells: IntArray, chosen: IntArray, vertices: int) -> BoolArray
 
 
 def check_mesh(mesh: Mesh, quality: float) -> None:
-    """Refuse a mesh that is not closed by its marked facets or has a cell below a quality.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh to check.
-    quality : float
-        Lowest quality allowed, at least 0 (inverted cells are always refused).
-
-    Raises
-    ------
-    MeshError
-        When the listed facets are not exactly the boundary of the cells, or the worst cell is too bad.
-    """
+    """Raise MeshError unless the marked facets are exactly the boundary of the cells, and every cell is above a
+    ``quality`` of at least 0."""
     listed, _ = _distinct(np.sort(mesh.facets, axis=1))
     boundary = boundary_facets(mesh.cells)
     if len(listed) != len(mesh.facets) or not np.array_equal(listed, boundary):
@@ -104,9 +81,9 @@ def check_volume(mesh: Mesh, expected: float, whose: str) -> None:
 
 
 def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
-    """The distinct ``rows`` (N, k) in lexicographic order, and how often each is there.
+    """Distinct ``rows`` (N, k) in lexicographic order, and how often each is there.
 
-    By one number for each row: NumPy takes ten times as long to sort rows.
+    Each row is sorted as one number: NumPy takes ten times as long to sort rows.
     """
     shape = (int(rows.max(initial=0)) + 1,) * rows.shape[1]
     keys, count = np.unique(np.ravel_multi_index(tuple(rows.T), shape), return_counts=True)

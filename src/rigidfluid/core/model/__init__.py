@@ -1,1 +1,1 @@
-"""What flows between the rooms, and what must be true of it: records, interfaces, the system and its state."""
+"""Records that flow between the rooms, the checks of them, the interfaces, the system and its state."""

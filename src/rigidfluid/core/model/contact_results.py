@@ -40,7 +40,7 @@ def _exist(body_a, body_b, at_wall, bodies, surfaces):
 
 @njit(cache=True)
 def _finite(gap, *vectors):
-    """In one loop, as a detector is asked in every substep."""
+    """Whether all numbers are finite, in one loop, as a detector is asked in every substep."""
     lost = 0
     for i in range(len(gap)):
         lost += not np.isfinite(gap[i])

@@ -10,20 +10,7 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArra
 
 
 def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
-    """The contacts in the rows ``chosen``.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        m of them.
-    chosen : (k,) array of int or (m,) array of bool
-        Which, in the order wanted.
-
-    Returns
-    -------
-    Contacts
-        k of them.
-    """
+    """Contacts in the rows ``chosen``, (k,) numbers in the order wanted or (m,) truth values."""
     return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
 
 
@@ -33,22 +20,11 @@ def joined(parts: Sequence[Contacts]) -> Contacts:
 
 
 def in_order(parts: Sequence[Contacts]) -> Contacts:
-    """All contacts of several parts, sorted by (body_a, body_b).
-
-    Parameters
-    ----------
-    parts : sequence of Contacts
-        At least one.
-
-    Returns
-    -------
-    Contacts
-        As many as in all parts.
-    """
+    """All contacts of at least one part, sorted by (body_a, body_b)."""
     merged = joined(parts)
     return select(merged, np.lexsort((merged.body_b, merged.body_a)))
 
 
 def middle(contacts: Contacts) -> FloatArray:
-    """Half-way between the contact points, (m, d) [length]."""
+    """Middle between the contact points, (m, d) [length]."""
     return np.asarray(0.5 * (contacts.point_a + contacts.point_b))

@@ -1,4 +1,4 @@
-"""Where edges go through facets: of a surface that crosses itself, or of two bodies in one another."""
+"""Finds edges that go through facets: of a surface that crosses itself, or of two bodies in one another."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False

@@ -50,7 +50,7 @@ class Domain(SpatialPart):
 
     @abstractmethod
     def contains(self, points: FloatArray) -> BoolArray:
-        """Which of ``points`` (N, d) are inside, (N,); on the boundary either may be said."""
+        """Whether each of ``points`` (N, d) is inside, (N,); on the boundary either may be said."""
 
     def cad_shape(self, unit: float) -> Any:
         """The domain as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, whose edges (2D) or
@@ -70,7 +70,7 @@ class Domain(SpatialPart):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What to tell a user of how it was read or made; each is a sentence without its full stop."""
+        """Remarks for a user on how it was read or made; each is a sentence without its full stop."""
         return ()
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 
 
 class Cause(StrEnum):
-    """What was special about a step: entries of the ledger that its part of the residual is added to."""
+    """Cause of a step's part of the residual: the entry of the ledger that it is added to."""
 
     START = "residual_start"
     REMESHING = "residual_remeshing"
@@ -33,7 +33,7 @@ class Power:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """Done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
+    """Work done in one step [energy]: by gravity, by what drives bodies and walls against contacts, what the dampers of
     contacts took, and what friction took between the fluid's solutions, ``drag_loss`` where the fluid has no inertia
     and that is known for certain."""
 
@@ -89,14 +89,15 @@ class Ledger:
 
     @property
     def residual(self) -> float:
-        """What the balance does not account for: in - out - (stored now - stored at the start)."""
+        """Energy that the balance does not account for: in - out - (stored now - stored at the start)."""
         incoming = self.gravity + self.boundary + self.control
         outgoing = self.dissipation + self.grad_div_loss + self.contact_loss + self.transfer_loss
         return incoming - outgoing - (self.kinetic + self.contact - self.initial)
 
     @property
     def put_in(self) -> float:
-        """What was stored at the start and what came in since, as far as more came in than went out the same way."""
+        """Energy stored at the start, and that which came in since, as far as more came in than went out the same
+        way."""
         return self.initial + sum(max(work, 0.0) for work in (self.gravity, self.boundary, self.control))
 
     @property
@@ -106,10 +107,10 @@ class Ledger:
         return self.residual / passed if passed > 0 else 0.0
 
     def after(self, step: float, power: Power, work: Work, kinetic: float, contact: float) -> Ledger:
-        """The ledger one step later, rates integrated by the trapezoidal rule.
+        """Ledger one step later, rates integrated by the trapezoidal rule.
 
-        Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign.
-        What is not known at the start is taken from the end of the first step.
+        Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign. A
+        power unknown at the start is taken from the end of the first step.
         """
         before = self.power or power
 

@@ -18,15 +18,8 @@ class Extension(Protocol):
 
 
 class FactorisedExtension:
-    """By factors of A_ff, made once.
-
-    Parameters
-    ----------
-    matrix : (N, N) sparse array
-        Symmetric stiffness matrix.
-    held : (N,) array of bool
-        Where values are given; at least one.
-    """
+    """Extension by factors of A_ff, made once from a symmetric stiffness ``matrix`` (N, N); at least one value is
+    ``held``, (N,)."""
 
     def __init__(self, matrix: csc_array, held: BoolArray) -> None:
         from scipy.sparse.linalg import splu

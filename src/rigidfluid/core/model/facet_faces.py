@@ -16,7 +16,7 @@ _EDGES = np.array([2, 5, 4])
 
 
 class Faces(NamedTuple):
-    """What each facet consists of, in columns by the bits (less one) of the corners that span it.
+    """Faces of each facet, in columns by the bits (less one) of the corners that span them.
 
     ``numbers`` (F, 2^d - 1) of the vertices, edges and insides, those of the vertices their rows of points; ``normals``
     (F, 2^d - 1, d), unit means of those of the facets that meet there, at vertices weighted by their angles;
@@ -47,12 +47,12 @@ def faces_of(points: FloatArray, vertices: IntArray) -> Faces:
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    """Of length 1 along the last axis; none where there is no direction, as between two sides of a blade."""
+    """Unit vectors along the last axis; zero for vectors without a direction, as between two sides of a blade."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.asarray(vectors / np.where(length > 0, length, 1.0))
 
 
 def _angles(corners: FloatArray) -> FloatArray:
-    """At the corners of triangles (F, 3, 3), (F, 3) [rad]."""
+    """Angles at the corners of triangles (F, 3, 3), (F, 3) [rad]."""
     ahead, behind = unit(np.roll(corners, -1, axis=1) - corners), unit(np.roll(corners, 1, axis=1) - corners)
     return np.asarray(2.0 * np.arctan2(np.linalg.norm(ahead - behind, axis=2), np.linalg.norm(ahead + behind, axis=2)))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.facet_tree import Tree
 
 _TOUCHING = 1e-8
-"""Over the size of the surface: nearer points have no direction from an edge or a corner."""
+"""Distance, over the size of the surface, below which points have no direction from an edge or a corner."""
 
 _CORNER = np.array([0, 1, 0, 2, 0, 1, 0])
 """A corner of the vertex, edge or inside of a facet that each number of bits (less one) stands for."""
@@ -68,8 +68,8 @@ class FacetSurface(Surface):
         self._size = float(np.max(self._bounds[1] - self._bounds[0]))
 
     def piece(self, marker: int) -> Surface:
-        """What the facets with this marker, a part of this closed surface, are: their plane if all of this surface is
-        on its one side, and the facets alone if they are not flat or their plane goes on inside."""
+        """Surface of the facets with this marker, a part of this closed one: their plane if all of this surface is on
+        its one side, and the facets alone if they are not flat or their plane goes on inside."""
         part = self.facets.part(self.facets.markers == marker)
         plane = plane_around(part, self._points[np.unique(self._vertices)])
         return FacetSurface(part, whole=self) if plane is None else plane
@@ -105,8 +105,8 @@ class FacetSurface(Surface):
     def normal(self, points: FloatArray) -> FloatArray:
         """Unit normals into the fluid, (N, d), at the closest points of ``points`` (N, d).
 
-        At edges and corners the direction in which the distance grows at the point itself, or, of a point of the
-        surface, the mean of the normals there.
+        The normal at an edge or a corner is the direction in which the distance grows at the point itself, or, for a
+        point of the surface, the mean of the normals there.
         """
         return self._measured(points, *self._nearest(points)).normal
 
@@ -161,7 +161,7 @@ class FacetSurface(Surface):
         return nearest, bits, weights[:, : self._points.shape[1]]
 
     def _measured(self, points: FloatArray, facet: IntArray, bits: IntArray, weights: FloatArray) -> _Measured:
-        """Of the nearest point of one facet to each of ``points`` (N, d)."""
+        """Foot, signed distance and normal of one facet's nearest point to each of ``points`` (N, d)."""
         foot = np.einsum("ni,nij->nj", weights, self._points[self._vertices[facet]])
         side = self._side(points, facet, bits)
         in_fluid = side >= 0
@@ -182,7 +182,7 @@ class FacetSurface(Surface):
 
     @cached_property
     def tree(self) -> Tree:
-        """Of all facets."""
+        """Tree of all facets."""
         from rigidfluid.core.model.facet_tree import Tree, build_tree
 
         return Tree(*build_tree(self._points, self._vertices, np.arange(len(self._vertices), dtype=np.int32)))
@@ -193,9 +193,10 @@ class FacetSurface(Surface):
 
 
 def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: float) -> BoolArray:
-    """Which places (m,) are farther than ``touching`` [length] from the first of their point, and from those before.
+    """Whether each place is farther than ``touching`` [length] from the first of its point, and from those before,
+    (m,).
 
-    Where a point stands over an end of facets, rounding may say that it is an inside of one and the end of another.
+    Rounding may say of a point over an end of facets that it is an inside of one and the end of another.
     """
     apart = np.linalg.norm(foot - first[query], axis=1) > touching
     same = (query[:, None] == query) & (np.linalg.norm(foot[:, None] - foot, axis=2) <= touching)
@@ -203,7 +204,8 @@ def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: fl
 
 
 def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:
-    """As `FacetSurface.nearby`; of other shapes, which have no hollows that are known of, the nearest place alone."""
+    """Places of a shape by `FacetSurface.nearby`; the nearest place alone if it has no facets, as its hollows are not
+    known."""
     if isinstance(shape, FacetSurface):
         return shape.nearby(points, reach, spread)
     distance = shape.signed_distance(points)

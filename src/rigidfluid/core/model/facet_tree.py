@@ -77,9 +77,9 @@ def search_to_vertex(points, vertex, facets, tree, square, facet):
 
 @njit(cache=True, nogil=True)
 def nearest_facets(points, facets, tree, queries):
-    """Of the points ``queries`` (N, d): the facet nearest to each, bits of the corners that carry weight, the weights.
+    """Nearest facet to each of the points ``queries`` (N, d), bits of the corners that carry weight, the weights.
 
-    Each is the last of ``points`` for a while, since distances are those of vertices.
+    Each query is the last of ``points`` for a while, since distances are those of vertices.
     """
     last = len(points)
     extended = np.empty((last + 1, points.shape[1]))

@@ -39,8 +39,8 @@ def area_vectors(points: FloatArray, vertices: IntArray) -> FloatArray:
 
 
 def enclosed_volume(points: FloatArray, vertices: IntArray) -> float:
-    """What closed facets enclose, Σ det(x_1, …, x_d)/d! about one of their corners, negative where their normals point
-    inwards, for ``points`` and ``vertices`` as in `Facets` [length^d]."""
+    """Volume that closed facets enclose, Σ det(x_1, …, x_d)/d! about one of their corners, negative where their normals
+    point inwards, for ``points`` and ``vertices`` as in `Facets` [length^d]."""
     corners = points[vertices] - points[vertices[0, 0]]
     return float(np.linalg.det(corners).sum()) / factorial(corners.shape[1])
 

@@ -1,4 +1,4 @@
-"""What acts between surfaces: a list of interactions, each a law with the contacts that are its own; forces add up."""
+"""Interactions between surfaces: a list, each a law with the contacts that are its own; forces add up."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Interaction:
     smallest_gap: float | None = None
 
     def acts_in(self, contacts: Contacts) -> BoolArray:
-        """Which contacts (m,) are its own, whatever their gaps."""
+        """Whether each contact is its own, whatever the gap, (m,)."""
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
             chosen &= contacts.at_wall == (self.between == "walls")
@@ -42,13 +42,13 @@ class Interaction:
 
 
 def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) any of the interactions acts in."""
+    """Whether any of the interactions acts in each contact, (m,)."""
     each = [interaction.acts_in(contacts) for interaction in interactions]
     return np.asarray(np.any(each, axis=0), dtype=bool) if each else np.zeros(len(contacts), dtype=bool)
 
 
 def acting_together(interactions: Sequence[Interaction]) -> ForceLaw | None:
-    """What some interactions do together: one that acts everywhere is its own law, none is None."""
+    """Law of some interactions together: one that acts everywhere is its own law, none is None."""
     if not interactions:
         return None
     first = interactions[0]
@@ -58,15 +58,10 @@ def acting_together(interactions: Sequence[Interaction]) -> ForceLaw | None:
 
 
 class SumOfLaws(ForceLaw):
-    """F = Σ F_l, U = Σ U_l, k = Σ k_l over the laws l of the interactions that act in a contact.
+    """F = Σ F_l, U = Σ U_l, k = Σ k_l over the laws l of the interactions, at least one, that act in a contact.
 
     Its range is the longest. It is conservative and dissipative if any law is. In overlap it is unbounded if any law
     is, and counted on to repel only if all laws with an energy do.
-
-    Parameters
-    ----------
-    interactions : sequence of Interaction
-        At least one.
     """
 
     name: ClassVar[str] = "sum"

@@ -1,7 +1,8 @@
-"""What a fluid backend, a detector, a force law, a body type and a mechanism must do; `domain` has what a domain must.
+"""Abstract classes of a fluid backend, a detector, a force law, a body type and a mechanism; `domain` has that of a
+domain.
 
-Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the
-keys it reads from its table of the scene file (``Options``). Importing the class must not import those packages.
+Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the keys it
+reads from its table of the scene file (``Options``). Importing the class must not import those packages.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class PartOptions(BaseModel):
 
 
 class Part(ABC):
-    """What all kinds have in common."""
+    """Replaceable part: its name, the packages it requires and its options."""
 
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
@@ -107,7 +108,7 @@ class Body(Surface, SpatialPart):
 
     @abstractmethod
     def sample_surface(self, count: int) -> FloatArray:
-        """About ``count`` points spread over the surface, (N, d) [length]."""
+        """Points spread over the surface, about ``count`` of them, (N, d) [length]."""
 
     def cad_shape(self, unit: float) -> Any:
         """The shape as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, for the mesh generator;
@@ -121,7 +122,7 @@ class Body(Surface, SpatialPart):
 
     @property
     def given_centre(self) -> FloatArray:
-        """Where the centre of mass is in the frame that the options are in, (d,) [length]."""
+        """Centre of mass in the frame that the options are in, (d,) [length]."""
         return np.zeros(self.dimension)
 
 
@@ -151,15 +152,15 @@ class Mechanism(SpatialPart):
     @property
     @abstractmethod
     def components(self) -> Sequence[Component]:
-        """What it consists of, m of them; the type of each shape is one that a scene can name."""
+        """Components, m of them; the type of each shape is one that a scene can name."""
 
     @abstractmethod
     def placement(self, time: float) -> Pose:
-        """Where the components are in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
+        """Pose of the components in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
         orientations [rad | 1]."""
 
     def rate(self, time: float) -> Twist:
-        """How the placement changes, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
+        """Rate of the placement, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
         m, k = len(self.components), 1 if self.dimension == 2 else 3
         return Twist(np.zeros((m, self.dimension)), np.zeros((m, k)))
 
@@ -254,10 +255,10 @@ class ForceLaw(Part):
     dissipative: bool = False
     """Whether it has damping; else damping is zero."""
     overlap: Literal["repels", "attracts", "unbounded"] = "repels"
-    """What the force of the energy does at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
+    """Behaviour of the energy's force at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
     StepRejected."""
     loads: Loads | None = None
-    """What its strength follows from, in a law that sets it by them; bodies of equal loads then meet alike."""
+    """Loads from which a law sets its strength; bodies of equal loads then meet alike."""
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         self.options = options
@@ -309,7 +310,7 @@ class FluidBackend(Part):
     periodic_faces: ClassVar[bool] = False
     """Whether it takes periodic conditions."""
     state_format: ClassVar[str | None] = None
-    """What its state holds, by a name. Backends of one name resume each other's runs, and by `joined` and `cut` those
+    """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
@@ -319,7 +320,7 @@ class FluidBackend(Part):
         self.problem = problem
 
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
-        """What solves Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
+        """Solver of Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
 
         ``stiffness`` (N, N) is symmetric and has this rank's cells alone.
         """
@@ -327,9 +328,9 @@ class FluidBackend(Part):
 
     @abstractmethod
     def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
-        """The fluid at the start, as `FluidProblem.initial` says, and its kinetic energy.
+        """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
 
-        At "rest" it was so when its bodies were set in motion with ``twist``.
+        A fluid at "rest" was so until its bodies were set in motion with ``twist``.
         """
 
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
@@ -343,12 +344,12 @@ class FluidBackend(Part):
 
     @abstractmethod
     def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
-        """One step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+        """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
 
     @abstractmethod
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
-        """How the twists answer in this ``step`` to each of c ``impulses`` (c, n, d+k) on the free bodies
-        [force·time | force·length·time]; asked of backends with a mesh alone."""
+        """Impulse response: the twists that each of c ``impulses`` (c, n, d+k) on the free bodies gives in this
+        ``step`` [force·time | force·length·time]; asked of backends with a mesh alone."""
 
     @abstractmethod
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
@@ -375,11 +376,12 @@ class FluidBackend(Part):
 
     @abstractmethod
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        """How many unknowns one step solves for on this mesh, with the twists of these motions (N,) given."""
+        """Number of unknowns of one step on this mesh, with the twists of the ``controlled`` motions (N,)
+        prescribed."""
 
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
-        """What steps on a mesh of about so many ``cells``, and ``facets`` on its boundary, are going to take; None
-        where the backend does not know."""
+        """Expected cost of steps on a mesh of about so many ``cells``, and ``facets`` on its boundary; None where the
+        backend does not know."""
         return None
 
     @abstractmethod
@@ -387,7 +389,7 @@ class FluidBackend(Part):
         """Drop every cache, so that the next step depends on the given state alone."""
 
     def memory(self) -> FluidState:
-        """What the next step depends on beside the given state, to the last bit: named arrays for a checkpoint.
+        """Data on which the next step depends beside the given state, to the last bit: named arrays for a checkpoint.
 
         A backend that does not say drops its caches.
         """

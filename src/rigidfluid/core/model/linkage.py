@@ -1,4 +1,4 @@
-"""What joins motions to each other and to the ground: joints, held directions, springs and dampers."""
+"""Links between motions, and of motions to the ground: joints, held directions, springs and dampers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class GroundLink:
-    """What holds one ``body`` to where it is at the start: of its velocities (d+k,) those that are ``held`` are zero.
+    """Link of one ``body`` to its place at the start: its velocities (d+k,) that are ``held`` are zero.
 
     On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
     Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): where the
@@ -53,9 +53,9 @@ class GroundLink:
 
 @dataclass(frozen=True, slots=True)
 class LinkReading:
-    """One joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge its ``angle``
-    [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body, about the point
-    of the joint [force | force·length]."""
+    """Reading of one joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge
+    its ``angle`` [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body,
+    about the point of the joint [force | force·length]."""
 
     name: str
     gap: float
@@ -87,23 +87,23 @@ class Linkage(Protocol):
         """The nearest poses at which the joints fit exactly, each motion moved the less the more mass it has."""
 
     def misfit(self, motions: Pose, time: float) -> FloatArray:
-        """By how much rigid links do not fit, a row for each [length | rad]."""
+        """Constraint violation of rigid links, a row for each [length | rad]."""
 
     def tolerance(self, motions: Pose) -> FloatArray:
-        """Misfits that are rounding there, a row for each [length | rad]."""
+        """Constraint violations that are rounding there, a row for each [length | rad]."""
 
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
-        """Of springs on the motions, N rows."""
+        """Wrench of springs on the motions, N rows."""
 
     def spring_energy(self, motions: Pose, time: float) -> float:
-        """Stored in springs [energy]."""
+        """Energy stored in springs [energy]."""
 
     def spring_power(self, motions: Pose, time: float) -> float:
-        """Of what moves bodies as they are told, against springs [energy/time]."""
+        """Power of prescribed motion against springs [energy/time]."""
 
     def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
-        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
-        None where it is not known yet."""
+        """Readings of all joints and then of all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,):
+        of the rows, None where it is not known yet."""
 
     def following(self, controlled_twist: Callable[[float], FloatArray]) -> Linkage:
         """The same joints where given motions are other ones from now on, (N, d+k) at a time."""

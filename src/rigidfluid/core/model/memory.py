@@ -17,13 +17,13 @@ _GIBIBYTE = 2.0**30
 REMEDY = (
     'Set fluid.solver = "schur" in 3D, raise mesh.size and mesh.size_body, or share the run with backend "dolfinx".'
 )
-"""Against factors that are too large."""
+"""Remedy against factors that are too large."""
 
 
 def available_memory() -> float:
-    """Memory that this process may still take [byte]: what the system has, what its control group (version 2) and its
-    limit of addresses leave. Infinite where none tells."""
-    return min(_of_system(), _of_group(), _of_addresses())
+    """Memory that this process may still take [byte], infinite where none tells: the least of what the system has, and
+    what its control group (version 2) and its limit of addresses leave."""
+    return min(_system_memory(), _group_memory(), _address_space())
 
 
 def require_memory(needed: float, what: str) -> None:
@@ -48,13 +48,13 @@ def gigabytes(size: float) -> str:
     return f"{size / _GIBIBYTE:.3g} GiB"
 
 
-def _of_system() -> float:
+def _system_memory() -> float:
     found = re.search(r"^MemAvailable:\s*(\d+) kB$", _read(_SYSTEM), re.MULTILINE)
     return 1024.0 * int(found[1]) if found else float("inf")
 
 
-def _of_group() -> float:
-    """What the control group's limit leaves, files in the cache not counted, since they give way."""
+def _group_memory() -> float:
+    """Memory that the control group's limit leaves [byte], files in the cache not counted, since they give way."""
     path = re.search(r"^0::/(.*)$", _read(_GROUP), re.MULTILINE)
     folder = _GROUPS / path[1] if path else _GROUPS
     most, used = _read(folder / "memory.max").strip(), _read(folder / "memory.current").strip()
@@ -64,8 +64,8 @@ def _of_group() -> float:
     return float(int(most) - int(used) + (int(files[1]) if files else 0))
 
 
-def _of_addresses() -> float:
-    """What `ulimit -v` leaves."""
+def _address_space() -> float:
+    """Address space that `ulimit -v` leaves [byte]."""
     if sys.platform == "win32":
         return float("inf")
     import resource

@@ -68,5 +68,5 @@ def refuse_shape(key: str, quantity: str, found: Any, wanted: tuple[int, ...], o
 
 
 def remedy(key: str) -> str:
-    """What to do about a part that gives arrays that none should give."""
+    """Remedy for a part that gives arrays that none should give."""
     return f"Mend the part that {key} names; its contract test in rigidfluid.testing shows more."

@@ -9,14 +9,14 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
 FLAT = 1e-10
-"""Over the size of the surface: points that are less off a plane lie in it."""
+"""Distance from a plane, over the size of the surface, below which points lie in it."""
 
 
 def plane_around(facets: Facets, points: FloatArray) -> Plane | None:
-    """The plane of all ``facets`` if they lie in one, and all ``points`` (N, d) of the domain on its one side.
+    """Plane of all ``facets`` if they lie in one, and all ``points`` (N, d) of the domain on its one side.
 
-    Where the domain is on both sides of it, as at a corner that points inwards, the plane goes on inside: then the
-    facets alone are the wall.
+    If the domain is on both sides of it, as at a corner that points inwards, the plane goes on inside: then the facets
+    alone are the wall.
     """
     tolerance = FLAT * float(np.ptp(points, axis=0).max())
     plane = _plane_of(facets, tolerance)

@@ -63,7 +63,7 @@ class Ranks(ABC):
 
     @abstractmethod
     def scatter(self, items: Sequence[T] | None) -> T:
-        """Of the root's ``items``, one for each rank, this rank's; the others pass None."""
+        """This rank's one of the root's ``items``, one for each rank; the others pass None."""
 
     @abstractmethod
     def alltoall(self, items: Sequence[T]) -> list[T]:
@@ -101,7 +101,7 @@ class Ranks(ABC):
 
 
 class Alone(Ranks):
-    """One process that holds everything."""
+    """Single process that holds everything."""
 
     rank = 0
     size = 1
@@ -135,13 +135,7 @@ ALONE = Alone()
 
 
 class MpiRanks(Ranks):
-    """The processes of an MPI communicator.
-
-    Parameters
-    ----------
-    communicator : mpi4py.MPI.Intracomm
-        Theirs.
-    """
+    """Processes of an MPI ``communicator``, an mpi4py.MPI.Intracomm."""
 
     def __init__(self, communicator: Any) -> None:
         self.communicator = communicator

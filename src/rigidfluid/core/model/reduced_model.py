@@ -1,4 +1,5 @@
-"""How a few bodies in a fluid answer to their contacts within a step: with a mass matrix and a friction matrix."""
+"""Reduced model of a few bodies in a fluid, and of their response to contacts within a step: mass and resistance
+matrices."""
 
 from __future__ import annotations
 
@@ -11,15 +12,15 @@ from rigidfluid.core.model.types import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """When the bodies of some velocities were asked for their answers: ``tightness`` (c,) of their contacts [1], and
-    the ``velocity`` (c,) itself."""
+    """Conditions under which the impulse response of some velocities was evaluated: ``tightness`` (c,) of their
+    contacts [1], and the ``velocity`` (c,) itself."""
 
     tightness: FloatArray
     velocity: FloatArray
 
     @property
     def arrays(self) -> tuple[FloatArray, FloatArray]:
-        """Both."""
+        """Tightness and velocity."""
         return self.tightness, self.velocity
 
 
@@ -62,11 +63,12 @@ class ReducedModel:
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """What the bodies near contacts have to do with the fluid in one step: the ``model`` of their answers, and
-    ``load`` (c,), its Φ at the end of the step [force | force·length].
+    """Coupling of the bodies near contacts with the fluid in one step: the reduced ``model``, and ``load`` (c,), its
+    non-contact load Φ at the end of the step [force | force·length].
 
     ``load_before`` (c,) is Φ at its start, NaN where it is not known. ``correction`` (c,): of a fluid without inertia,
-    what takes its answer to the end of the path; it answers to the force there, and not to the mean of the step.
+    the load that takes its answer to the end of the path; it answers to the force there, and not to the mean of the
+    step.
     """
 
     model: ReducedModel
@@ -85,28 +87,13 @@ def uncoupled() -> Coupling:
 def reduced_model(
     velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, asked: Asked, shared: bool
 ) -> ReducedModel:
-    """The model that answers to an impulse with W_i at once, and with W_s at the end of a BDF step.
+    """Reduced model that answers to an impulse with W_i = ``by_mass`` at once, and with W_s = ``by_step`` at the end of
+    a BDF step, (c, c) each, twists by unit impulses [1/mass].
 
-    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer. Both are made symmetric, which
-    W_s is not where the fluid convects; where R would be negative it is zero.
-
-    Parameters
-    ----------
-    velocities : (c,) array
-        Numbers of the components that the matrices are of.
-    by_mass, by_step : (c, c) array
-        W_i and W_s, twists by unit impulses [1/mass].
-    d0 : float
-        Weight of the newest velocity in the step's time derivative [1/time].
-    asked : Asked
-        How it was when the bodies were asked.
-    shared : bool
-        Whether far bodies shared questions: then their errors may leave modes no answer at all, or a negative one.
-
-    Returns
-    -------
-    ReducedModel
-        In its modes.
+    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer, with d₀ the weight of the newest
+    velocity in its time derivative [1/time]. Both are made symmetric, which W_s is not where the fluid convects; where
+    R would be negative it is zero. If far bodies ``shared`` questions, their errors may leave modes no answer at all,
+    or a negative one.
     """
     mass_modes = _root(0.5 * (by_mass + by_mass.T), shared)  # L Lᵀ = W_i: XᵀMX = 1 for X = L
     answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
@@ -125,10 +112,10 @@ def _root(matrix: FloatArray, shared: bool) -> FloatArray:
 
 
 _LEAST = 1e-12
-"""Less of the inviscid answer than this is the rounding of none."""
+"""Least share of the inviscid answer; less is the rounding of none."""
 
 _LEAST_SHARE = 0.1
-"""Of the answers of single velocities, what a mode of many has at least where questions were shared."""
+"""Least answer of a mode of many velocities, over the answers of single ones, where questions were shared."""
 
 
 def load_within(
@@ -137,25 +124,11 @@ def load_within(
     twists: tuple[FloatArray, FloatArray, FloatArray],
     impulses: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
-    """Φ = M (d₀Uⁿ⁺¹ + d₁Uⁿ + d₂Uⁿ⁻¹) + R (Uⁿ⁺¹ - Uⁿ) - d₀Jⁿ⁺¹ + d₂Jⁿ, all but the contacts, read from a solved step.
+    """Load Φ = M (d₀Uⁿ⁺¹ + d₁Uⁿ + d₂Uⁿ⁻¹) + R (Uⁿ⁺¹ - Uⁿ) - d₀Jⁿ⁺¹ + d₂Jⁿ (c,), all but the contacts, read from a
+    solved step [force | force·length].
 
+    ``derivative`` (3,): d₀, d₁, d₂ [1/time]; ``twists``: the model's velocities Uⁿ⁺¹, Uⁿ, Uⁿ⁻¹; ``impulses``: Jⁿ⁺¹, Jⁿ.
     The fluid's Uⁿ⁺¹ is linear in J by W_s, so that Φ does not depend on J.
-
-    Parameters
-    ----------
-    model : ReducedModel
-        With M and R at the end of the step.
-    derivative : (3,) array
-        d₀, d₁, d₂ [1/time].
-    twists : arrays (c,)
-        The model's velocities Uⁿ⁺¹, Uⁿ, Uⁿ⁻¹.
-    impulses : arrays (c,)
-        Jⁿ⁺¹, Jⁿ.
-
-    Returns
-    -------
-    (c,) array
-        Φ [force | force·length].
     """
     d0, d1, d2 = derivative
     new, now, past = twists
@@ -164,20 +137,9 @@ def load_within(
 
 
 def expected_load(model: ReducedModel, change: FloatArray, impulse: FloatArray, step: float) -> FloatArray:
-    """Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 as it was in the latest step, before there is a better one.
+    """Load Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 (c,) as it was in the latest ``step`` Δt, before there is a
+    better one [force | force·length].
 
-    Parameters
-    ----------
-    model : ReducedModel
-        Now.
-    change, impulse : (c,) array
-        Uⁿ - Uⁿ⁻¹, and what contacts gave then.
-    step : float
-        Δt of that step [time].
-
-    Returns
-    -------
-    (c,) array
-        Φ [force | force·length].
+    ``change`` (c,): Uⁿ - Uⁿ⁻¹; ``impulse`` (c,): Jⁿ, which contacts gave then.
     """
     return np.asarray((model.mass_times(change) - impulse) / step - 0.5 * model.friction_times(change))

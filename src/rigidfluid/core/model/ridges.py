@@ -1,4 +1,4 @@
-"""What facets share with their neighbours: corners of edges in the plane, edges of triangles in space."""
+"""Ridges that facets share with their neighbours: corners of edges in the plane, edges of triangles in space."""
 
 from __future__ import annotations
 

@@ -63,33 +63,34 @@ def _vertex_to_segment(points, vertex, a, b):
 
 @njit(cache=True, nogil=True, forceinline=True)
 def _vertex_to_triangle(points, vertex, a, b, c):
-    """By the region of the triangle's plane that the vertex projects to: a corner's, an edge's or the inside."""
+    """Nearest point by the region of the triangle's plane that the vertex projects to: a corner's, an edge's or the
+    inside."""
     d1 = _dot(points, a, b, a, vertex)
     d2 = _dot(points, a, c, a, vertex)
     if d1 <= 0.0 and d2 <= 0.0:
-        return _at(points, vertex, a, b, c, 1, 1.0, 0.0, 0.0)
+        return _squared_distance(points, vertex, a, b, c, 1, 1.0, 0.0, 0.0)
     d3 = _dot(points, a, b, b, vertex)
     d4 = _dot(points, a, c, b, vertex)
     if d3 >= 0.0 and d4 <= d3:
-        return _at(points, vertex, a, b, c, 2, 0.0, 1.0, 0.0)
+        return _squared_distance(points, vertex, a, b, c, 2, 0.0, 1.0, 0.0)
     vc = d1 * d4 - d3 * d2
     if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
         t = d1 / (d1 - d3)
-        return _at(points, vertex, a, b, c, 3, 1.0 - t, t, 0.0)
+        return _squared_distance(points, vertex, a, b, c, 3, 1.0 - t, t, 0.0)
     d5 = _dot(points, a, b, c, vertex)
     d6 = _dot(points, a, c, c, vertex)
     if d6 >= 0.0 and d5 <= d6:
-        return _at(points, vertex, a, b, c, 4, 0.0, 0.0, 1.0)
+        return _squared_distance(points, vertex, a, b, c, 4, 0.0, 0.0, 1.0)
     vb = d5 * d2 - d1 * d6
     if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
         t = d2 / (d2 - d6)
-        return _at(points, vertex, a, b, c, 5, 1.0 - t, 0.0, t)
+        return _squared_distance(points, vertex, a, b, c, 5, 1.0 - t, 0.0, t)
     va = d3 * d6 - d5 * d4
     if va <= 0.0 and d4 >= d3 and d5 >= d6:
         t = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        return _at(points, vertex, a, b, c, 6, 0.0, 1.0 - t, t)
+        return _squared_distance(points, vertex, a, b, c, 6, 0.0, 1.0 - t, t)
     total = va + vb + vc
-    return _at(points, vertex, a, b, c, 7, va / total, vb / total, vc / total)
+    return _squared_distance(points, vertex, a, b, c, 7, va / total, vb / total, vc / total)
 
 
 @njit(cache=True, nogil=True, forceinline=True)
@@ -102,8 +103,9 @@ def _dot(points, a, b, c, d):
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def _at(points, vertex, a, b, c, bits, p, q, r):
-    """The squared distance from the residual itself, which loses nothing to cancellation."""
+def _squared_distance(points, vertex, a, b, c, bits, p, q, r):
+    """Squared distance to the point of weights p, q, r from the residual itself, which loses nothing to cancellation;
+    then the bits and the weights."""
     square = 0.0
     for k in range(3):
         x = points[vertex, k]

@@ -43,8 +43,8 @@ class FreeMotions:
 
 @dataclass(frozen=True, slots=True)
 class LinkLoad:
-    """What joints and springs did to the motions in the latest step: the ``force`` (c,) of each link, and the
-    ``wrench`` (N, d+k) of all of them and of springs; at its end in a fluid, in the mean without one."""
+    """Load of joints and springs on the motions in the latest step: the ``force`` (c,) of each link, and the ``wrench``
+    (N, d+k) of all of them and of springs; at its end in a fluid, in the mean without one."""
 
     force: FloatArray
     wrench: FloatArray
@@ -67,8 +67,8 @@ class Prescription:
 
 @dataclass(frozen=True, slots=True)
 class ErrorEstimate:
-    """Of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts; both
-    infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
+    """Error of the latest step, relative [1]: its local ``error``, and the same ``with_contacts`` and their impacts;
+    both infinite where nothing is known yet. ``steps``: how many were accepted since the motion began or was changed at
     once; ``level``: of the latest one without an impact. The greatest so far, or expected: ``speed`` of a free body
     [length/time], kinetic ``energy`` of all [energy]."""
 
@@ -86,13 +86,13 @@ class ErrorEstimate:
 
     @property
     def restarted(self) -> ErrorEstimate:
-        """After a change of the motion at once: unknown, over the same scales."""
+        """Estimate after a change of the motion at once: unknown, over the same scales."""
         return replace(self, steps=0, error=math.inf, with_contacts=math.inf)
 
 
 class CarriedState:
-    """What has the ``pose`` and ``twist`` of bodies, and in ``free`` those of the motions that carry them, None where
-    each moves by itself."""
+    """Pose and twist of bodies, and in ``free`` those of the motions that carry them, None where each moves by
+    itself."""
 
     __slots__ = ()
     pose: Pose
@@ -101,19 +101,19 @@ class CarriedState:
 
     @property
     def free_pose(self) -> Pose:
-        """Of the motions that carry the bodies."""
+        """Pose of the motions that carry the bodies."""
         return self.pose if self.free is None else self.free.pose
 
     @property
     def free_twist(self) -> Twist:
-        """Of the motions that carry the bodies."""
+        """Twist of the motions that carry the bodies."""
         return self.twist if self.free is None else self.free.twist
 
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """One step earlier, of the motions: what second order in time needs. ``applied``: the mean wrench from outside in
-    the step since then, None without any."""
+    """Pose and twist of the motions one step earlier, for second order in time. ``applied``: the mean wrench from
+    outside in the step since then, None without any."""
 
     pose: Pose
     twist: Twist
@@ -163,7 +163,7 @@ class State(CarriedState):
 
     @property
     def free_contact(self) -> Wrench:
-        """Of contacts, on the motions that carry the bodies."""
+        """Wrench of contacts on the motions that carry the bodies."""
         return self.contact_wrench if self.free is None else self.free.contact
 
     @property

@@ -15,24 +15,11 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def read_stl(path: Path, key: str) -> Facets:
-    """The triangles of an STL file, their corners joined where coordinates are equal; normals as the corners go round.
+    """Read the triangles of an STL file, at least one, their corners joined where coordinates are equal; normals as the
+    corners go round.
 
-    Parameters
-    ----------
-    path : Path
-        A binary file, which has as many bytes as its number of triangles says, or a text.
-    key : str
-        The scene's key that names the file, for messages.
-
-    Returns
-    -------
-    Facets
-        At least one.
-
-    Raises
-    ------
-    SceneError
-        If it cannot be read, or has no triangles.
+    A file with as many bytes as its number of triangles says is binary, all others are text. Raises SceneError, which
+    names the scene's ``key``, if the file cannot be read or has no triangles.
     """
     try:
         content = path.read_bytes()

@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.core.model.types import FloatArray
 
 _STEP = 1e-6
-"""Of central differences, over the size of the surface."""
+"""Step of central differences, over the size of the surface."""
 
 _ALONG_AN_AXIS = 1e-14
 """A unit normal whose other components are below this lies along an axis."""
@@ -19,8 +19,8 @@ class Surface(ABC):
     """A closed or open surface between a solid and the fluid.
 
     Distances are positive in the fluid and normals point into it: out of a body, and into the domain from its boundary.
-    What is known in closed form is `plane`, `radius` or `semi_axes`; the others are None, and whoever asks then takes
-    points and distances.
+    A shape known in closed form says so by its `plane`, `radius` or `semi_axes`; the others are None, and whoever asks
+    then takes points and distances.
     """
 
     @abstractmethod
@@ -64,7 +64,7 @@ class Surface(ABC):
     def normal(self, points: FloatArray) -> FloatArray:
         """Unit normals into the fluid, (N, d), at the closest points of ``points`` (N, d).
 
-        By central differences of the distance, unless a shape knows better.
+        They are central differences of the distance, unless a shape knows better.
         """
         foot = self.closest_point(points)
         lower, upper = self.bounds
@@ -105,12 +105,12 @@ class Plane(Surface):
 
     @property
     def radius(self) -> float:
-        """Infinite."""
+        """Radius of curvature, infinite."""
         return np.inf
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Infinite where the plane has no end [length]."""
+        """Corners of the box around the plane, infinite where it has no end [length]."""
         return self._bounds
 
     def signed_distance(self, points: FloatArray) -> FloatArray:

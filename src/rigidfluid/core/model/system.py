@@ -35,13 +35,13 @@ class Mechanisms(Protocol):
     driven: bool
 
     def poses(self, motions: Pose, time: float) -> Pose:
-        """Of the bodies, where the ``motions`` are there."""
+        """Pose of the bodies, where the ``motions`` are there."""
 
-    def at(self, motions: Pose, time: float) -> Kinematics:
+    def kinematics(self, motions: Pose, time: float) -> Kinematics:
         """G and g, where the ``motions`` are there."""
 
     def inertia(self, time: float) -> FloatArray:
-        """Of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
+        """Inertia of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
 
     def spin(self, time: float) -> FloatArray:
         """Angular momentum of the relative motion, in the motions' frames, (N, k) [mass·length²/time]."""
@@ -107,7 +107,7 @@ class System:
 
     @property
     def controlled_motions(self) -> BoolArray:
-        """Which of the motions are given (N,)."""
+        """Whether the twist of each motion is prescribed, (N,)."""
         return self.controlled if self.mechanisms is None else self.mechanisms.controlled
 
     @property
@@ -118,4 +118,4 @@ class System:
 
     def meshed(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""
-        return self.domain if self.window is None else self.window.at(pose)
+        return self.domain if self.window is None else self.window.meshed_domain(pose)

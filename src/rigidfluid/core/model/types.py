@@ -21,15 +21,15 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 _FROM_RADII: FloatArray = np.empty(0)
-"""In place of effective radii that are not given."""
+"""Placeholder for effective radii that are not given, and follow from the radii of curvature."""
 
 FluidState = Mapping[str, FloatArray]
-"""What a fluid backend remembers between steps, as named arrays, so that a checkpoint can hold it as it is."""
+"""State of a fluid backend between steps, as named arrays, so that a checkpoint can hold it unchanged."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where the bodies are: ``position`` (n, d) [length], ``orientation`` (n, q) [rad | 1]."""
+    """Pose of the bodies: ``position`` (n, d) [length], ``orientation`` (n, q) [rad | 1]."""
 
     position: FloatArray
     orientation: FloatArray
@@ -37,7 +37,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Twist:
-    """How the bodies move: ``velocity`` (n, d) [length/time], ``angular_velocity`` (n, k) [rad/time]."""
+    """Twist of the bodies: ``velocity`` (n, d) [length/time], ``angular_velocity`` (n, k) [rad/time]."""
 
     velocity: FloatArray
     angular_velocity: FloatArray
@@ -45,7 +45,7 @@ class Twist:
 
 @dataclass(frozen=True, slots=True)
 class Wrench:
-    """What acts on the bodies: ``force`` (n, d) [force], ``torque`` (n, k) about the centre of mass [force·length]."""
+    """Wrench on the bodies: ``force`` (n, d) [force], ``torque`` (n, k) about the centre of mass [force·length]."""
 
     force: FloatArray
     torque: FloatArray
@@ -85,7 +85,7 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How the surfaces of each contact move, for forces that depend on it.
+    """Relative motion of the surfaces of each contact, for forces that depend on it.
 
     ``velocity`` (m, d) of a relative to b, both as rigid bodies, half-way between the contact points [length/time];
     ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass].
@@ -109,9 +109,9 @@ class Film:
 
 @dataclass(frozen=True, slots=True)
 class Loads:
-    """What the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
+    """Loads that the contacts must hold: ``smallest_gap`` [length] is wanted where a body hits head-on.
 
-    Of each body, ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
+    Each body has ``mass`` (n,), infinite where its twist is given [mass]; ``weight`` (n,), the magnitude of the
     submerged weight [force]; ``speed`` (n,), expected at the impact [length/time]. ``stacked_weight`` (n,) [force] and
     ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
     where its twist is given. ``film``: that which brakes them before, None without a fluid. In a fluid ``travel_speed``
@@ -132,11 +132,11 @@ class Loads:
 
 @dataclass(frozen=True, slots=True)
 class MeshPart:
-    """Where the part of a mesh that one process holds stands in the whole.
+    """Part of a mesh that one process holds, and its numbers in the whole.
 
     A part has cells of its own and all their vertices; those on a border are in several parts, and ``owned`` (N,) by
-    the one of lowest rank. ``vertices`` (N,), ``cells`` (M,), ``facets`` (F,): numbers in the whole mesh;
-    ``counts`` (3,): how many vertices, cells and facets that has. ``ranks``: the processes that hold the parts.
+    the one of lowest rank. ``vertices`` (N,), ``cells`` (M,), ``facets`` (F,): numbers in the whole mesh; ``counts``
+    (3,): how many vertices, cells and facets that has. ``ranks``: the processes that hold the parts.
     """
 
     ranks: Ranks
@@ -190,7 +190,7 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCondition:
-    """What holds on one piece of the domain's boundary.
+    """Condition on one piece of the domain's boundary.
 
     ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
     along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
@@ -209,7 +209,8 @@ class BoundaryCondition:
 
 @dataclass(frozen=True, slots=True)
 class Kinematics:
-    """How n components follow N motions at one moment: component twist = G u + g, free wrench = Gᵀ component wrench.
+    """Kinematics of n components on N motions at one moment: component twist = G u + g, free wrench = Gᵀ component
+    wrench.
 
     Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
     leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
@@ -224,13 +225,13 @@ class Kinematics:
 
 @dataclass(frozen=True, slots=True)
 class Links:
-    """What holds N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ force acts on
-    them.
+    """Constraints and dampers of N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ
+    force acts on them.
 
     ``rows`` (c, N, d+k): C, zero for motions of given twist; ``rate`` (c,): at which a link is driven, less what given
     motion has of it [length/time | rad/time]; ``compliance`` (c,): 1/c of a damper, 0 where a link is rigid
-    [length/(force·time) | rad/(force·length·time)]. The links' power on the motions is force · rate less
-    compliance · force².
+    [length/(force·time) | rad/(force·length·time)]. The links' power on the motions is force · rate less compliance ·
+    force².
     """
 
     rows: FloatArray
@@ -260,7 +261,7 @@ class FluidProblem:
 
     @property
     def motions(self) -> int:
-        """How many motions carry the bodies."""
+        """Number of motions that carry the bodies."""
         return self.bodies if self.carrier is None else max(self.carrier) + 1
 
     @property
@@ -283,8 +284,8 @@ class Step:
     that on the bodies; None where each body moves by itself.
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
-    What the masses of bodies and fluid answer to ``turning`` (n, d+k) [force·time | force·length·time] is added to what
-    convects; it is zero but for steps in which contacts turn bodies around.
+    ``turning`` (n, d+k): impulses whose answer by the masses of bodies and fluid is added to the convecting velocity,
+    zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
     ``links``: what else holds the motions at the new time; None where nothing does.
     """
@@ -308,7 +309,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class SolverCost:
-    """What the steps of a run are expected to take.
+    """Expected cost of a run's steps.
 
     ``method``: of solution, as the scene's keys name it; ``unknowns`` of a step; ``memory`` of the process [byte]; CPU
     ``seconds`` that factors take, or what else preconditions, each time it is made, and ``step_seconds`` of a step far
@@ -324,7 +325,7 @@ class SolverCost:
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """How the twists of all bodies, or of the motions that carry them, answer to impulses on them, (c, n, d+k) each
+    """Response of the twists of all bodies, or of the motions that carry them, to impulses on them, (c, n, d+k) each
     for c impulses.
 
     ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end
@@ -337,16 +338,15 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """What a backend returns from one step: its candidate state, the new twist, and the fluid's own figures.
+    """Result of a backend's step: its candidate state, the new twist, and the fluid's own figures.
 
     ``twist`` is what Newton–Euler's equations are solved for: the motions', where a step has kinematics.
     ``hydrodynamic_wrench`` is the fluid's force and torque on each body alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
-    ``link_force`` (c,): of the step's links; None without any [force | force·length].
-    ``leak``: kinetic energy that convection takes through faces that let none pass, an error of the mesh [energy/time].
-    ``grad_div``: what stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow
-    [energy/time].
+    ``link_force`` (c,): of the step's links; None without any [force | force·length]. ``leak``: kinetic energy that
+    convection takes through faces that let none pass, an error of the mesh [energy/time]. ``grad_div``: what
+    stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow [energy/time].
     """
 
     fluid: FluidState

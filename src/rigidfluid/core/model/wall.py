@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
 WallVelocities = Callable[[IntArray, FloatArray], FloatArray]
-"""At which walls slide in themselves, (m, d), of surface numbers (m,) at points (m, d) [length/time]."""
+"""Velocity (m, d) at which walls slide in themselves, of surface numbers (m,) at points (m, d) [length/time]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ them are squeezed flat, and the open end is no channel that goes on."""
 class Window:
     """The part of a ``domain`` between two planes across an ``axis``.
 
-    At the start it reaches from ``behind`` to ``ahead`` (coordinates along the axis) [length]. It has the displacement
+    It reaches from ``behind`` to ``ahead`` at the start (coordinates along the axis) [length]. It has the displacement
     of the ``body``, which was at ``start`` [length], towards ``ahead``: no farther than to the end of the domain, and
     never back behind where it was at the start. So where it is follows from the bodies' pose alone.
     """
@@ -32,12 +32,12 @@ class Window:
 
     @property
     def sign(self) -> float:
-        """Of the direction ahead along the axis."""
+        """Sign of the direction ahead along the axis."""
         return float(np.sign(self.ahead - self.behind))
 
     @property
     def way(self) -> float:
-        """How far it can go until it reaches the end of the domain [length]."""
+        """Distance that it can go until it reaches the end of the domain [length]."""
         return self.sign * (self._end - self.ahead)
 
     @property
@@ -52,7 +52,7 @@ class Window:
         return across[self.sign], across[-self.sign]
 
     def displacement(self, pose: Pose) -> float:
-        """Along the axis since the start, while the bodies are at ``pose`` [length]."""
+        """Displacement along the axis since the start, while the bodies are at ``pose`` [length]."""
         gone = self.sign * float(pose.position[self.body, self.axis] - self.start)
         return self.sign * min(max(gone, 0.0), self.way)
 
@@ -63,7 +63,7 @@ class Window:
         lower, upper = sorted((self.behind + moved, ahead))
         return lower, upper
 
-    def at(self, pose: Pose) -> Domain:
+    def meshed_domain(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""
         part = self.domain.between(self.axis, *self.interval(pose))
         assert part is not None, "no window is made of a domain that has no parts"
@@ -80,6 +80,6 @@ class Window:
 
     @property
     def _end(self) -> float:
-        """Of the domain, ahead [length]."""
+        """End of the domain ahead along the axis [length]."""
         lower, upper = self.domain.extent
         return float((upper if self.sign > 0.0 else lower)[self.axis])

@@ -25,12 +25,13 @@ from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
 FORMAT = 7
-"""Of what is in a checkpoint, the backend's memory and the columns of tables included; files of others are refused."""
+"""Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
+columns; files of other formats are refused."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What a rank of a run needs to go on: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
+    """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
     ``times`` of its outputs, the ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how
     many ``ranks`` have such."""
 
@@ -69,7 +70,8 @@ def adopt_checkpoint(path: Path) -> None:
 
 
 def read_staged(path: Path, ranks: Ranks) -> Checkpoint:
-    """What was staged for ``path`` and not put in its place; raises OutputError as read_checkpoint does."""
+    """Read the checkpoint staged for ``path`` and not yet put in its place; raises OutputError as read_checkpoint
+    does."""
     return read_checkpoint(_staged(path), ranks)
 
 

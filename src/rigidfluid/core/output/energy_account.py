@@ -1,4 +1,4 @@
-"""What the energy balance of a run says of it: energy that came from nowhere or vanished, and why it did."""
+"""Judge the energy balance of a run: energy that came from nowhere or vanished, and why it did."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from rigidfluid.core.model.types import FloatArray
 Table = Mapping[str, NDArray[Any]]
 
 NOTICEABLE, SERIOUS = 0.01, 0.05
-"""From these shares on, energy created, lost or unaccounted for is worth a warning and a serious one."""
+"""Shares of the energy put in from which on energy created, lost or unaccounted for is worth a warning, and a serious
+one."""
 
 STABILISED = 0.05
-"""From this share of what was put in on, what grad-div stabilisation took is worth a warning."""
+"""Share of the energy put in from which on the loss by grad-div stabilisation is worth a warning."""
 
 _TOLD = 0.1
 """A cause of less than this part of what was created or lost is not told."""
@@ -61,10 +62,10 @@ class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces and
-    driven bodies had. What is wrong at a time is the residual and what re-meshing took. ``created``: the lowest that it
-    was after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction
-    between the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction,
-    until the end. ``grad_div``: what stabilisation took until the end, no part of the others.
+    driven bodies had. The error at a time is the residual and what re-meshing took. ``created``: the lowest that it was
+    after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction between
+    the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction, until
+    the end. ``grad_div``: what stabilisation took until the end, no part of the others.
     """
 
     put_in: float
@@ -104,14 +105,8 @@ def energy_account(energy: Table) -> EnergyAccount:
 
 
 def energy_warnings(energy: Table) -> list[EnergyWarning]:
-    """Of energy created, of energy lost, of energy unaccounted for at the end that is neither, and of energy that
-    stabilisation took; where noticeable.
-
-    Parameters
-    ----------
-    energy : mapping of str to (s,) array
-        The table of energies by column [energy].
-    """
+    """Warn of energy created, lost, or unaccounted for at the end and neither of these, and of energy that
+    stabilisation took, if noticeable; ``energy``: the table by column (s,) [energy]."""
     account, sums = energy_account(energy), _lost_by_cause(energy)
     lost = energy["residual"] + energy["transfer_loss"]
     friction = energy["path_friction"]
@@ -135,7 +130,7 @@ def energy_warnings(energy: Table) -> list[EnergyWarning]:
 
 
 def per_cent(share: float) -> str:
-    """To two digits; what is below a millionth is nothing."""
+    """Percentage to two digits; a share below a millionth is nothing."""
     value = 100.0 * share if abs(share) >= 1e-6 else 0.0
     return f"{value:.2g} %" if abs(value) < 100.0 else f"{value:.0f} %"
 
@@ -147,7 +142,7 @@ def _put_in(energy: Table) -> float:
 
 
 def _excess(balance: FloatArray) -> FloatArray:
-    """What a sum (s,) has grown by since the first step; zero before that."""
+    """Growth of a sum (s,) since the first step; zero before that."""
     excess: FloatArray = balance - balance[:2][-1]
     excess[0] = 0.0
     return excess

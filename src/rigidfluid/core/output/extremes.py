@@ -1,4 +1,4 @@
-"""What a run has come to at most: figures that are kept as it goes, as no run holds its whole past."""
+"""Extreme values of a run, kept as it goes, since no run holds its whole past."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from rigidfluid.core.model.types import FloatArray, Twist
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """Until now: ``smallest_gap`` [length], and the ``highest_speed`` of each body (n,) [length/time]."""
+    """Extremes until now: ``smallest_gap`` [length], and the ``highest_speed`` of each body (n,) [length/time]."""
 
     smallest_gap: float
     highest_speed: FloatArray
 
     @classmethod
     def none(cls, bodies: int) -> Extremes:
-        """Those of no state at all."""
+        """Extremes of no state at all."""
         return cls(np.inf, np.zeros(bodies))
 
     def after(self, gaps: FloatArray, twist: Twist) -> Extremes:
-        """Those of one more state, with each body's nearest gap (n,) [length]."""
+        """Extremes with one more state in them, with each body's nearest gap (n,) [length]."""
         speed = np.sqrt(np.sum(np.square(twist.velocity), axis=1))
         return Extremes(min(self.smallest_gap, float(gaps.min())), np.maximum(self.highest_speed, speed))

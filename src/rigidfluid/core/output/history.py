@@ -18,15 +18,9 @@ from rigidfluid.errors import OutputError
 class History:
     """Tables of a run, as ``bodies`` and ``energy``, and the ``summary`` of summary.json.
 
-    Parameters
-    ----------
-    dimension : int
-        2 or 3; it decides the columns.
-    records : Records, optional
-        Rows to start with.
-    folder : Path, optional
-        Where a run writes its tables. No row is then held in memory: each table is read when it is asked for, and a
-        later run in the same folder replaces it.
+    The ``dimension`` decides the columns. Rows are kept in memory, ``records`` from the start; but with the ``folder``
+    in which a run writes its tables none is: each table is read when it is asked for, and a later run in the same
+    folder replaces it.
     """
 
     def __init__(self, dimension: int, records: Records | None = None, folder: Path | None = None) -> None:
@@ -58,14 +52,10 @@ class History:
                 self._rows.setdefault(name, []).extend(rows)
 
     def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
-        """One table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
+        """Read one table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
 
-        Of a folder that an earlier version has written, all columns are those that it knew.
-
-        Raises
-        ------
-        OutputError
-            If the table is on disk and cannot be read.
+        A folder that an earlier version has written has all columns that it knew. Raises OutputError if the table is on
+        disk and cannot be read.
         """
         names = columns(self.dimension)[name]
         wanted = tuple(names if only is None else only)

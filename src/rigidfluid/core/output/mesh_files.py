@@ -63,7 +63,7 @@ def write_msh(path: Path, mesh: Mesh, names: Sequence[str]) -> None:
 
 
 def _elements(simplices: IntArray, groups: IntArray, first: int) -> list[str]:
-    """One line each: number, kind, two tags, which are the group, and vertices, all from 1."""
+    """Lines of Gmsh's elements: number, kind, two tags, which are the group, and vertices, all from 1."""
     kind, group = _GMSH[simplices.shape[1]], groups.tolist()
     return [
         f"{first + k} {kind} 2 {group[k]} {group[k]} {' '.join(map(str, vertices))}"

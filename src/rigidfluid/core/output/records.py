@@ -1,4 +1,4 @@
-"""What a run says of each accepted step: the rows of its tables."""
+"""Rows of a run's tables, for each accepted step."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
 
 
 class StepCost(NamedTuple):
-    """What the step to a state took: its ``size`` [time], how many meshes have been made since the start, and the
+    """Cost of the step to a state: its ``size`` [time], how many meshes have been made since the start, and the
     ``quality`` of the worst cell [1]."""
 
     size: float
@@ -79,7 +79,7 @@ def moving(system: System) -> tuple[str, ...]:
 
 
 def least_gaps_of_motions(mechanisms: Mechanisms, gaps: FloatArray) -> FloatArray:
-    """Of each motion the least of the ``gaps`` (n,) of what it carries, (N,) [length]."""
+    """Least of the ``gaps`` (n,) of the bodies that each motion carries, (N,) [length]."""
     least = np.full(len(mechanisms.mass), np.inf)
     np.minimum.at(least, mechanisms.carrier, gaps)
     return least
@@ -130,7 +130,7 @@ def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
 
 
 def count_cells(mesh: Mesh | None) -> int:
-    """Of the whole mesh."""
+    """Number of cells of the whole mesh; 0 without one."""
     if mesh is None:
         return 0
     return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
@@ -141,7 +141,7 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
         return
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
     if system.window is not None:  # nothing is known of the fluid outside
-        outside = ~system.window.at(state.pose).contains(probes)
+        outside = ~system.window.meshed_domain(state.pose).contains(probes)
         velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
         yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))

@@ -19,7 +19,7 @@ PICTURES = (
     *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
     "step",
 )
-"""What the report of a run shows, each a PNG or SVG file."""
+"""Names of the pictures in the report of a run, each a PNG or SVG file."""
 
 _OWN = {
     ".": re.compile(
@@ -43,13 +43,8 @@ def refuse_foreign(out: Path) -> None:
 
 
 def locked(out: Path) -> TextIO:
-    """The mark of a folder, locked until it is closed or this process ends, however it ends.
-
-    Raises
-    ------
-    OutputError
-        If another run is writing there.
-    """
+    """Lock the mark of a folder until it is closed or this process ends, however it ends; raises OutputError if another
+    run is writing there."""
     file = (out / MARK).open("a+", encoding="ascii")
     if not _lock(file):
         file.seek(0)

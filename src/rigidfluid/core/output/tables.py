@@ -18,16 +18,10 @@ from rigidfluid.errors import OutputError
 
 
 class Table:
-    """One CSV file; it is opened for each append and never held, so that nothing is left open or unwritten.
+    """CSV file that is opened for each append and never held, so that nothing is left open or unwritten.
 
-    Parameters
-    ----------
-    path : Path
-        Where it is.
-    columns : sequence of str
-        The header.
-    length : int or None
-        None starts the file anew; otherwise what lies behind this many bytes is cut off.
+    ``length`` None starts the file anew with the ``columns`` as header; otherwise what lies behind this many bytes is
+    cut off.
     """
 
     def __init__(self, path: Path, columns: Sequence[str], length: int | None) -> None:
@@ -63,7 +57,7 @@ KINDS: Mapping[str, type[float | int | str]] = {
     **dict.fromkeys(("body", "a", "b", "joint"), str),
     **dict.fromkeys(("step", "probe", "unknowns", "remeshes", "cells"), int),
 }
-"""What stands in a column; a number with a fraction where it is not named here."""
+"""Types of the columns of names and whole numbers; all others hold numbers with a fraction."""
 
 
 def table_path(folder: Path, name: str) -> Path:
@@ -72,8 +66,8 @@ def table_path(folder: Path, name: str) -> Path:
 
 
 def read_rows(path: Path, *, complete: bool = True) -> list[Row]:
-    """The rows of a table on disk, numbers as numbers; raises ValueError where one is not. Of a table that may not be
-    ``complete`` a last line that is cut off is left out."""
+    """Read the rows of a table on disk, numbers as numbers; raises ValueError where one is not. A last line that is cut
+    off is dropped if the table need not be ``complete``."""
     with path.open(newline="", encoding="utf-8") as file:
         reader = csv.reader(line for line in file if complete or line.endswith("\n"))
         names = next(reader, [])

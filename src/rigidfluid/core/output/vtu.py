@@ -1,6 +1,6 @@
 """Fields for ParaView: one VTU file per output time on the mesh of that time, and a PVD file that lists them.
 
-Where ranks share the mesh, each writes a VTU file of its cells, and a PVTU file lists those of one time.
+If ranks share the mesh, each writes a VTU file of its cells, and a PVTU file lists those of one time.
 """
 
 from __future__ import annotations
@@ -73,12 +73,8 @@ def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
 def read_vtu(path: Path) -> Fields:
     """Read back what `write_vtu` has written; velocity and pressure are as precise as on disk, 7 digits.
 
-    The pieces that a PVTU file lists become one mesh.
-
-    Raises
-    ------
-    OutputError
-        Where the file is missing or is not of that kind.
+    The pieces that a PVTU file lists become one mesh. Raises OutputError where the file is missing or is not of that
+    kind.
     """
     if path.suffix == ".pvtu":
         with _reading(path):
@@ -98,20 +94,14 @@ def read_vtu(path: Path) -> Fields:
 
 
 def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
-    """Times and files of a series, in order.
-
-    Raises
-    ------
-    OutputError
-        Where the list is missing or cannot be read.
-    """
+    """Times and files of a series, in order; raises OutputError where the list is missing or cannot be read."""
     with _reading(path):
         sets = list(ET.parse(path).iter("DataSet"))
         return tuple((float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in sets)
 
 
 def _joined(pieces: Sequence[Fields]) -> Fields:
-    """One mesh, with a single node where several pieces have the same to rounding."""
+    """Join pieces to one mesh, with a single node where several have the same to rounding."""
     from scipy.spatial import cKDTree
 
     points = np.concatenate([piece.points for piece in pieces])

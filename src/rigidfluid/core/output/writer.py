@@ -1,6 +1,6 @@
 """Puts a run on disk as it goes: tables each step, fields and a checkpoint each output, the summary at the end.
 
-Of a run that ranks share each writes its part of the fields and its checkpoint, and the root all that is there once.
+Ranks that share a run write each its part of the fields and its checkpoint, and the root all that is there once.
 """
 
 from __future__ import annotations
@@ -32,24 +32,11 @@ CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", 
 
 
 class Writer:
-    """The files of one run; every method is called by all ranks together.
+    """Writes the files of one run to the folder ``out``; every method is called by all ranks together.
 
-    Parameters
-    ----------
-    out : Path
-        Their folder; made if it is not there.
-    dimension : int
-        2 or 3.
-    resumed : Checkpoint or None
-        Where an earlier run is taken up; None starts all files anew.
-    ranks : Ranks
-        Who shares the run.
-
-    Raises
-    ------
-    OutputError
-        From every method, where the disk refuses; on all ranks if it does on one. At the start also where another run
-        is writing there, or files of these names are not a run's.
+    All files are started anew, unless an earlier run is ``resumed`` from its checkpoint. Every method raises
+    OutputError, on all ranks, if the disk refuses on one; so does the start if another run is writing there, or files
+    of these names are not a run's.
     """
 
     def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None, ranks: Ranks) -> None:
@@ -156,7 +143,7 @@ def checkpoint_name(rank: int) -> str:
 
 
 def ranks_of_run(out: Path) -> int:
-    """How many ranks have written the latest checkpoint in a folder; raises OutputError where there is none."""
+    """Number of ranks that have written the latest checkpoint in a folder; raises OutputError where there is none."""
     latest, count = read_origin(out / CHECKPOINT)
     for path in _checkpoints(out)[1:]:
         latest, count = max((latest, count), read_origin(path))
@@ -164,12 +151,9 @@ def ranks_of_run(out: Path) -> int:
 
 
 def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
-    """This rank's checkpoint of the run in a folder, of as many ranks; called by all of them together.
+    """Read this rank's checkpoint of the run in a folder, of as many ranks; called by all of them together.
 
-    Raises
-    ------
-    OutputError
-        Where there is none, or the ranks' files are not of one time.
+    Raises OutputError where there is none, or the ranks' files are not of one time.
     """
     path = out / checkpoint_name(ranks.rank)
     for my_turn in (ranks.is_root, not ranks.is_root):
@@ -178,7 +162,7 @@ def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
                 checkpoint = read_checkpoint(path, ranks)
     latest = int(ranks.greatest(checkpoint.state.tick))
     with ranks.raise_on_all():
-        return _of(latest, path, checkpoint, ranks)
+        return _checkpoint_of_tick(latest, path, checkpoint, ranks)
 
 
 def earlier_parts(out: Path, count: int) -> list[Checkpoint]:
@@ -186,11 +170,11 @@ def earlier_parts(out: Path, count: int) -> list[Checkpoint]:
     paths = [out / checkpoint_name(rank) for rank in range(count)]
     parts = [read_checkpoint(path) for path in paths]
     latest = max(part.state.tick for part in parts)
-    return [_of(latest, path, part, ALONE) for path, part in zip(paths, parts, strict=True)]
+    return [_checkpoint_of_tick(latest, path, part, ALONE) for path, part in zip(paths, parts, strict=True)]
 
 
-def _of(latest: int, path: Path, checkpoint: Checkpoint, ranks: Ranks) -> Checkpoint:
-    """Of this tick: ``checkpoint``, or the one that was staged for its place."""
+def _checkpoint_of_tick(latest: int, path: Path, checkpoint: Checkpoint, ranks: Ranks) -> Checkpoint:
+    """Checkpoint of the ``latest`` tick: the one given, or the one that was staged for its place."""
     tick = checkpoint.state.tick
     return checkpoint if tick == latest else _caught_up(path, tick, latest, ranks)
 
@@ -210,7 +194,7 @@ def _caught_up(path: Path, tick: int, latest: int, ranks: Ranks) -> Checkpoint:
 
 
 def _checkpoints(out: Path) -> list[Path]:
-    """Those of all ranks, in their order."""
+    """Paths of all ranks' checkpoints, in their order."""
     others = {int(path.name.split(".")[1]): path for path in out.glob("state.*.h5")}
     return [out / CHECKPOINT, *(others[rank] for rank in sorted(others))]
 

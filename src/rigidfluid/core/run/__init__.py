@@ -1,1 +1,1 @@
-"""The loop."""
+"""Run loop: states, steps, and a run's files and figures."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 _END_LEVEL = 3
 
 _ROUNDING = 1e-6
-"""Of a tick: times that near to one are there."""
+"""Rounding of times, in ticks: a time so near to a tick is there."""
 
 
 @dataclass(frozen=True, slots=True)

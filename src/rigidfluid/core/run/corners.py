@@ -21,8 +21,8 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
 
 
 def begun_anew(system: System, clock: Clock, state: State) -> State:
-    """At a corner or jump and one step after it, the state without its past, from which nothing can be extrapolated;
-    else the same.
+    """State without its past, from which nothing can be extrapolated, at a corner or jump and one step after it; else
+    the same.
 
     The fluid, if there is one, is in motion with bodies that change theirs at once, as at a start. After a jump that a
     caller has prescribed the level is known already.
@@ -47,9 +47,9 @@ def _is_corner(system: System, clock: Clock, tick: int) -> bool:
 
 
 def _corner_after(system: System, clock: Clock, tick: int) -> float:
-    """The first tick after this at which there is a corner; infinite without any.
+    """First tick after this at which there is a corner; infinite without any.
 
-    Between two ticks that is the earlier one, so that the rate there is still that before the corner.
+    A corner between two ticks is at the earlier one, so that the rate there is still that before the corner.
     """
     corner = _next_corner(system, clock.time(tick))
     while math.isfinite(corner) and clock.tick_until(corner) <= tick:

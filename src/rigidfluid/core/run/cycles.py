@@ -1,4 +1,4 @@
-"""How far mechanisms get in each cycle of their strokes."""
+"""Displacement and rotation of mechanisms in each cycle of their strokes."""
 
 from __future__ import annotations
 
@@ -21,38 +21,22 @@ _SAME = 0.02
 
 
 def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str, Any]]:
-    """Displacement and rotation of each whole cycle.
+    """Displacement and rotation of each whole cycle of the mechanisms with these ``periods`` [time], by name.
 
-    Parameters
-    ----------
-    history : History
-        With the table of bodies.
-    periods : mapping of str to float
-        Of mechanisms, by name [time].
-
-    Returns
-    -------
-    dict of str to dict
-        By name: ``period`` [time]; of each whole cycle ``displacement`` of the centre of mass, a vector [length], and
-        ``rotation``, in 2D an angle, in 3D a rotation vector [rad]. Where no step ends with a cycle, values are
-        linear between two steps.
+    Each has its ``period`` [time]; for each whole cycle the ``displacement`` of the centre of mass, a vector [length],
+    and the ``rotation``, in 2D an angle, in 3D a rotation vector [rad]. Values are linear between two steps if none
+    ends with a cycle.
     """
     axes, orientation = _axes(history.dimension)
     table = history.table("bodies", ("time", "body", *axes, *orientation))
-    return {name: _of_one(table, name, period, history.dimension) for name, period in periods.items()}
+    return {name: _mechanism_cycles(table, name, period, history.dimension) for name, period in periods.items()}
 
 
 def start_remarks(found: Mapping[str, Mapping[str, Any]], inertia: bool, length: float) -> list[Remark]:
-    """Where first cycles differ from second ones, or nobody can tell, as a fluid with ``inertia`` has no second one.
+    """Remark that first cycles of `cycles` differ from second ones, or that nobody can tell, as a fluid with
+    ``inertia`` has no second one.
 
-    Parameters
-    ----------
-    found : mapping of str to mapping
-        What `cycles` gave.
-    inertia : bool
-        Of the fluid.
-    length : float
-        Size of the bodies; displacements below its millionth are rounding [length].
+    Displacements below a millionth of the bodies' ``length`` are rounding [length].
     """
     remedy = "Take later cycles: lengthen time.end, and leave the first one out."
     remarks = []
@@ -72,16 +56,16 @@ def start_remarks(found: Mapping[str, Mapping[str, Any]], inertia: bool, length:
     return remarks
 
 
-def _of_one(table: Mapping[str, FloatArray], name: str, period: float, dimension: int) -> dict[str, Any]:
+def _mechanism_cycles(table: Mapping[str, FloatArray], name: str, period: float, dimension: int) -> dict[str, Any]:
     mine = table["body"] == name
     time, (axes, orientation) = table["time"][mine], _axes(dimension)
     whole = int(np.floor(time[-1] / period + _ROUNDING)) if len(time) else 0
     ends = period * np.arange(whole + 1)
 
-    def at_ends(names: tuple[str, ...]) -> FloatArray:
+    def interpolate(names: tuple[str, ...]) -> FloatArray:
         return np.column_stack([np.interp(ends, time, table[column][mine]) for column in names])
 
-    places, turns = at_ends(axes), at_ends(orientation)
+    places, turns = interpolate(axes), interpolate(orientation)
     if dimension == 3:
         turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     rotation = rotation_between(turns[:-1], turns[1:])

@@ -1,4 +1,5 @@
-"""Why a step left energy unaccounted for: it began anew, its mesh was new, or contacts pushed otherwise than before."""
+"""Cause of the energy that a step left unaccounted for: it began anew, its mesh was new, or contacts pushed otherwise
+than before."""
 
 from __future__ import annotations
 
@@ -11,8 +12,9 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.masses import Masses
 
-_OF_START = 0.3
-"""Of the time since a start at once: its layer is as young as that, and steps so long or longer do not resolve it."""
+_SHARE_OF_START = 0.3
+"""Share of the time since a sudden start from which on a step belongs to the start: the layer is as young as that, and
+steps so long or longer do not resolve it."""
 
 
 def with_cause(system: System, clock: Clock, state: State, candidate: State) -> State:
@@ -28,7 +30,7 @@ def with_cause(system: System, clock: Clock, state: State, candidate: State) -> 
 
 def _cause(system: System, clock: Clock, state: State, candidate: State) -> Cause | None:
     assert candidate.past is not None
-    if state.past is None or candidate.past.step >= _OF_START * state.ledger.since_start:
+    if state.past is None or candidate.past.step >= _SHARE_OF_START * state.ledger.since_start:
         return Cause.START
     if _is_remeshed(clock, state):
         return Cause.REMESHING
@@ -43,9 +45,9 @@ def _is_remeshed(clock: Clock, state: State) -> bool:
 
 
 def _is_impact(system: System, clock: Clock, state: State, candidate: State) -> bool:
-    """Whether the only contacts begin or end, contacts change at once by more energy than the step leaves over,
-    or an impact goes on in which they store or give back more than that. Those that push all the time and yield slowly
-    are none."""
+    """Whether the only contacts begin or end, contacts change at once by more energy than the step leaves over, or an
+    impact goes on in which they store or give back more than that. Contacts that push all the time and yield slowly are
+    none."""
     before, after = state.ledger, candidate.ledger
     grown = abs(after.residual - before.residual)
     if (before.contact == 0.0) != (after.contact == 0.0):

@@ -20,31 +20,19 @@ energy these cancel each other if all of the steps are equal."""
 
 
 def estimate_error(system: System, time: float, state: State, candidate: State) -> ErrorEstimate:
-    """The estimate for the step from ``state``, on the mesh that it was taken on, to the ``candidate`` at ``time``.
+    """Estimate the error of the step from ``state``, on the mesh that it was taken on, to the ``candidate`` at
+    ``time``.
 
     Local error of the paths of bodies and fluid particles per unit time, c (uⁿ⁺¹ - u*) with u* extrapolated and c by
     `path_error_weight`, relative: of each free motion over the greatest speed, of the fluid in the norm of kinetic
-    energy over the greatest energy. The larger one counts. An angular velocity counts by its energy, as √(ω·Iω/m).
+    energy over the greatest energy. The larger one counts. An angular velocity counts by its energy, as √(ω·Iω/m). It
+    is unknown in the first steps.
 
     An impact changes velocities at once, whatever the step. So what the change of the contacts' force could do to the
     bodies' own masses is subtracted. It is an upper bound, since the fluid adds to the masses.
 
     On a new mesh velocities also differ by what the transfer has changed, which no shorter step makes smaller: the
     estimate of the step before stands.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and backend.
-    time : float
-        At the end of the step [time].
-    state, candidate : State
-        Before and after it.
-
-    Returns
-    -------
-    ErrorEstimate
-        Unknown in the first steps.
     """
     before, masses = state.estimate or _expected(system), Masses(system, time, candidate)
     speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))
@@ -71,7 +59,8 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
 
 
 def _expected(system: System) -> ErrorEstimate:
-    """Before the first step: the speeds of impact that the scene leads to expect, and the bodies' energy with them."""
+    """Estimate before the first step: the speeds of impact that the scene leads to expect, and the bodies' energy with
+    them."""
     free = ~system.controlled
     speed, added = system.loads.speed[free], np.trace(system.added_mass[free], axis1=1, axis2=2) / system.dimension
     energy = 0.5 * float((system.mass[free] + added) @ speed**2)

@@ -1,4 +1,4 @@
-"""How long a step may be in an impact that it does not resolve, and after one."""
+"""Length of steps in an impact that they do not resolve, and after one."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.run.clock import Clock
 
 TOLERATED = 3e-4
-"""What friction may take on the bodies' path of one step, over the energy put in since the start. Where it takes more,
-the step is halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
+"""Friction loss on the bodies' path of one step, over the energy put in since the start, above which the step is
+halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
 
 FELT, STORED = 3e-5, 1e-2
-"""Over the energy put in: an impact whose friction takes less in a step, and whose contacts store or give back less,
-leaves the fluid as it was."""
+"""Shares of the energy put in: an impact whose friction takes less than the first in a step, and whose contacts store
+or give back less than the second, leaves the fluid as it was."""
 
 HALVINGS = 3
 """An impact halves a step so many times at most: it may last a millionth of it."""

@@ -1,4 +1,4 @@
-"""Where a run starts."""
+"""State at which a run starts."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from rigidfluid.core.run.step import bodies_energy, stored_energy
 from rigidfluid.core.run.sudden_start import faces_start_at_once, struck
 
 START_LEVEL = 6
-"""In a fluid in motion the first step is the step halved so many times, each later one at most twice the last, and
-after a start at once at most half of the time since."""
+"""Number of halvings of the first step in a fluid in motion; each later step is at most twice the last, and after a
+start at once at most half of the time since."""
 
 
 def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, starts_short: bool = False) -> State:
@@ -75,7 +75,7 @@ def _faces_start_at_once(system: System, state: State) -> bool:
 
 
 def _power(system: System, state: State, faces: bool) -> Power | None:
-    """None where the fluid starts in motion: nobody has solved for its stresses yet."""
+    """Power at the start; None where the fluid starts in motion, since nobody has solved for its stresses yet."""
     problem = system.backend.problem
     at_rest = problem is None or (problem.initial == "rest" and not faces and not _bodies_move(state))
     return Power() if at_rest or state.mesh is None else None

@@ -25,7 +25,7 @@ class Masses:
         return np.asarray(0.5 * np.einsum("ni,nij,nj->n", free, self._matrix, free))
 
     def energies_by(self, impulse: FloatArray) -> FloatArray:
-        """Of what each ``impulse`` (N, d+k) makes of a motion at rest [energy]."""
+        """Kinetic energy ½ J·M⁻¹J that each ``impulse`` J (N, d+k) gives a motion at rest [energy]."""
         free = impulse[self._free]
         return np.asarray(0.5 * np.sum(free * np.linalg.solve(self._matrix, free[..., None])[..., 0], axis=1))
 

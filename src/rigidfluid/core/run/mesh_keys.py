@@ -1,4 +1,4 @@
-"""The keys of a scene's [mesh] table as what decides the mesh."""
+"""Turns the keys of a scene's [mesh] table into wanted cell sizes and the way in which bodies come into the mesh."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rigidfluid.core.scene.scene import MeshTable
 
 
 def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
-    """What decides the cell size in a domain."""
+    """Parameters of the cell size in a domain."""
     boxes = [RefinedBox(np.array(box.lower), np.array(box.upper), box.size) for box in table.refine]
     regions: tuple[Region, ...] = (*boxes, *curved_walls(domain, table.size, table.size_wall))
     return Sizes(
@@ -21,5 +21,5 @@ def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
 
 
 def inserter_of(table: MeshTable | None) -> Inserter:
-    """How the bodies come into the first mesh."""
+    """Way in which the bodies come into the first mesh."""
     return BY_SHAPE if table is None else Inserter(table.inserter, table.mesher_timeout)

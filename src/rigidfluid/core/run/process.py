@@ -1,4 +1,4 @@
-"""What a run asks of its processes: how many a launcher has started, threads of the linear algebra, memory."""
+"""Processes of a run: how many a launcher has started, their signals, threads of the linear algebra, and memory."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Launch:
     size: int = 1
 
     @classmethod
-    def of(cls, environment: Mapping[str, str] = os.environ) -> Launch:
-        """From the variables that the launcher has set; one process where none is found."""
+    def read(cls, environment: Mapping[str, str] = os.environ) -> Launch:
+        """Read the variables that the launcher has set; one process where none is found."""
         for rank, size in _VARIABLES:
             if rank in environment and size in environment:
                 return cls(int(environment[rank]), int(environment[size]))
@@ -138,16 +138,10 @@ _HIGHEST = re.compile(r"^VmHWM:\s*(\d+) kB$", re.MULTILINE)
 
 
 def peak_memory() -> int | None:
-    """Highest resident memory of this process until now.
-
-    Returns
-    -------
-    int or None
-        Memory [byte]; None where the system does not tell.
-    """
+    """Highest resident memory of this process until now [byte]; None where the system does not tell."""
     if sys.platform == "win32":
         return None
-    return _of_this_program() or _of_this_process()
+    return _program_peak() or _process_peak()
 
 
 def give_back_memory() -> None:
@@ -160,8 +154,9 @@ def give_back_memory() -> None:
         trim(0)
 
 
-def _of_this_program() -> int | None:
-    """From Linux' own figures: those of `getrusage` count what the parent held when it started this process."""
+def _program_peak() -> int | None:
+    """Highest resident memory by Linux' own figures [byte]: those of `getrusage` count what the parent held when it
+    started this process."""
     try:
         found = _HIGHEST.search(_STATUS.read_text(encoding="ascii"))
     except OSError:
@@ -169,7 +164,7 @@ def _of_this_program() -> int | None:
     return int(found[1]) * 1024 if found else None
 
 
-def _of_this_process() -> int:
+def _process_peak() -> int:
     import resource
 
     unit = 1 if sys.platform == "darwin" else 1024

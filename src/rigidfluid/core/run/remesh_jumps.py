@@ -1,4 +1,4 @@
-"""How far the fluid's forces on bodies jump where a new mesh is made."""
+"""Jumps of the fluid's forces on bodies where a new mesh is made."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict
     """Largest jump of force and torque of each body at new meshes, over the range of each in the run [1].
 
     A jump is the distance of one of the first steps on a new mesh from the line through the two steps before it. The
-    range is the largest less the smallest of a component after the first steps; of a vector the largest one counts. Of
-    a torque it is at least a thousandth of the force's times the bounding radius of ``radii``, by name [length]: what
-    is less is noise. Empty without new meshes.
+    range is the largest less the smallest of a component after the first steps; of a vector the largest one counts. The
+    range of a torque is at least a thousandth of the force's times the bounding radius of ``radii``, by name [length]:
+    what is less is noise. Empty without new meshes.
     """
     steps = history.table("steps", ("time", "remeshes"))
     first = np.flatnonzero(np.diff(steps["remeshes"]) > 0) + 1

@@ -15,16 +15,11 @@ from rigidfluid.errors import OutputError
 
 
 def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
-    """This process' checkpoint of the run in a folder; called by all that share the ``backend`` together.
+    """Read this process' checkpoint of the run in a folder; called by all that share the ``backend`` together.
 
-    By another number of processes than wrote it, the root puts the mesh and the fluid's state together and cuts them
-    anew; what the backend has kept beside them is of the old parts and left behind.
-
-    Raises
-    ------
-    OutputError
-        Where there is none, it cannot be read, or it is of another number of processes and the backend cannot cut its
-        state.
+    If another number of processes wrote it, the root puts the mesh and the fluid's state together and cuts them anew;
+    what the backend has kept beside them is of the old parts and left behind. Raises OutputError where there is none,
+    it cannot be read, or the backend cannot cut its state for this number of processes.
     """
     ranks, written = backend.ranks, 0
     with ranks.raise_on_all():
@@ -47,7 +42,7 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
 
 
 def _redistributed(backend: FluidBackend, parts: list[Checkpoint]) -> list[Checkpoint]:
-    """For each process of the ``backend`` one; what is the same for all is the first's."""
+    """Checkpoint for each process of the ``backend``; what is the same for all is the first's."""
     states = _cut(backend, _joined(backend, [part.state for part in parts]))
     return [replace(parts[0], state=state, memory={}, ranks=len(states)) for state in states]
 

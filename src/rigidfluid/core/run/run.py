@@ -87,8 +87,8 @@ def run(
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Where a run is: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds, and
-    how many new meshes could not be made."""
+    """Progress of a run: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds,
+    and how many new meshes could not be made."""
 
     time: float
     end: float

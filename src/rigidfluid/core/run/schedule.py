@@ -1,4 +1,4 @@
-"""When something is due in a run."""
+"""Decides when something is due in a run."""
 
 from __future__ import annotations
 
@@ -8,16 +8,10 @@ from rigidfluid.core.run.clock import Clock
 
 
 class Schedule:
-    """Due at the first accepted step at or after each multiple of an interval, and at the last; or at each step.
+    """Due at the first accepted step at or after each multiple of ``every`` [time], and at the last step; None: at each
+    step.
 
-    Parameters
-    ----------
-    clock : Clock
-        Of the run.
-    every : float or None
-        The interval [time]; None for each step.
-    latest : float
-        When it was met last [time].
+    ``latest``: when it was met last [time].
     """
 
     def __init__(self, clock: Clock, every: float | None, latest: float = 0.0) -> None:
@@ -31,5 +25,5 @@ class Schedule:
         return tick >= min(self._clock.tick_from((number + 1) * self._every), self._clock.last_tick)
 
     def met(self, tick: int) -> None:
-        """It was met in the state at this ``tick``."""
+        """Record that it was met in the state at this ``tick``."""
         self.latest = self._clock.time(tick)

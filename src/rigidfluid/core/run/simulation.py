@@ -26,7 +26,7 @@ from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
-from rigidfluid.core.run.by_hand import over_time, twist_row, wrench_row
+from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
@@ -138,7 +138,7 @@ class Simulation:
 
     @property
     def system(self) -> System:
-        """What moves."""
+        """System that the run moves; `prescribe` and `restore` replace it."""
         return self.stepper.system
 
     @property
@@ -175,11 +175,13 @@ class Simulation:
     def bodies(self) -> dict[str, BodyNow]:
         """All bodies by name, as they are now, and after them the mechanisms as wholes."""
         s, count = self.state, len(self.system.bodies)
-        now = _by_name(self.system.surfaces[:count], s.pose, s.twist, s.hydrodynamic_wrench, s.contact_wrench, s.gaps)
+        now = _bodies_now(
+            self.system.surfaces[:count], s.pose, s.twist, s.hydrodynamic_wrench, s.contact_wrench, s.gaps
+        )
         mechanisms, free = self.system.mechanisms, s.free
         if mechanisms is not None and free is not None:
             whole = (free.pose, free.twist, free.hydrodynamic, free.contact, least_gaps_of_motions(mechanisms, s.gaps))
-            now |= _by_name(mechanisms.names, *whole, first=len(mechanisms.mass) - len(mechanisms.names))
+            now |= _bodies_now(mechanisms.names, *whole, first=len(mechanisms.mass) - len(mechanisms.names))
         return now
 
     def step(self) -> State:
@@ -386,7 +388,7 @@ class Simulation:
         )
 
     def _motion(self) -> PrescribedMotion:
-        """What is prescribed now: since the start by the scene, or by hand."""
+        """Prescribed motion at present: since the start by the scene, or by the caller."""
         if self.state.prescription is not None:
             return PrescribedMotion(self.state.prescription)
         system = self.system
@@ -412,7 +414,7 @@ class Simulation:
         raise SceneError("body", found, f"{wanted}: {', '.join(map(str, right)) or 'there is none'}", remedy)
 
 
-def _by_name(
+def _bodies_now(
     names: Sequence[str],
     pose: Pose,
     twist: Twist,
@@ -421,7 +423,7 @@ def _by_name(
     gaps: FloatArray,
     first: int = 0,
 ) -> dict[str, BodyNow]:
-    """The rows from the ``first`` on, by these names."""
+    """Bodies at present by these names, from row ``first`` on."""
     return {
         name: BodyNow(
             position=pose.position[i],
@@ -463,7 +465,7 @@ def _earlier(scene: Scene, out: Path | None, backend: FluidBackend) -> Checkpoin
     stored, given = json.loads(checkpoint.scene), scene.to_dict()
     stored["time"]["end"] = given["time"]["end"]
     if _is_of_another(backend, stored["fluid"]["backend"]):
-        stored["fluid"], given["fluid"] = (_of_any_backend(tables["fluid"]) for tables in (stored, given))
+        stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))
         checkpoint = replace(checkpoint, memory={})
     if stored != given:
         changed = sorted(table for table in stored.keys() | given.keys() if stored.get(table) != given.get(table))
@@ -484,6 +486,6 @@ def _is_of_another(backend: FluidBackend, name: str) -> bool:
     return (before.state_format, before.curved_cells) == (backend.state_format, backend.curved_cells)
 
 
-def _of_any_backend(fluid: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of ``[fluid]`` that are the same for all backends."""
+def _common_keys(fluid: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys of ``[fluid]`` that are the same for all backends, with their values."""
     return {key: value for key, value in fluid.items() if key in FluidTable.model_fields and key != "backend"}

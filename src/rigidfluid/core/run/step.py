@@ -1,4 +1,4 @@
-"""One attempted step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
+"""Attempts one step along the bodies' path: move the mesh, find contacts, advance. State in, candidate out."""
 
 from __future__ import annotations
 
@@ -41,14 +41,11 @@ def attempt(
     path: BodyStep,
     provisional: bool,
 ) -> tuple[State, Step]:
-    """The candidate state one step of this level later, the bodies at the end of ``path``, and the step that led there.
+    """Attempt one step of this level, the bodies to the end of ``path``: the candidate state there, and the step that
+    led there.
 
-    One that is ``provisional`` shows where another path leads, and is not to be accepted.
-
-    Raises
-    ------
-    StepRejected
-        When bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
+    A ``provisional`` candidate shows where another path leads, and is not to be accepted. Raises StepRejected where
+    bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
     """
     size = clock.size(level)
     time = clock.time(state.tick + clock.ticks(level))
@@ -118,7 +115,7 @@ def _applied(system: System, state: State, step: Step) -> Wrench | None:
 
 
 def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad | None:
-    """In a fluid the joints' forces follow from its solution, else from the path."""
+    """Load of the joints: in a fluid their forces follow from its solution, else from the path."""
     if system.linkage is None or step.links is None or advance.link_force is None:
         return path.link
     wrench = np.tensordot(advance.link_force, step.links.rows, axes=1)
@@ -144,13 +141,13 @@ def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
 
 
 def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float) -> float:
-    """In contacts and springs [energy]."""
+    """Energy stored in contacts and springs [energy]."""
     in_springs = 0.0 if system.linkage is None else system.linkage.spring_energy(motions, time)
     return in_springs + contact_energy(system, contacts)
 
 
 def contact_energy(system: System, contacts: Contacts) -> float:
-    """Stored in the contacts [energy]."""
+    """Energy stored in the contacts [energy]."""
     if system.law is None or len(contacts) == 0:
         return 0.0
     energy = system.law.energy(contacts)
@@ -159,7 +156,8 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 
 
 def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:
-    """What enters by the boundary, what drives bodies and joints in the fluid, what fluid and dampers dissipate."""
+    """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
+    dissipated by fluid and dampers."""
     given, where = given_twist(step)
     control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
     if step.links is not None and advance.link_force is not None:
@@ -171,9 +169,10 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
-    """Where a step begins anew at a corner of a stroke, with the power of its own forces at its start: half of an
-    impulse acts on the rates before the corner, half on those after it, and nothing of it on later steps. Without
-    inertia there is no impulse, and the rates after the corner are unknown until the step is made."""
+    """Ledger before a step. If the step begins anew at a corner of a stroke, it has the power of the step's own forces
+    at its start: half of an impulse acts on the rates before the corner, half on those after it, and nothing of it on
+    later steps. Without inertia there is no impulse, and the rates after the corner are unknown until the step is
+    made."""
     ledger = state.ledger
     if state.tick == 0 or state.past is not None or ledger.power is None:
         return ledger
@@ -186,8 +185,8 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
 
 
 def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> Work:
-    """Of the free bodies' weight, of what drives bodies and walls against contacts and inertia, of wrenches from
-    outside, and of dampers."""
+    """Work of a step [energy]: of the free bodies' weight, of what drives bodies and walls against contacts and
+    inertia, of wrenches from outside, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
     free = float(fallen[~system.controlled].sum())
     driven = path.actuator_work + by_actuators + _applied_work(state, path.pose)
@@ -195,7 +194,7 @@ def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> 
 
 
 def _applied_work(state: State, pose: Pose) -> float:
-    """Of wrenches from outside, on the way from a state to a ``pose`` of the bodies [energy]."""
+    """Work of wrenches from outside, on the way from a state to a ``pose`` of the bodies [energy]."""
     if state.applied is None:
         return 0.0
     turned = rotation_between(state.pose.orientation, pose.orientation)

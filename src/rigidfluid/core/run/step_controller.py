@@ -1,4 +1,4 @@
-"""How long a step may be for the sake of its error: the longest whose local error is tolerated."""
+"""Length of a step for the sake of its error: the longest whose local error is tolerated."""
 
 from __future__ import annotations
 
@@ -12,15 +12,8 @@ From there the error has to change by more than twice before a step changes agai
 
 
 class StepController:
-    """Proposes and judges steps by their estimated errors.
-
-    Parameters
-    ----------
-    clock : Clock
-        Ticks and levels of steps.
-    tolerance : float
-        Of the relative local error per unit time [1].
-    """
+    """Proposes and judges steps by their estimated errors; ``tolerance``: of the relative local error per unit time
+    [1]."""
 
     def __init__(self, clock: Clock, tolerance: float) -> None:
         self._clock, self._tolerance = clock, tolerance

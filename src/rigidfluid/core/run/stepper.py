@@ -1,4 +1,4 @@
-"""From one accepted state to the next: the longest step that is allowed, halved until it succeeds."""
+"""Takes a run from one accepted state to the next: by the longest step that is allowed, halved until it succeeds."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ MOST_ATTEMPTS = 4
 
 @dataclass
 class Counts:
-    """Of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes made
-    after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of them."""
+    """Counts of a run: steps ``rejected``, steps whose path and fluid did not agree in the end (``unsettled``), meshes
+    made after the first (``remeshes``), those that could not be made (``failed_remeshes``), and why the latest of
+    them."""
 
     rejected: int = 0
     unsettled: int = 0
@@ -46,21 +47,10 @@ class Counts:
 class Stepper:
     """Takes steps, and counts what happens to them.
 
-    Parameters
-    ----------
-    system : System
-        What moves; it may be replaced between steps by one with another motion of its controlled bodies.
-    clock : Clock
-        Ticks and levels of steps.
-    mesh_updater : MeshUpdater
-        Of the mesh.
-    watch : Stopwatch
-        Of the stages of a step.
-    tolerance : float, optional
-        Of a step's local error [1]; None for steps as long as the clock allows.
-
-    ``propose`` gives the level of the next step after a state, before gaps and rejections shorten it: the step
-    controller. Another may be put in the place of `longest`, or of `StepController.propose` with a tolerance.
+    The ``system`` may be replaced between steps by one with another motion of its controlled bodies. ``tolerance``: of
+    a step's local error [1]; None for steps as long as the clock allows. ``propose`` gives the level of the next step
+    after a state, before gaps and rejections shorten it: the step controller. Another may be put in the place of
+    `longest`, or of `StepController.propose` with a tolerance.
     """
 
     def __init__(
@@ -179,7 +169,7 @@ class Stepper:
         return replace(path, pose=bodies, free=replace(path.free, pose=motions))
 
     def _end(self, state: State, level: int) -> float:
-        """When a step of this level ends [time]."""
+        """Time when a step of this level ends [time]."""
         return self._clock.time(state.tick + self._clock.ticks(level))
 
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:

@@ -1,4 +1,4 @@
-"""What a run that cannot go on says: which body is near what."""
+"""Names the body, and the surface near it, in the error of a run that cannot go on."""
 
 from __future__ import annotations
 

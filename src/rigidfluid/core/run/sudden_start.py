@@ -15,7 +15,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh
 
 VANISHING = 1e-3
-"""Of `time.step`: an impulse takes so long, in which viscosity does nothing."""
+"""Duration of a sudden start's impulse, over `time.step`: so short that viscosity does nothing."""
 
 
 def faces_start_at_once(problem: FluidProblem, mesh: Mesh) -> bool:

@@ -74,12 +74,12 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "wall_time": simulation.elapsed,
         "cpu_time": simulation.cpu_time,
         "wall_time_per_stage": simulation.watch.seconds,
-        "peak_memory": _of_all(system.backend.ranks, peak_memory()),
+        "peak_memory": _total_memory(system.backend.ranks, peak_memory()),
         **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **found,
-        **_by_hand(state, system),
+        **_caller_values(state, system),
         "remesh_jumps": jumps,
         "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy),
@@ -88,15 +88,15 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
 
 
 def _cycles(simulation: Simulation) -> dict[str, Any]:
-    """Of mechanisms whose strokes repeat, where there are any."""
+    """Cycles of the mechanisms whose strokes repeat; empty without any."""
     periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
 
 
-def _by_hand(state: State, system: System) -> dict[str, Any]:
-    """What the caller has prescribed and applied last: velocities, and forces, each with the angular ones after them,
-    by name; where there is any."""
+def _caller_values(state: State, system: System) -> dict[str, Any]:
+    """Velocities and forces that the caller has prescribed and applied last, each with the angular ones after them, by
+    name; empty without any."""
     by_hand = {}
     if state.prescription is not None:
         by_hand["prescribed"] = _rows(system, state.prescription.twist, system.controlled)
@@ -106,12 +106,12 @@ def _by_hand(state: State, system: System) -> dict[str, Any]:
 
 
 def _rows(system: System, rows: FloatArray, chosen: ArrayLike) -> dict[str, list[float]]:
-    """Those of the chosen bodies, by name."""
+    """Rows of the chosen bodies, by name."""
     return {system.surfaces[i]: rows[i].tolist() for i in np.flatnonzero(chosen)}
 
 
-def _of_all(ranks: Ranks, memory: int | None) -> int | None:
-    """The sum over the processes, where each knows its own [byte]."""
+def _total_memory(ranks: Ranks, memory: int | None) -> int | None:
+    """Sum of the processes' memory [byte]; None unless each knows its own."""
     each = [part for part in ranks.allgather(memory) if part is not None]
     return sum(each) if len(each) == ranks.size else None
 
@@ -138,8 +138,8 @@ def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[s
 
 
 def energy_balance(ledger: Ledger, energy: Table) -> dict[str, Any]:
-    """What is stored, what came in, what went out [energy], what of it came from nowhere or vanished (shares), and the
-    ``warnings`` of that; by the ledger at the end and the table of ``energy`` over time."""
+    """Energy stored, that came in and that went out [energy], the shares of it that came from nowhere or vanished, and
+    the ``warnings`` of that; by the ledger at the end and the table of ``energy`` over time."""
     account = energy_account(energy)
     stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
     shares = {name: getattr(account, name) for name in ACCOUNT}

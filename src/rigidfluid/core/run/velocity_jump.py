@@ -1,4 +1,4 @@
-"""How short steps begin after the velocity of a prescribed body has jumped in a fluid."""
+"""Length of the steps after the velocity of a prescribed body has jumped in a fluid."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from rigidfluid.core.run.step import bodies_energy
 def halvings_after(
     system: System, state: State, row: int, twist: FloatArray, step: float, over: float | None = None
 ) -> int:
-    """How many times ``step`` is to be halved after body ``row`` takes a ``twist`` (d+k,) at once: log₂ of its jump
-    over a step's own change, at least none and at most `START_LEVEL`.
+    """Number of times that ``step`` is to be halved after body ``row`` takes a ``twist`` (d+k,) at once: log₂ of its
+    jump over a step's own change, at least none and at most `START_LEVEL`.
 
     A step's own change is what the body's velocity would change by in two ``step`` at its latest acceleration, or a
     64th of the speed of the body, before and after, or of the fluid, whichever is most: so a start from rest has the
@@ -65,7 +65,7 @@ def _speed(twist: FloatArray, radius: float, dimension: int) -> float:
 
 
 _LONGER = 2.0
-"""So many times the latest step is the next at most: a controller answers to twice the way then."""
+"""Largest ratio of the next step to the latest; a controller answers to twice the way then."""
 
 _ROUNDING = 1e-9
-"""Of a number of halvings."""
+"""Rounding of a number of halvings."""

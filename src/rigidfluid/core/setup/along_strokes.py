@@ -64,7 +64,7 @@ def fastest_given(carried: CarriedBodies, mechanisms: Iterable[Mechanism], end: 
     """
     driven = [mechanism for mechanism in mechanisms if mechanism.driven]
     times = [float(time) for mechanism in driven for time in times_along(mechanism, end)]
-    given = np.array([carried.at(carried.pose, time).given for time in times or [0.0]])
+    given = np.array([carried.kinematics(carried.pose, time).given for time in times or [0.0]])
     d = carried.pose.position.shape[1]
     return np.stack([np.linalg.norm(part, axis=2).max(axis=0) for part in (given[..., :d], given[..., d:])], axis=1)
 

@@ -49,7 +49,7 @@ def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfin
 def measured(dimension: int, bodies: int, coarseness: float) -> dict[str, Any]:
     """Sizes, contacts, and the mean seconds a step of ten; the first of them factorises, none compiles."""
     with one_openblas_thread():
-        run = Simulation(scene(dimension, bodies, coarseness), None, False, Launch.of().size)
+        run = Simulation(scene(dimension, bodies, coarseness), None, False, Launch.read().size)
         run.step()
         run.system.backend.forget()
         before, start = dict(run.watch.seconds), time.perf_counter()
@@ -76,7 +76,7 @@ def main() -> None:
     """Measure, and let the first rank write."""
     dimension, bodies, coarseness, file = sys.argv[1:]
     found = measured(int(dimension), int(bodies), float(coarseness))
-    if Launch.of().rank == 0:
+    if Launch.read().rank == 0:
         Path(file).write_text(json.dumps(found), encoding="utf-8")
 
 
