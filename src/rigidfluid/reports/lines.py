@@ -119,7 +119,7 @@ def energy_plot(results: Results) -> Figure:
     figure, (axes, below) = time_panels(2, height=2.8)
     energy = results.energy
     initial = energy["kinetic"][0] + energy["contact"][0]
-    supplied = initial + energy["gravity"] + energy["boundary"] + energy["control"]
+    supplied = initial + sum(energy[name] for name in ("gravity", "boundary", "control", "body_force"))
     shares = {
         "dissipated": (energy["dissipation"], ORANGE),
         "taken by stabilisation": (energy["grad_div_loss"], SKY),

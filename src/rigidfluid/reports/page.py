@@ -17,6 +17,7 @@ _ENERGIES = {
     "gravity": "supplied by gravity",
     "boundary": "supplied through the faces",
     "control": "supplied by what drives controlled bodies",
+    "body_force": "supplied by the force on the fluid",
     "dissipation": "dissipated by viscosity",
     "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
     "transfer_loss": "lost in transfers between meshes",

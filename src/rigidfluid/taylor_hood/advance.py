@@ -80,7 +80,17 @@ def advance(
         link_force=link_force,
         leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
+        source_power=_source_power(discretisation, matrix, velocity, step.time),
     )
+
+
+def _source_power(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, time: float) -> float:
+    """∫ f·u of the source f [energy/time]."""
+    source, ranks = discretisation.problem.source, discretisation.surfaces.ranks
+    if source is None:
+        return 0.0
+    load = discretisation.mass_times(matrix.points, source(time, matrix.node_points))
+    return float(ranks.sum(np.sum(velocity * load)))
 
 
 def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:

@@ -92,6 +92,9 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    force: tuple[Formula, ...] | None = Field(
+        default=None, description="Expressions of a force on the fluid alone; none if not given [force/volume]"
+    )
     initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
         default="rest",
         description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "

@@ -30,6 +30,7 @@ from rigidfluid.core.model.types import (
 )
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
+from rigidfluid.core.setup.body_force import body_force
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, impact_speeds, travel_speeds
@@ -220,6 +221,7 @@ def _problem(
         dynamic_viscosity=fluid.viscosity,
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
+        source=body_force(scene),
         carrier=None if carried is None else tuple(carried.carrier.tolist()),
         initial=initial_flow(scene),
     )

@@ -59,6 +59,8 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     outlets = [condition.name for condition in problem.conditions if condition.type == "pressure"]
     why = f"pressure is given on {', '.join(outlets)}" if outlets else "no face gives a pressure"
     yield Feature("pressure fixed by a constraint", not outlets, why)
+    given = "not given" if problem.source is None else "given"
+    yield Feature("force on the fluid", problem.source is not None, f"fluid.force is {given}")
     start = problem.initial if isinstance(problem.initial, str) else "given by expressions"
     yield Feature("flow at the start", start != "rest", f"fluid.initial is {start}")
 

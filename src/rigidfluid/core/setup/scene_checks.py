@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import pi
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.setup.body_force import check_body_force
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
@@ -71,6 +72,7 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
         tolerance; if the flow at the start is not for this backend.
     """
     check_initial_flow(scene, backend, domain)
+    check_body_force(scene, backend)
     check_periodic(scene, backend, domain)
     if not backend.needs_mesh:
         if scene.time.tolerance is not None:
@@ -101,6 +103,7 @@ def _vectors(scene: Scene) -> Vectors:
     d = scene.dimension
     k = 1 if d == 2 else 3
     yield "fluid.gravity", scene.fluid.gravity, d
+    yield "fluid.force", scene.fluid.force, d
     yield "fluid.initial", None if isinstance(scene.fluid.initial, str) else scene.fluid.initial, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d

@@ -202,6 +202,7 @@ class BalancesContract(FluidContract):
         given = float(weights @ np.sum(velocity * exact.source(1.0, points), axis=1))
         self.assert_close(flow.advance.dissipation, dissipated, scale=10.0)
         self.assert_close(flow.advance.boundary_power, dissipated - given, scale=10.0)
+        self.assert_close(flow.advance.source_power, given, scale=10.0)
         kinetic = 0.5 * DENSITY * float(weights @ np.sum(velocity**2, axis=1))
         self.assert_close(flow.advance.kinetic_energy, kinetic, scale=10.0)
 
