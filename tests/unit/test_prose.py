@@ -34,8 +34,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.setup": (39, 35),
     "detectors": (25, 12),
     "domains": (27, 13),
-    "evaluation.insertion": (8, 1),
-    "evaluation.studies": (22, 14),
     "forces": (0, 6),
     "marching": (23, 10),
     "mechanisms": (3, 2),
