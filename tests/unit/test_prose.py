@@ -37,9 +37,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "forces": (0, 6),
     "marching": (23, 10),
     "mechanisms": (3, 2),
-    "movies": (11, 2),
-    "reports": (40, 5),
-    "rigidfluid": (9, 0),
     "taylor_hood": (68, 0),
     "taylor_hood.schur": (4, 0),
 }
