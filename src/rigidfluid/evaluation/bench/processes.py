@@ -51,7 +51,7 @@ def _failed(program: Sequence[str], ranks: int, code: int, said: str) -> LaunchE
     found, remedy = _last_error(said) or failure(code, said), "Run the program by hand to see all that it says."
     if "--allow-run-as-root" in said:
         found = "an mpirun that does not run as root"
-        remedy = "Be another user, or set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1."
+        remedy = "Run as a non-root user, or set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1."
     return LaunchError(f"{' '.join(program)} on {ranks} ranks", found, "a run to the end", remedy)
 
 
