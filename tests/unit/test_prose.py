@@ -32,21 +32,11 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.setup": (39, 35),
     "detectors": (25, 12),
     "domains": (27, 13),
-    "evaluation.bench": (4, 7),
-    "evaluation.comparison": (8, 9),
-    "evaluation.crosscheck": (8, 8),
-    "evaluation.insertion": (8, 1),
-    "evaluation.studies": (22, 14),
     "forces": (0, 6),
     "marching": (23, 10),
     "mechanisms": (3, 2),
-    "movies": (11, 2),
-    "reports": (40, 5),
-    "rigidfluid": (9, 0),
     "taylor_hood": (68, 0),
     "taylor_hood.schur": (4, 0),
-    "testing": (20, 0),
-    "testing.fluid": (38, 0),
 }
 
 

@@ -1,4 +1,4 @@
-"""The plots over time: where the bodies are, how fast, how near, what pushes them, and where the energy goes."""
+"""The plots over time: positions, speeds, gaps, forces, and the energy balance."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def joint_plot(results: Results) -> Figure:
 
 
 def energy_plot(results: Results) -> Figure:
-    """What was supplied against where it went, stacked, and what the balance does not account for."""
+    """Plot the energy supplied against its shares, dissipated, stored or lost, and the residual of the balance."""
     figure, (axes, below) = time_panels(2, height=2.8)
     energy = results.energy
     initial = energy["kinetic"][0] + energy["contact"][0]

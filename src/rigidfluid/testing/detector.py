@@ -1,4 +1,4 @@
-"""What every detector must satisfy."""
+"""Contract tests of a detector."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class DetectorContract:
         self._check_points(arrangement, contacts)
 
     def test_contacts_are_sorted_and_within_reach(self, arrangement: Arrangement) -> None:
-        """By (body_a, body_b), a body before a body or a wall; no gap beyond reach."""
+        """Rows are sorted by (body_a, body_b), body_a < body_b, walls counted after bodies; no gap exceeds reach."""
         contacts = self.detect(arrangement, self.reach)
         pairs = _pairs(contacts)
         assert len(pairs) > 1
