@@ -45,8 +45,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "movies": (11, 2),
     "reports": (40, 5),
     "rigidfluid": (9, 0),
-    "taylor_hood": (68, 0),
-    "taylor_hood.schur": (4, 0),
     "testing": (20, 0),
     "testing.fluid": (38, 0),
 }

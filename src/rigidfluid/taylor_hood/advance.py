@@ -18,7 +18,7 @@ from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
-"""Of the velocity by which what convects follows the bodies."""
+"""Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
 
 
 def advance(
@@ -32,7 +32,7 @@ def advance(
 ) -> Advance:
     """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``.
 
-    Where an earlier ``attempt`` has led is the first guess, and else what is extrapolated.
+    The solution of an earlier ``attempt`` at the step is the first guess; without one, the extrapolation in time.
     """
     problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
     before = mesh.geometry

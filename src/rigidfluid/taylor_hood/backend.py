@@ -154,7 +154,7 @@ class TaylorHoodBackend(FluidBackend):
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         numbering = self.numbering_of(mesh)
-        pressure = numbering.at_nodes(fluid["pressure"])
+        pressure = numbering.interpolate_to_nodes(fluid["pressure"])
         return Fields(numbering.node_points(mesh.geometry), numbering.cell_nodes, fluid["velocity"], pressure)
 
     @final
@@ -190,7 +190,7 @@ class TaylorHoodBackend(FluidBackend):
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
         if self._numbering is None or self._numbering.cells is not mesh.cells:
-            self._numbering = Numbering.of(mesh)
+            self._numbering = Numbering.from_mesh(mesh)
             self._latest = None
         return self._numbering
 

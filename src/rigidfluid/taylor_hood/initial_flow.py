@@ -14,7 +14,7 @@ from rigidfluid.taylor_hood.boundary import pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation
-from rigidfluid.taylor_hood.state import at_rest
+from rigidfluid.taylor_hood.state import resting_state
 from rigidfluid.taylor_hood.transfer import project
 
 STEADY, MOST_ITERATIONS = 1e-8, 200
@@ -31,7 +31,7 @@ def formula_flow(
 ) -> FluidState:
     """The flow without divergence that is nearest to ``velocity`` (time, points) at time 0, as bodies and boundary have
     it there."""
-    surfaces, state = target.surfaces, dict(at_rest(target.surfaces, mesh, pose, twist))
+    surfaces, state = target.surfaces, dict(resting_state(target.surfaces, mesh, pose, twist))
     node_points = target.numbering.node_points(mesh.geometry)
     with surfaces.ranks.raise_on_all():
         wanted = velocity(0.0, node_points)
@@ -49,10 +49,10 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
     Raises
     ------
     SceneError
-        Where that does not converge, with the Reynolds number.
+        If the iteration does not converge; with the Reynolds number.
     """
     problem, numbering = target.problem, target.numbering
-    state = dict(at_rest(target.surfaces, mesh, pose, twist))
+    state = dict(resting_state(target.surfaces, mesh, pose, twist))
     node_points = numbering.node_points(mesh.geometry)
     load, bodies = pressure_load(target.surfaces, node_points, 0.0), np.zeros_like(state["twist"])
     if problem.source is not None:
@@ -94,7 +94,7 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
 
 
 def _given(target: Discretisation, node_points: FloatArray, state: FluidState) -> FloatArray:
-    """What is prescribed at time 0, with all bodies as they move then, (nodes, d)."""
+    """Velocities (nodes, d) prescribed at time 0, with all bodies moving as they do then; zero elsewhere."""
     twist = state["twist"]
     every = np.ones(len(twist), dtype=bool)
     return target.surfaces.prescribed(0.0, node_points, state["position"], twist, every)

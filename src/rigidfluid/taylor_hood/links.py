@@ -13,10 +13,10 @@ from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
 _ANSWER_TOLERANCE = 1e-6
-"""Of the answers: so much of what is missing is left after each round."""
+"""Relative residual of the impulse responses [1]: each round leaves this share of the velocities' misfit."""
 
 _FIT = 1e-9
-"""Of the velocities, what they may miss in links: by the power that would mend them, which all units share."""
+"""Relative misfit of velocities allowed in links [1]; its square is one of power, which all units share."""
 
 _MOST_ROUNDS = 4
 _TOO_WRONG = 1e-4
@@ -90,12 +90,12 @@ def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
 
 
 def _power(compliance: FloatArray, missing: FloatArray) -> float:
-    """Of the forces that would mend it [energy/time]."""
+    """Power of the forces that would mend a ``missing`` rate (c,) of the links [energy/time]."""
     return float(missing @ joint_forces(compliance, missing))
 
 
 def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
-    """Of inertia and load [energy/time]."""
+    """Power of inertia and load on the free motions [energy/time]."""
     free = ~system.matrix.controlled
     twist, load = solution.twist[free], system.body_load[free]
     inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))

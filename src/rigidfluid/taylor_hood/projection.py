@@ -15,10 +15,10 @@ from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.pardiso import Orderings
 
 _MOST = 200
-"""Iterations. On straight cells they do not depend on the mesh: 6 a digit in 3D, 3 in 2D."""
+"""Greatest number of iterations, which do not depend on the mesh on straight cells: 6 a digit in 3D, 3 in 2D."""
 
 _REFINED = 2
-"""How often what factors in single precision give is refined, where the iteration starts and ends."""
+"""Number of refinements of a solution by factors in single precision, where the iteration starts and ends."""
 
 
 class Masses(NamedTuple):
@@ -69,7 +69,7 @@ class SparseProjection:
     ) -> FloatArray:
         """The velocity (nodes, d) without divergence nearest to ``velocity``, and equal to ``held`` where it is held.
 
-        To a residual of ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
+        Its residual is ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
         held = surfaces.held_part(velocity if held is None else held)
@@ -93,7 +93,8 @@ class SparseProjection:
             x, iterations = self._without_divergence(held, x + correction), iterations + spent
 
     def _correction(self, residual: FloatArray, enough: float, most: int) -> tuple[FloatArray, int]:
-        """What x lacks where a ``residual`` is left, until its norm is ``enough``, and the iterations, at ``most``."""
+        """Correction of x for a ``residual``, iterated until its norm is ``enough``, and the iterations, at
+        ``most``."""
         found, still = np.zeros_like(residual), np.zeros((self._mass.shape[0], self._axes))
         step = direction = residual / self._diagonal
         product = residual @ step
