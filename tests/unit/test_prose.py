@@ -18,9 +18,6 @@ PUBLIC_ROOMS = {"testing", "taylor_hood"}
 
 # Names and sentences without a subject, and sections on private names, left in each room. They only fall.
 LEFT: dict[str, tuple[int, int]] = {
-    "backends": (1, 1),
-    "backends.dolfinx": (17, 4),
-    "backends.scikit_fem": (2, 0),
     "bodies": (4, 2),
     "checks": (37, 27),
     "core.contact": (62, 35),
