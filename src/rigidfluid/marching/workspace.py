@@ -1,4 +1,4 @@
-"""What one march writes on: arrays as long as the mesh has vertices, kept from march to march.
+"""Workspace of one march: arrays as long as the mesh has vertices, kept from march to march.
 
 A march leaves ``state`` as it found it, except for the vertices that it lists in ``touched``; `reset` puts those back.
 """
@@ -33,7 +33,7 @@ class Workspace(NamedTuple):
 
 
 def new_workspace(vertices: int) -> Workspace:
-    """Space for marches over a mesh of so many ``vertices``."""
+    """Workspace for marches over a mesh of this number of ``vertices``."""
     numbers = [np.empty(vertices, np.int32) for _ in range(4)]
     facet, place, heap, touched = numbers
     return Workspace(
