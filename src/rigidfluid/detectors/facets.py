@@ -24,47 +24,35 @@ from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError
 
 SPREAD = 0.5
-"""Of a body's bounding radius: contacts of a pair that are farther than this behind the nearest are left out."""
+"""Greatest difference of gap between contacts of a pair, over the smaller bounding radius [1]; others are left out."""
 
 
 class Touches(NamedTuple):
-    """Where two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a, ``gap`` (m,)."""
+    """Places at which two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a,
+    ``gap`` (m,)."""
 
     point_a: FloatArray
     point_b: FloatArray
     normal: FloatArray
     gap: FloatArray
 
-    def at(self, chosen: BoolArray) -> Touches:
-        """Those chosen."""
+    def select(self, chosen: BoolArray) -> Touches:
+        """Places that are ``chosen`` (m,)."""
         return Touches(*(each[chosen] for each in self))
 
     def turned(self) -> Touches:
-        """The same with a and b in each other's place."""
+        """The same places with a and b exchanged."""
         return Touches(self.point_b, self.point_a, -self.normal, self.gap)
 
 
 class FacetDetector(Detector):
     """One contact for each corner of a pair that faces the other's surface, so that a box lies on all its corners.
 
-    Of a corner at x with the nearest points p of the other surface, gap = |x - p| and normal = (x - p)/|x - p|, and in
-    space the same between edges that pass each other. A ball or an ellipsoid has a contact with each place that is
-    nearer to it than all around. Overlap is the depth of the deepest corner, or that of the shallowest edge that goes
-    through a facet.
-
-    Parameters
-    ----------
-    options : PartOptions
-        None are read.
-    bodies : sequence of Body
-        Balls, ellipses, ellipsoids, and bodies of facets.
-    walls : sequence of Wall
-        Flat, round or made of facets.
-
-    Raises
-    ------
-    SceneError
-        If a body or a wall is of another shape.
+    A corner at x with the nearest points p of the other surface has gap = |x - p| and normal = (x - p)/|x - p|; in
+    space the same holds between edges that pass each other. A ball or an ellipsoid has a contact with each place that
+    is nearer to it than all around. Overlap is the depth of the deepest corner, or that of the shallowest edge that
+    goes through a facet. Bodies other than ellipsoids and bodies of facets, and walls neither flat, round nor of
+    facets, raise SceneError.
     """
 
     name: ClassVar[str] = "facets"
@@ -109,10 +97,10 @@ class FacetDetector(Detector):
         return in_order(found)
 
     def _between_smooth(self, pose: Pose, reach: float) -> list[Contacts]:
-        """Of balls and ellipsoids with each other, and of the latter with flat and round walls."""
-        pairs = self._smooth_contacts.between(_of(pose, self._smooth), reach)
+        """Contacts of balls and ellipsoids with each other, and of the latter with flat and round walls."""
+        pairs = self._smooth_contacts.pair_contacts(_select_bodies(pose, self._smooth), reach)
         pairs = replace(pairs, body_a=self._smooth[pairs.body_a], body_b=self._smooth[pairs.body_b])
-        at_walls = self._long_contacts.at_walls(_of(pose, self._long), reach)
+        at_walls = self._long_contacts.wall_contacts(_select_bodies(pose, self._long), reach)
         found = [pairs, *(replace(each, body_a=self._long[each.body_a]) for each in at_walls)]
         return [select(each, each.gap <= reach) for each in found]
 
@@ -129,7 +117,7 @@ def is_known(shape: Surface) -> bool:
 
 
 class _Solid:
-    """A surface of facets in its own frame, and what of it can touch others."""
+    """A surface of facets in its own frame, and its features that can touch others."""
 
     def __init__(self, surface: FacetSurface) -> None:
         self.surface = surface
@@ -211,7 +199,7 @@ def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Tou
         parts = [_smooth_touches(a, b, reach, spread)]
     found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
     least = found.gap.min(initial=np.inf)
-    found = found.at((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
+    found = found.select((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
     return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
 
 
@@ -239,7 +227,7 @@ def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float)
 
 
 def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
-    """Of a vertex of a that is near b; the least gap is no larger [length]."""
+    """Gap of a vertex of a that is near b [length]; the least gap is no larger."""
     foot = b.nearby(a.position[None], np.inf, 0.0).foot[0]
     points = a.points
     nearest = np.argmin(np.linalg.norm(points - foot, axis=1))
@@ -255,7 +243,7 @@ def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float
     outwards = features.corner_normals[close[near.point]] @ a.rotation.T
     faces = np.sum(outwards * near.normal, axis=1) < 0
     nearest = near.distance <= near.distance.min(initial=np.inf)
-    return Touches(corners[near.point], near.foot, near.normal, near.distance).at(faces | nearest)
+    return Touches(corners[near.point], near.foot, near.normal, near.distance).select(faces | nearest)
 
 
 def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
@@ -283,14 +271,14 @@ def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
     normal = away / gap[:, None]
     towards_b = np.sum(both[0].edge_normals[close_a][first] @ a.rotation.T * normal, axis=1) < 0
     towards_a = np.sum(both[1].edge_normals[close_b][second] @ b.rotation.T * normal, axis=1) > 0
-    return Touches(point_a, point_b, normal, gap).at(towards_a & towards_b)
+    return Touches(point_a, point_b, normal, gap).select(towards_a & towards_b)
 
 
 def _pierced(a: _Facets, b: _Facets) -> Touches:
     """The shallowest edge that goes through a facet, if any does, by its deeper end."""
     found = [_through(a, b), _through(b, a).turned()]
     both = Touches(*(np.concatenate(each) for each in zip(*found, strict=True)))
-    return both.at(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
+    return both.select(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
 
 
 def _through(a: _Facets, b: _Facets) -> Touches:
@@ -312,7 +300,7 @@ def _through(a: _Facets, b: _Facets) -> Touches:
     return Touches(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
 
 
-def _of(pose: Pose, bodies: IntArray) -> Pose:
+def _select_bodies(pose: Pose, bodies: IntArray) -> Pose:
     return Pose(pose.position[bodies], pose.orientation[bodies])
 
 
