@@ -18,7 +18,6 @@ PUBLIC_ROOMS = {"testing", "taylor_hood"}
 
 # Names and sentences without a subject, and sections on private names, left in each room. They only fall.
 LEFT: dict[str, tuple[int, int]] = {
-    "bodies": (4, 2),
     "checks": (37, 27),
     "core.contact": (62, 35),
     "core.joints": (29, 9),
