@@ -34,7 +34,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "evaluation.crosscheck": (8, 8),
     "evaluation.insertion": (8, 1),
     "evaluation.studies": (22, 14),
-    "mechanisms": (3, 2),
     "movies": (11, 2),
     "reports": (40, 5),
     "rigidfluid": (9, 0),

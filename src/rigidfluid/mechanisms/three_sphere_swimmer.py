@@ -41,17 +41,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
     """Balls at -L₁ + s₁(t), 0 and L₂ - s₂(t) on the first axis; in each phase one s goes at constant speed from 0
     to the amplitude or back, so that a cycle takes 4 amplitude/speed.
 
-    Parameters
-    ----------
-    options : ThreeSphereSwimmerOptions
-        Radius, arms, amplitude [length], speed [length/time], density [mass/length^d] and order.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If a phase comes twice, or balls would touch.
+    A phase that comes twice, and balls that would touch, raise SceneError.
 
     References
     ----------
@@ -88,7 +78,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         ]
 
     def _stroke(self, arm: str) -> Stroke:
-        """By how much this arm is shortened: at first by all, if it lengthens before it shortens."""
+        """Shortening of this arm over time [length]: at first the whole, if it lengthens before it shortens."""
         order: Sequence[str] = self.options.order
         goes_in, goes_out = order.index(f"{arm} in"), order.index(f"{arm} out")
         amplitude = self.options.amplitude
