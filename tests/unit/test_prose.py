@@ -28,7 +28,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.run": (40, 9),
     "core.scene": (8, 5),
     "core.setup": (39, 35),
-    "domains": (27, 13),
     "evaluation.bench": (4, 7),
     "evaluation.comparison": (8, 9),
     "evaluation.crosscheck": (8, 8),

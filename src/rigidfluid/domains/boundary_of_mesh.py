@@ -13,10 +13,10 @@ from rigidfluid.domains.naming import Part, listed
 from rigidfluid.errors import SceneError
 
 SAME = 1e-9
-"""Over the size of the domain: points that are nearer to each other are one."""
+"""Distance over the size of the domain, below which two points are one [1]."""
 
 _FLAT = 1e-12
-"""Over the size of the domain: points that are less off the plane z = 0 lie in it."""
+"""Distance off the plane z = 0 over the size of the domain, below which points lie in it [1]."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Boundary:
 
     @property
     def parts(self) -> list[Part]:
-        """What the file knows of it, by ascending number."""
+        """Parts of the boundary as the file knows them, by ascending number."""
         numbers = np.unique(self.facets.markers).tolist()
         return [Part(number, self.names.get(number), self._look(number)) for number in numbers]
 
@@ -39,28 +39,11 @@ class Boundary:
 
 
 def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: float) -> Boundary:
-    """The boundary of what the fluid fills.
+    """Boundary of the region of a file that the fluid fills, in 2 or 3 dimensions.
 
-    Parameters
-    ----------
-    file : MeshFile
-        As it was read.
-    dimension : int
-        2 or 3.
-    fluid : int, str or None
-        Number or name of the cells that are fluid; may be None where all cells have one number.
-    scale : float
-        What lengths in the file are multiplied by [1].
-
-    Returns
-    -------
-    Boundary
-        Points that are less than SAME apart are joined, and facets without an area left out.
-
-    Raises
-    ------
-    SceneError
-        If there is nothing, the region is not there or not said, or a facet of its boundary has no number.
+    Points less than SAME apart are joined, and facets without an area left out. ``fluid`` is the number or name of the
+    cells that are fluid, None where all have one number; ``scale`` multiplies lengths [1]. Raises SceneError if there
+    is no such region, or a facet of its boundary has no number.
     """
     points = _in_space(file, dimension) * scale
     region = _region(file.cells, points, dimension, fluid)

@@ -28,10 +28,10 @@ _FACETS = 30
 """Facets along the longest side of the domain, at least, by which faces are found."""
 
 _FACETS_PER_RADIUS = 8.0
-"""And along a radius of curvature."""
+"""Facets along a radius of curvature, at least."""
 
 _GROWTH = 0.3
-"""Of facets away from where they are small."""
+"""Growth of facets away from where they are small [1]."""
 
 _SAME = 1e-9
 """Areas and distances that differ by less, relatively, are equal."""
@@ -56,19 +56,9 @@ class CadOptions(PartOptions):
 
 
 class Cad(Domain):
-    """What a solid of a CAD file, or in 2D a face in the plane z = 0, is around.
+    """The inside of a solid of a CAD file, or in 2D of a face in the plane z = 0.
 
-    Parameters
-    ----------
-    options : CadOptions
-        ``file``, ``scale`` [1], ``faces``.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or has no such shape, or if faces have no name.
+    A file that cannot be read or has no such shape, and faces without a name, raise SceneError.
     """
 
     name: ClassVar[str] = "cad"
@@ -87,7 +77,7 @@ class Cad(Domain):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """As `faces` lists them, else as the file does."""
+        """Pieces in the order of `faces`, else of the file."""
         return tuple(self._piece(name) for name in self._order)
 
     @property
@@ -97,7 +87,7 @@ class Cad(Domain):
 
     @property
     def volume(self) -> float:
-        """As Open CASCADE integrates it [length^d]."""
+        """Volume as Open CASCADE integrates it [length^d]."""
         return float(self._shape.mass) * self._unit**self.dimension
 
     def contains(self, points: FloatArray) -> BoolArray:

@@ -1,4 +1,4 @@
-"""Which surface of a domain each part of a file's boundary belongs to."""
+"""Assignment of the parts of a file's boundary to the surfaces of a domain."""
 
 from __future__ import annotations
 
@@ -27,26 +27,11 @@ class Part:
 
 
 def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> list[str]:
-    """The name of the surface that each part belongs to.
+    """Name of the surface that each part belongs to, by ``faces``, or by the file's names if they are None.
 
-    Parameters
-    ----------
-    parts : sequence of Part
-        Of the file.
-    faces : mapping of str to Labels, or None
-        Names of surfaces, and the names or numbers in the file of what they consist of; None for the file's names.
-
-    Returns
-    -------
-    list of str
-        For each part.
-
-    Raises
-    ------
-    SceneError
-        If a label is not in the file, a part belongs to no surface or to two, or a name cannot be one.
+    Raises SceneError if a label is not in the file, a part belongs to no surface or to two, or a name cannot be one.
     """
-    found = _by_file(parts) if faces is None else _by_scene(parts, faces)
+    found = _names_by_file(parts) if faces is None else _names_by_scene(parts, faces)
     for name in found:
         if name == "all" or not name:
             raise SceneError(AT, f"a surface named {name!r}", "a name other than 'all'", "Rename it.")
@@ -60,7 +45,7 @@ def in_order(names: Sequence[str], faces: Mapping[str, Labels] | None) -> list[s
     return list(dict.fromkeys(names if faces is None else faces))
 
 
-def _by_file(parts: Sequence[Part]) -> list[str]:
+def _names_by_file(parts: Sequence[Part]) -> list[str]:
     nameless = [part for part in parts if not part.name]
     if nameless:
         remedy = "Give all of them names: `faces = { wall = [1, 2], inflow = 3 }`."
@@ -68,7 +53,7 @@ def _by_file(parts: Sequence[Part]) -> list[str]:
     return [part.name or "" for part in parts]
 
 
-def _by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
+def _names_by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
     names: list[str] = [""] * len(parts)
     for name, label in _labels(faces):
         chosen = [i for i, part in enumerate(parts) if label in (part.number, part.name)]
