@@ -73,7 +73,7 @@ class Dry(FluidBackend):
         return 0
 
     def forget(self) -> None:
-        """Nothing is cached."""
+        """Do nothing: nothing is cached."""
 
 
 def _solve(step: Step) -> FloatArray:

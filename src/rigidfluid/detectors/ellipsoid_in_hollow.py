@@ -21,7 +21,7 @@ def farthest_points(offset: FloatArray, half: FloatArray) -> tuple[FloatArray, F
 
     Notes
     -----
-    At most one further maximum: J. M. Martínez, SIAM J. Optim. 4 (1994) 159, doi:10.1137/0804009.
+    There is at most one further maximum: J. M. Martínez, SIAM J. Optim. 4 (1994) 159, doi:10.1137/0804009.
     """
     rows, squares = np.arange(len(offset)), np.sum(half**2, axis=1)
     longest = np.argmax(squares, axis=1)

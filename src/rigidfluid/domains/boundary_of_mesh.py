@@ -141,7 +141,7 @@ def _among(facets: IntArray, others: IntArray) -> BoolArray:
 
 
 def _joined(points: FloatArray, vertices: IntArray) -> IntArray:
-    """For each point the number of the one that stands for it."""
+    """Number of the point that stands for each point, (N,)."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

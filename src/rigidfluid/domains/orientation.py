@@ -82,7 +82,7 @@ def _flipped(facets: Facets, flip: BoolArray) -> Facets:
 
 
 def _depth(facets: Facets, surface: IntArray, point: FloatArray, others: BoolArray) -> int:
-    """How many of the other surfaces are around a point."""
+    """Number of the other surfaces that are around a point."""
     around = 0
     for number in np.unique(surface[others]):
         one = facets.part(surface == number)

@@ -17,7 +17,8 @@ FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
 
 
 class Workspace(NamedTuple):
-    """Per vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet`` nearest so far.
+    """Arrays with a value for each vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet``
+    nearest so far.
 
     ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band and from its end
     those that are BEYOND.

@@ -152,7 +152,7 @@ def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
 
 
 def centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
-    """In an enclosed flow the pressure's constant is free: take the one with zero mean."""
+    """Pressure (vertices,) with zero mean in an enclosed flow, whose constant is free; unchanged in others."""
     surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
     if not surfaces.enclosed:
         return pressure

@@ -234,7 +234,7 @@ class TaylorHoodBackend(FluidBackend):
         return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, controlled), mesh)
 
     def _any(self, mesh: Mesh) -> Discretisation:
-        """On this topology, whichever bodies are controlled."""
+        """A discretisation on this topology, whichever bodies are controlled."""
         self.numbering_of(mesh)
         return self._for_projection(mesh) if self._latest is None else self._latest[1]
 

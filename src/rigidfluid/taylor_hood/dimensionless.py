@@ -28,7 +28,7 @@ class Dimensionless:
     inner : Discretisation
         The equations, in whatever units they are given.
     mesh : Mesh
-        Of its topology, from which h is (total volume / cells)^(1/d).
+        A mesh of its topology, from which h is (total volume / cells)^(1/d).
     """
 
     def __init__(self, inner: Discretisation, mesh: Mesh) -> None:

@@ -35,7 +35,7 @@ def solve_linked(
     discretisation : Discretisation
         Solves without links.
     system : CoupledSystem
-        Of the step.
+        The step's equations.
     links : Links or None
         C, r and κ.
     tolerance : float

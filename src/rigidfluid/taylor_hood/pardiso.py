@@ -40,8 +40,8 @@ class PardisoError(Exception):
 
 @dataclass(frozen=True)
 class Settings:
-    """How factors are made: their ``precision``; whether unknowns are ``matched`` by the matrix' numbers first; pivots
-    below 10^-``pivots`` are replaced."""
+    """Settings of a factorisation: its ``precision``; whether unknowns are ``matched`` by the matrix' numbers first;
+    pivots below 10^-``pivots`` are replaced."""
 
     precision: type[np.floating[Any]]
     matched: bool

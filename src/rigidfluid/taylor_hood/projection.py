@@ -39,11 +39,11 @@ class SparseProjection:
     Parameters
     ----------
     masses : Masses
-        On one geometry.
+        Masses on one geometry.
     constraint : Constraint
         P, placed there; all bodies are held.
     orderings : Orderings
-        Of matrices on the same topology.
+        Orders of elimination of matrices on the same topology.
     """
 
     def __init__(self, masses: Masses, constraint: Constraint, orderings: Orderings) -> None:

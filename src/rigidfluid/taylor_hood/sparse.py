@@ -103,8 +103,8 @@ class SparseDiscretisation:
     assembly : Assembly
         The integrals.
     solver, inviscid_solver : LaggedSolver
-        Of the matrices of steps, and of those without viscosity, as projections have. Kept from topology to topology;
-        they must have been told to forget the last one.
+        Solvers for matrices of steps, and for those without viscosity, as projections have. Kept from topology to
+        topology; they must have been told to forget the last one.
     mesh : Mesh
         The topology.
     controlled : (N,) bool
