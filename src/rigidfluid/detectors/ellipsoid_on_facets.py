@@ -69,10 +69,10 @@ def ellipsoid_touches(body: PlacedEllipsoid, surface: FacetSurface, features: Fe
     if len(found.distance) == 0 and towards[0] < 0:
         return overlap  # so deep that the distance to the ellipsoid has a kink where it is least
     size = body.shape.bounding_radius + float(np.max(surface.bounds[1] - surface.bounds[0]))
-    return _apart(found, reach, _SAME * size)
+    return _distinct_places(found, reach, _SAME * size)
 
 
-def _apart(found: Nearby, reach: float, same: float) -> Nearby:
+def _distinct_places(found: Nearby, reach: float, same: float) -> Nearby:
     """The nearest first, and each place once: on the edge of two facets it may be found in both."""
     chosen: list[int] = []
     for row in np.argsort(found.distance, kind="stable").tolist():

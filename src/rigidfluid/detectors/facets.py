@@ -82,21 +82,21 @@ class FacetDetector(Detector):
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap), from the shapes alone."""
         rotation = rotation_matrices(pose.orientation)
         placed = [self._placed(i, pose.position[i], rotation[i]) for i in range(len(self.bodies))]
-        found = self._between_smooth(pose, reach)
+        found = self._smooth_pair_contacts(pose, reach)
         for a, b in zip(*near_pairs(pose.position, self._bounds, reach), strict=True):
             if isinstance(placed[a], _Facets) or isinstance(placed[b], _Facets):
                 spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
-                touches = _between(placed[a], placed[b], reach, spread)
+                touches = _pair_touches(placed[a], placed[b], reach, spread)
                 found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
         for body, wall in near_walls(pose.position, self._bounds, self.walls, reach):
             fixed, one = self._fixed[wall.surface], placed[body]
             if isinstance(fixed, _Facets) or not isinstance(one, _Ellipsoid):
-                touches = _between(one, fixed, reach, SPREAD * float(self._bounds[body]))
+                touches = _pair_touches(one, fixed, reach, SPREAD * float(self._bounds[body]))
                 radii = self._radii[body], radius_of(wall.shape)
                 found.append(_contacts(body, wall.surface, touches, *radii, True))
         return in_order(found)
 
-    def _between_smooth(self, pose: Pose, reach: float) -> list[Contacts]:
+    def _smooth_pair_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
         """Contacts of balls and ellipsoids with each other, and of the latter with flat and round walls."""
         pairs = self._smooth_contacts.pair_contacts(_select_bodies(pose, self._smooth), reach)
         pairs = replace(pairs, body_a=self._smooth[pairs.body_a], body_b=self._smooth[pairs.body_b])
@@ -187,7 +187,7 @@ def _fixed(shape: Surface) -> _Wall:
     return _Facets(_Solid(shape), np.zeros(dimension), np.eye(dimension))
 
 
-def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
+def _pair_touches(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
     """All contacts of a pair, the nearest first."""
     if isinstance(a, _Facets):
         if isinstance(b, _Facets | _Round):
@@ -222,7 +222,7 @@ def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float)
         return parts if ball is None else [*parts, _smooth_touches(ball, a, reach, spread).turned()]
     parts += [_corner_touches(b, a, reach, spread).turned(), _edge_touches(a, b, reach)]
     if all(part.gap.min(initial=np.inf) > 0 for part in parts):
-        parts.append(_pierced(a, b))
+        parts.append(_shallowest_piercing(a, b))
     return parts
 
 
@@ -237,7 +237,7 @@ def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
 def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> Touches:
     features = a.solid.features
     corners = a.points[features.corners]
-    close = np.flatnonzero(_beside(corners[:, None], b, reach))
+    close = np.flatnonzero(_near_boxes(corners[:, None], b, reach))
     corners = corners[close]
     near = b.nearby(corners, reach, spread)
     outwards = features.corner_normals[close[near.point]] @ a.rotation.T
@@ -246,7 +246,7 @@ def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float
     return Touches(corners[near.point], near.foot, near.normal, near.distance).select(faces | nearest)
 
 
-def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
+def _near_boxes(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
     """Which groups of points (m, k, d) have a box within ``reach`` of that around another surface, in its frame."""
     if isinstance(other, _Round):
         return np.ones(len(groups), dtype=bool)
@@ -258,12 +258,12 @@ def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolAr
 def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
     dimension = len(a.position)
     if dimension == 2:
-        return _none(dimension)
+        return _no_touches(dimension)
     from rigidfluid.detectors.edge_pairs import passing_edges
 
     points_a, points_b, both = a.points, b.points, (a.solid.features, b.solid.features)
-    close_a = _beside(points_a[both[0].edges], b, reach)
-    close_b = _beside(points_b[both[1].edges], a, reach)
+    close_a = _near_boxes(points_a[both[0].edges], b, reach)
+    close_b = _near_boxes(points_b[both[1].edges], a, reach)
     edges_a, edges_b = both[0].edges[close_a], both[1].edges[close_b]
     first, second, point_a, point_b = passing_edges(points_a, edges_a, points_b, edges_b, reach)
     away = point_a - point_b
@@ -274,21 +274,21 @@ def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
     return Touches(point_a, point_b, normal, gap).select(towards_a & towards_b)
 
 
-def _pierced(a: _Facets, b: _Facets) -> Touches:
+def _shallowest_piercing(a: _Facets, b: _Facets) -> Touches:
     """The shallowest edge that goes through a facet, if any does, by its deeper end."""
-    found = [_through(a, b), _through(b, a).turned()]
+    found = [_piercing_edges(a, b), _piercing_edges(b, a).turned()]
     both = Touches(*(np.concatenate(each) for each in zip(*found, strict=True)))
     return both.select(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
 
 
-def _through(a: _Facets, b: _Facets) -> Touches:
+def _piercing_edges(a: _Facets, b: _Facets) -> Touches:
     """Edges of a through facets of b."""
     from rigidfluid.core.model.crossings import crossings
 
     facets, inside = b.solid.surface.facets, b.local(a.points)
     lower, upper = b.solid.surface.bounds
     if np.any(inside.max(axis=0) < lower) or np.any(inside.min(axis=0) > upper):
-        return _none(len(lower))
+        return _no_touches(len(lower))
     points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
     met = crossings(points, edges, facets.vertices, b.solid.surface.tree)
     normal = b.solid.surface.facet_normals[met[:, 1]]
@@ -304,7 +304,7 @@ def _select_bodies(pose: Pose, bodies: IntArray) -> Pose:
     return Pose(pose.position[bodies], pose.orientation[bodies])
 
 
-def _none(dimension: int) -> Touches:
+def _no_touches(dimension: int) -> Touches:
     vectors = np.empty((0, dimension))
     return Touches(vectors, vectors, vectors, np.empty(0))
 

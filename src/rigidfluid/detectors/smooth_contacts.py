@@ -99,7 +99,7 @@ class SmoothContacts:
         normal, found = _normals(*both, near, np.full(len(near), count), reach)
         body = near[found]
         point_a, point_b = position[body] - _farthest(half[body], normal), centre + radius * normal
-        return self._with_wall(body, wall, point_a, point_b, normal)
+        return self._round_wall_contacts(body, wall, point_a, point_b, normal)
 
     def _hollow_contacts(
         self, position: FloatArray, half: FloatArray, wall: Wall, centre: FloatArray, reach: float
@@ -112,10 +112,10 @@ class SmoothContacts:
         distance = np.linalg.norm(away, axis=1, keepdims=True)
         point_b = centre + radius * away / distance
         ends = np.linalg.norm(wall.shape.closest_point(point_b) - point_b, axis=1) <= _ON_THE_WALL * radius
-        found = self._with_wall(body, wall, centre + away, point_b, -away / distance)
+        found = self._round_wall_contacts(body, wall, centre + away, point_b, -away / distance)
         return select(found, np.flatnonzero(ends)[np.argsort(found.gap[ends], kind="stable")])
 
-    def _with_wall(
+    def _round_wall_contacts(
         self, body: IntArray, wall: Wall, point_a: FloatArray, point_b: FloatArray, normal: FloatArray
     ) -> Contacts:
         return Contacts(

@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.core.model.facets import Facets, place
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
-from rigidfluid.domains.naming import Part, listed
+from rigidfluid.domains.naming import Part, list_parts
 from rigidfluid.errors import SceneError
 
 SAME = 1e-9
@@ -48,7 +48,7 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
     points = _in_space(file, dimension) * scale
     region = _region(file.cells, points, dimension, fluid)
     if len(region):
-        vertices, numbers = _around(region, file.facets, points)
+        vertices, numbers = _boundary_facets(region, file.facets, points)
     else:
         vertices, numbers = file.facets.vertices, file.facets.numbers
     if not len(vertices):
@@ -87,22 +87,24 @@ def _region(cells: Cells, points: FloatArray, dimension: int, fluid: int | str |
     if fluid is None:
         if len(regions) > 1:
             remedy = 'Say which is the fluid: `fluid = "…"`.'
-            raise SceneError("domain.fluid", f"nothing, and several regions: {listed(regions)}", "one of them", remedy)
+            raise SceneError(
+                "domain.fluid", f"nothing, and several regions: {list_parts(regions)}", "one of them", remedy
+            )
         return cells.vertices
     chosen = [part.number for part in regions if fluid in (part.number, part.name)]
     if not chosen:
-        known = listed(regions) or "none, as the file has no cells"
+        known = list_parts(regions) or "none, as the file has no cells"
         raise SceneError("domain.fluid", f"{fluid!r}, which is no region of the file", known, "Correct or remove it.")
     return cells.vertices[np.isin(cells.numbers, chosen)]
 
 
-def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArray, IntArray]:
+def _boundary_facets(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArray, IntArray]:
     """Facets (F, d) of only one cell of the region, and the numbers that the file's facets give them."""
     count = region.shape[1]
     sides = np.concatenate([np.delete(region, k, axis=1) for k in range(count)])
     unique, times = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     outer = unique[times == 1]
-    _refuse_baffles(facets, _among(facets.vertices, unique[times == 2]), points)
+    _refuse_baffles(facets, _are_among(facets.vertices, unique[times == 2]), points)
     keys = np.concatenate([outer, np.sort(facets.vertices, axis=1)])
     _, row = np.unique(keys, axis=0, return_inverse=True)
     number_of = dict(zip(row.ravel()[len(outer) :].tolist(), facets.numbers.tolist(), strict=True))
@@ -133,7 +135,7 @@ def _doubled(vertices: IntArray) -> BoolArray:
     return np.asarray(times[row.ravel()] > 1)
 
 
-def _among(facets: IntArray, others: IntArray) -> BoolArray:
+def _are_among(facets: IntArray, others: IntArray) -> BoolArray:
     """Which facets (F,) are among ``others`` (G, d)."""
     corners = np.sort(np.concatenate([facets, others]), axis=1)
     row = np.unique(corners, axis=0, return_inverse=True)[1].ravel()

@@ -20,7 +20,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
-from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
+from rigidfluid.domains.naming import Labels, Part, order_surfaces, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.errors import MeshError, SceneError
 
@@ -70,7 +70,7 @@ class Cad(Domain):
         self._shape, self._unit = _read(options, dimension)
         parts = [self._part(number) for number in range(1, len(self._sides) + 1)]
         self._names = surface_names(parts, options.faces)
-        self._order = in_order(self._names, options.faces)
+        self._order = order_surfaces(self._names, options.faces)
         facets = facing_the_fluid(_fine_facets(self._shape, dimension, self._unit), "domain.file")
         self._facets, self._whole = facets, FacetSurface(facets)
         self._forms = [self._form(side) for side in self._sides]

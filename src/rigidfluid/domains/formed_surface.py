@@ -105,8 +105,8 @@ class FormedSurface(Surface):
     def _measured(self, points: FloatArray) -> _Measured:
         facet, coarse_foot, coarse_distance, coarse_normal = self._coarse.nearest(points)
         face = self._coarse.facets.markers[facet]
-        found = self._on_forms(points, _Feet(coarse_foot, coarse_normal, face, np.zeros(len(points), dtype=bool)))
-        self._go_on(points, found, np.flatnonzero(found.face != face))
+        found = self._feet_on_forms(points, _Feet(coarse_foot, coarse_normal, face, np.zeros(len(points), dtype=bool)))
+        self._continue_feet(points, found, np.flatnonzero(found.face != face))
         away = np.linalg.norm(points - found.foot, axis=1)
         formed = np.isin(face, list(self._faces))
         above = np.sum((points - found.foot) * found.normal, axis=1)
@@ -116,14 +116,14 @@ class FormedSurface(Surface):
             inside[behind] = self._whole.signed_distance(points[behind]) > 0.0
         return _Measured(found.foot, np.where(inside, away, -away), found.normal)
 
-    def _go_on(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
+    def _continue_feet(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
         """Replace feet at ``rows`` that lie on the next face, as faces pass into one another, by those of its form."""
         there = _Feet(found.foot[rows], found.normal[rows], found.face[rows], found.bounded[rows])
-        following = self._on_forms(points[rows], there)
+        following = self._feet_on_forms(points[rows], there)
         taken = following.bounded
         found.foot[rows[taken]], found.normal[rows[taken]] = following.foot[taken], following.normal[taken]
 
-    def _on_forms(self, points: FloatArray, near: _Feet) -> _Feet:
+    def _feet_on_forms(self, points: FloatArray, near: _Feet) -> _Feet:
         """The nearest points of the forms of the faces that points are ``near`` to; those there, put onto the form,
         where the form's are not on the face."""
         foot, normal, slack = near.foot.copy(), near.normal.copy(), np.full(len(points), np.inf)

@@ -16,7 +16,7 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
-from rigidfluid.domains.naming import Labels, in_order, surface_names
+from rigidfluid.domains.naming import Labels, order_surfaces, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.errors import SceneError
 
@@ -64,7 +64,7 @@ class MeshDomain(Domain):
         self._doubled = boundary.doubled
         parts = boundary.parts
         names = surface_names(parts, options.faces)
-        self._names = in_order(names, options.faces)
+        self._names = order_surfaces(names, options.faces)
         _refuse_crossing(boundary.facets)
         facets = facing_the_fluid(boundary.facets, FIELD)
         piece_of = {part.number: self._names.index(name) for part, name in zip(parts, names, strict=True)}

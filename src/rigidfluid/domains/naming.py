@@ -40,7 +40,7 @@ def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> 
     return found
 
 
-def in_order(names: Sequence[str], faces: Mapping[str, Labels] | None) -> list[str]:
+def order_surfaces(names: Sequence[str], faces: Mapping[str, Labels] | None) -> list[str]:
     """The surfaces, each once: as the scene lists them, else as the file does."""
     return list(dict.fromkeys(names if faces is None else faces))
 
@@ -49,7 +49,7 @@ def _names_by_file(parts: Sequence[Part]) -> list[str]:
     nameless = [part for part in parts if not part.name]
     if nameless:
         remedy = "Give all of them names: `faces = { wall = [1, 2], inflow = 3 }`."
-        raise SceneError(AT, f"nothing, and no names in the file for {listed(nameless)}", "a name for each", remedy)
+        raise SceneError(AT, f"nothing, and no names in the file for {list_parts(nameless)}", "a name for each", remedy)
     return [part.name or "" for part in parts]
 
 
@@ -60,7 +60,7 @@ def _names_by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[
         if not chosen:
             known = [part.name for part in parts if part.name] if isinstance(label, str) else []
             remedy = suggestion(str(label), known) or "Correct it."
-            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", listed(parts), remedy)
+            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", list_parts(parts), remedy)
         for i in chosen:
             if names[i] not in ("", name):
                 found = f"{label!r}, which belongs to {names[i]!r} already"
@@ -68,7 +68,9 @@ def _names_by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[
             names[i] = name
     missing = [part for part, name in zip(parts, names, strict=True) if not name]
     if missing:
-        raise SceneError(AT, f"no surface for {listed(missing)}", "all parts of the boundary", "Add them to a surface.")
+        raise SceneError(
+            AT, f"no surface for {list_parts(missing)}", "all parts of the boundary", "Add them to a surface."
+        )
     return names
 
 
@@ -78,7 +80,7 @@ def _labels(faces: Mapping[str, Labels]) -> Iterator[tuple[str, int | str]]:
             yield name, label
 
 
-def listed(parts: Sequence[Part]) -> str:
+def list_parts(parts: Sequence[Part]) -> str:
     """The parts as messages show them."""
     shown = "; ".join(f"{part.number}{f' {part.name!r}' if part.name else ''} ({part.look})" for part in parts[:_SHOWN])
     return shown + (f"; and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else "")

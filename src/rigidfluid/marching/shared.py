@@ -91,7 +91,7 @@ class SharedMesh:
         """This part of several fields, as `march_side_by_side` has it."""
         return march_side_by_side(self.part, points, neighbours, sources, (width, slack), self._exchange)
 
-    def together(self, gaps: Gaps) -> Gaps:
+    def gather(self, gaps: Gaps) -> Gaps:
         """Gaps that all ranks have found."""
         return joined_gaps(self._ranks.allgather(gaps))
 

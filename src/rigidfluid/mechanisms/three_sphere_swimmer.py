@@ -70,7 +70,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         ball = Registry.load().get(BODY, "sphere")
         shape = ball(ball.Options.model_validate({"radius": options.radius}), dimension)
         self.parts = [Component(name, shape, options.density) for name in ("left", "middle", "right")]
-        self.rest = _in_a_row((-left, 0.0, right), dimension)
+        self.rest = _row_pose((-left, 0.0, right), dimension)
         axis = np.eye(dimension)[0]
         self.strokes = [
             MovingComponents(np.array([True, False, False]), Translation(axis), self._stroke("left")),
@@ -88,7 +88,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         return Stroke([(number * phase, value) for number, value in enumerate(values)], period=4.0 * phase)
 
 
-def _in_a_row(places: Sequence[float], dimension: int) -> Pose:
+def _row_pose(places: Sequence[float], dimension: int) -> Pose:
     position = np.zeros((len(places), dimension))
     position[:, 0] = places
     orientation = np.zeros((1, 1)) if dimension == 2 else np.eye(1, 4)

@@ -50,7 +50,7 @@ def advance(
     state = {
         "velocity": velocity,
         "velocity_previous": fluid["velocity"],
-        "pressure": centred(discretisation, points, solution.pressure),
+        "pressure": centre_pressure(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": before,
         "twist": flat(component_twist(step.kinematics, twist)),
@@ -115,7 +115,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     matrix = with_masses(matrix, d0)
     if matrix.at_once is None or not step.turning.any():
         return matrix
-    turned = density * discretisation.velocity_by(matrix.at_once, step.turning, _TURNING_TOLERANCE)
+    turned = density * discretisation.velocity_response(matrix.at_once, step.turning, _TURNING_TOLERANCE)
     return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned)
 
 
@@ -151,7 +151,7 @@ def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
     return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
 
 
-def centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
+def centre_pressure(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
     """Pressure (vertices,) with zero mean in an enclosed flow, whose constant is free; unchanged in others."""
     surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
     if not surfaces.enclosed:

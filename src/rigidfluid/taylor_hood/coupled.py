@@ -22,7 +22,7 @@ class CoupledMatrix:
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
-    the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
+    the masses alone of a step's matrix, 𝓜, the matrix of inviscid impulse responses; None where it is not wanted.
     """
 
     points: FloatArray

@@ -55,13 +55,13 @@ class Discretisation(Protocol):
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve to a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """Twists (n, d+k, c) that each of c ``wrenches`` (n, d+k, c) on the bodies gives by itself.
 
         Residuals are ``tolerance`` times each column's norm; raises StepRejected.
         """
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         """The velocity (nodes, d) that a ``wrench`` (n, d+k) on the bodies gives by itself."""
 
 

@@ -39,12 +39,12 @@ class Frames:
     taken: tuple[IntArray, IntArray, FloatArray]
 
     @classmethod
-    def none(cls, dimension: int) -> Frames:
+    def empty(cls, dimension: int) -> Frames:
         """No frames: no face is oblique or curved."""
         d, nothing = dimension, np.empty(0, np.int64)
         return cls(nothing, np.empty((0, d, d)), np.empty((0, d), bool), (nothing, nothing, np.empty(0)))
 
-    def into(self, velocity: FloatArray) -> FloatArray:
+    def local_components(self, velocity: FloatArray) -> FloatArray:
         """û of a ``velocity`` u (nodes, d): its components along each node's own axes."""
         if not len(self.nodes):
             return velocity
@@ -97,7 +97,7 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     nodes = np.unique(np.concatenate([*oblique, np.empty(0, np.int64)]))
     nodes = nodes[~held[nodes]]
     if not len(nodes):
-        return Frames.none(d)
+        return Frames.empty(d)
     across = _normal_spaces(slip, node_points, vertices)[nodes]
     through = _normal_spaces(pressure, node_points, vertices)[nodes]
     values, axes = np.linalg.eigh(through)
@@ -110,7 +110,7 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     across[passes] -= np.einsum("ti,tj->tij", way[passes], way[passes])
     values, axes = np.linalg.eigh(across)
     free = values < 0.5
-    return Frames(nodes, axes, free, _taken(slip, node_points, vertices, nodes, axes, free))
+    return Frames(nodes, axes, free, _flux_corrections(slip, node_points, vertices, nodes, axes, free))
 
 
 def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int) -> FloatArray:
@@ -140,7 +140,7 @@ def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int
     return found
 
 
-def _taken(
+def _flux_corrections(
     slip: Sequence[Face], node_points: FloatArray, vertices: int, nodes: IntArray, axes: FloatArray, free: BoolArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Rows, unknowns and values (e,) by which midpoints of edges cancel the flux through ``slip`` faces of nodes that

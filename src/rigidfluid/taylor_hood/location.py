@@ -39,7 +39,7 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
         missing = missing[coordinates[missing].min(axis=1) < _INSIDE]
         if len(missing) == 0:
             break
-    return cell, _moved_inside(coordinates)
+    return cell, _move_inside(coordinates)
 
 
 def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -61,7 +61,7 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
         rows = np.arange(len(astray))
         better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
         cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
-    return cell, _moved_inside(found)
+    return cell, _move_inside(found)
 
 
 def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
@@ -80,7 +80,7 @@ def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
     return coordinates
 
 
-def _moved_inside(coordinates: FloatArray) -> FloatArray:
+def _move_inside(coordinates: FloatArray) -> FloatArray:
     inside = np.maximum(coordinates, 0.0)
     return np.asarray(inside / inside.sum(axis=1, keepdims=True))
 

@@ -181,12 +181,12 @@ class Pardiso:
 def _library() -> Any:
     """The loaded MKL, told to answer the same question with the same bits (conditional numerical reproducibility)."""
     path = installed_mkl()
-    library = _found_by_pypardiso() if path is None else ctypes.CDLL(str(path))
+    library = _search_by_pypardiso() if path is None else ctypes.CDLL(str(path))
     library.MKL_CBWR_Set(ctypes.c_int(_SAME_BITS))
     return library
 
 
-def _found_by_pypardiso() -> Any:
+def _search_by_pypardiso() -> Any:
     """The library as pypardiso finds it, by searching the disk, which may take a second."""
     from pypardiso.pardiso_wrapper import PyPardisoSolver
 

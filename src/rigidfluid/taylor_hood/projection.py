@@ -73,7 +73,7 @@ class SparseProjection:
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
         held = surfaces.held_part(velocity if held is None else held)
-        x = surfaces.frames.into(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
+        x = surfaces.frames.local_components(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
         x = self._without_divergence(held, x)
         enough = tolerance * float(np.linalg.norm(self._load(self._whole(held, x))))
         iterations = 0

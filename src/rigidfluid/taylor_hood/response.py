@@ -24,12 +24,12 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
     it. Without inertia of the fluid it is the bodies' own.
     """
     d0, loads = step.derivative[0], np.moveaxis(impulses, 0, -1)
-    by_step = d0 * discretisation.twists_by(matrix, loads, _TOLERANCE)
+    viscous = d0 * discretisation.twist_response(matrix, loads, _TOLERANCE)
     if matrix.at_once is None:
-        by_mass = _body_response(matrix, d0 * loads)
+        inviscid = _body_response(matrix, d0 * loads)
     else:
-        by_mass = discretisation.twists_by(matrix.at_once, loads, _INVISCID_TOLERANCE)
-    return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
+        inviscid = discretisation.twist_response(matrix.at_once, loads, _INVISCID_TOLERANCE)
+    return Response(np.moveaxis(inviscid, -1, 0), np.moveaxis(viscous, -1, 0))
 
 
 def _body_response(matrix: CoupledMatrix, loads: FloatArray) -> FloatArray:

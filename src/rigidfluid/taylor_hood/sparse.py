@@ -177,17 +177,17 @@ class SparseDiscretisation:
         velocity = velocity.reshape(s.given.shape) + s.matrix.frame
         return Solution(velocity, pressure, twist, reaction.reshape(s.given.shape), jump_load)
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.controlled
         found = np.zeros_like(wrenches)
-        answers = self._answers(assembled, wrenches, tolerance)[assembled.twists]
-        found[free] = answers.reshape(-1, *wrenches.shape[1:])
+        responses = self._impulse_response(assembled, wrenches, tolerance)[assembled.twists]
+        found[free] = responses.reshape(-1, *wrenches.shape[1:])
         return found
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
-        answer = self._answers(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        response = self._impulse_response(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
         size = self.numbering.nodes * self.numbering.dimension
-        return np.asarray((self._constraint.operator @ answer)[:size].reshape(self.numbering.nodes, -1))
+        return np.asarray((self._constraint.operator @ response)[:size].reshape(self.numbering.nodes, -1))
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays that the next step depends on beside the state: the matrices of the factors, and the solvers'
@@ -222,7 +222,7 @@ class SparseDiscretisation:
             frame=memory["frame"],
         )
 
-    def _answers(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def _impulse_response(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
         solver = self._solvers[assembled.coupled.viscosity != 0.0]
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
@@ -269,7 +269,7 @@ class SparseDiscretisation:
         if constraint.pressure_pin is not None:
             pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)
-        velocity = self.surfaces.frames.into(system.velocity)
+        velocity = self.surfaces.frames.local_components(system.velocity)
         guess[constraint.free_columns] = np.concatenate([velocity.ravel(), pressure])[constraint.free_unknowns]
         guess[twists] = system.twist[~system.matrix.controlled].ravel()
         return guess

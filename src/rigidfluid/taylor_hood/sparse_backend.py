@@ -98,7 +98,7 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory and mesh is not None:
-            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
+            discretisation = self._discretisation(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

@@ -61,7 +61,7 @@ def transfer(
         scale = 1.0
         if inertia > 0.0:
             held = target.surfaces.held_part(projected)
-            scale, beside = _beside(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
+            scale, beside = _rotational_part(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
         moved["velocity" + suffix] = projected + (scale - 1.0) * beside
     forget()
     return moved
@@ -106,7 +106,7 @@ def _start_tolerance(tolerance: float) -> float:
     return max(_TIGHTER * tolerance, _TIGHTEST)
 
 
-def _beside(
+def _rotational_part(
     projection: Projection,
     velocity: FloatArray,
     held: FloatArray,

@@ -108,19 +108,21 @@ class PetscDiscretisation:
         correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
         return self._solution(s, reduced, guess + correction, given, load)
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
-        answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        responses = self._impulse_response(self._reduced(matrix), matrix, wrenches, tolerance)
         found = np.zeros_like(wrenches)
-        on_root = answers[self._constraint.twist_slice]
+        on_root = responses[self._constraint.twist_slice]
         found[~matrix.controlled] = self.surfaces.ranks.bcast(on_root).reshape(-1, *wrenches.shape[1:])
         return found
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         reduced, space = self._reduced(matrix), self._topology.space
-        answer = self._answers(reduced, matrix, wrench[:, :, None], tolerance)[:, 0]
-        return space.velocities(reduced.expand(answer)[: space.owned_nodes.size * space.numbering.dimension])
+        response = self._impulse_response(reduced, matrix, wrench[:, :, None], tolerance)[:, 0]
+        return space.velocities(reduced.expand(response)[: space.owned_nodes.size * space.numbering.dimension])
 
-    def _answers(self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def _impulse_response(
+        self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float
+    ) -> FloatArray:
         """This process' unknowns (columns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
         solver = self._inviscid_solver if matrix.viscosity == 0.0 else self._solver
         constraint = self._constraint
