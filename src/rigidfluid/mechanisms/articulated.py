@@ -59,17 +59,7 @@ class ArticulatedOptions(PartOptions):
 class Articulated(StrokedMechanism):
     """Components that a scene lists, and strokes that translate or rotate some of them.
 
-    Parameters
-    ----------
-    options : ArticulatedOptions
-        Components and strokes.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If there are no components, two have one name, or a shape or a stroke cannot be.
+    No components, two of one name, and impossible shapes or strokes raise SceneError.
     """
 
     name: ClassVar[str] = "articulated"
