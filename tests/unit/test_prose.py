@@ -31,7 +31,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.output": (24, 9),
     "core.run": (40, 9),
     "core.scene": (8, 5),
-    "core.setup": (39, 35),
     "detectors": (25, 12),
     "domains": (27, 13),
     "evaluation.bench": (4, 7),

@@ -36,20 +36,8 @@ ROUNDING, EXPRESSIONS = 1e-12, 1e-3
 
 
 def check_boundary(scene: Scene, domain: Domain) -> None:
-    """Refuse names that the domain does not know, and conditions that contradict themselves or a surface's shape.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables ``boundary``, its bodies' names and its probes.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        At the first contradiction.
-    """
+    """Refuse, with SceneError, unknown names, probes outside the domain, and conditions that contradict themselves or a
+    surface's shape."""
     for number, table in enumerate(scene.boundary):
         _check_table(domain, table, f"boundary.{number}")
         if isinstance(table.over_time, tuple):

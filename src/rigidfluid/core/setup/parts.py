@@ -17,7 +17,7 @@ from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 P = TypeVar("P", bound=Part)
 
 AUTO = "auto"
-"""What a scene says that leaves the choice of its detector to `cheapest_detector`."""
+"""Value of `contact.detector` that leaves the choice to `cheapest_detector`."""
 
 
 _ROUNDING = 1e-6
-"""Of the area of a surface."""
+"""Relative tolerance of the area of a whole circle or sphere [1]."""
 
 _KNOWN: dict[int, Parts] = {}
-"""Of the scenes that exist, by their id."""
+"""Parts of the scenes in memory, by the scenes' `id`."""
 
 
 @dataclass(frozen=True)
@@ -68,28 +68,14 @@ class Parts:
 
 
 def select_plugins(scene: Scene) -> Parts:
-    """Find the parts that a scene names and validate their options.
+    """Find the parts that a scene names, validate their options, and build its bodies and domain, on whose shapes the
+    default detector depends.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its tables hold the options of the parts beside their own keys.
-
-    Returns
-    -------
-    Parts
-        Classes with options; bodies and domain are built, as the default detector depends on their shapes.
-
-    Raises
-    ------
-    PluginError
-        If a part is not there.
-    SceneError
-        If an option is unknown, missing or has a value that is not allowed.
+    Raises PluginError if a part is missing, SceneError for an option that is unknown, missing or not allowed.
     """
     registry = Registry.load()
     domain = _domain(scene, registry)
-    scene, mechanisms = with_components(scene, registry)
+    scene, mechanisms = append_components(scene, registry)
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
     mesh = backend.part.needs_mesh
@@ -107,20 +93,8 @@ def select_plugins(scene: Scene) -> Parts:
 
 
 def known_parts(scene: Scene) -> Parts:
-    """The parts of a scene, selected and built when they are first asked for, and known as long as the scene is.
-
-    They are known of this very object: an equal scene may have been read where other plug-ins were installed.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables hold the options of the parts beside their own keys.
-
-    Returns
-    -------
-    Parts
-        As `select_plugins` gives them, which also raises.
-    """
+    """Parts of a scene by `select_plugins`, selected and built on the first call, and kept as long as this very object:
+    an equal scene may have been read where other plug-ins were installed."""
     if id(scene) not in _KNOWN:
         _KNOWN[id(scene)] = select_plugins(scene.model_copy())  # itself it would live for ever
         weakref.finalize(scene, _KNOWN.pop, id(scene))
@@ -128,23 +102,12 @@ def known_parts(scene: Scene) -> Parts:
 
 
 def cheapest_detector(bodies: Sequence[Body], domain: Domain, mesh: bool) -> tuple[str, str]:
-    """The cheapest detector that is exact for these bodies between these surfaces.
+    """Name of the cheapest detector that is exact for these bodies between these surfaces, and the reason; ``mesh`` is
+    whether a mesh surrounds them and no gap beyond the range of a law matters.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes.
-    domain : Domain
-        Its surfaces.
-    mesh : bool
-        Whether there is a mesh around them, and no need to know gaps beyond the range of a law.
-
-    Returns
-    -------
-    str, str
-        The name, and the reason: ``sphere`` for balls alone; ``ellipsoid`` for balls, ellipses and ellipsoids where all
-        walls are flat, round bumps or whole round hollows; ``facets`` where there are polygons and polyhedra too, and
-        walls may be of facets; else ``narrow_band``, exact to the facets, on a mesh, and ``brute_force`` without.
+    ``sphere`` serves balls alone; ``ellipsoid`` balls, ellipses and ellipsoids where all walls are flat, round bumps or
+    whole round hollows; ``facets`` also polygons and polyhedra, and walls of facets; else ``narrow_band``, exact to the
+    facets, on a mesh, and ``brute_force`` without.
     """
     if all(body.radius is not None for body in bodies):
         return "sphere", "all bodies are balls"

@@ -40,7 +40,8 @@ def refuse_quick_drive(stroke: Stroke, joint: str, time: TimeTable) -> None:
 
 
 def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
-    """Of a period, at places that no oscillation in it meets always in the same phase, and its corners (s,)."""
+    """Sample times (s,) of a period [time]: its corners, and points that no oscillation meets always in the same
+    phase."""
     last = moving.period or max(time.end, _FEWEST_STEPS * time.step)
     spread = last * (np.arange(_SAMPLES) * _GOLDEN % 1.0)
     return np.concatenate([spread, np.fromiter(corners(moving, last), dtype=float)])
