@@ -30,7 +30,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "core.model": (81, 9),
     "core.output": (24, 9),
     "core.run": (40, 9),
-    "core.scene": (8, 5),
     "detectors": (25, 12),
     "domains": (27, 13),
     "evaluation.bench": (4, 7),
