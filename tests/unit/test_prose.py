@@ -24,7 +24,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "bodies": (4, 2),
     "checks": (37, 27),
     "core.contact": (62, 35),
-    "core.joints": (29, 9),
     "core.mechanics": (39, 37),
     "core.mesh": (30, 28),
     "core.model": (81, 9),

@@ -1,4 +1,5 @@
-"""What joints, held directions and dampers ask of the relative motion of two bodies, or of one and the ground."""
+"""Constraints of joints, held directions and dampers on the relative motion of two bodies, or of a body and the
+ground."""
 
 from __future__ import annotations
 
@@ -27,7 +28,8 @@ class Constraint(ABC):
 
     @abstractmethod
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
-        """By how much it does not fit (r,), none of a damper; the rows are its rate where it is zero [length | rad]."""
+        """Constraint violation c(q) (r,), empty for dampers; its rate is that of the rows where it is zero [length |
+        rad]."""
 
     @property
     @abstractmethod

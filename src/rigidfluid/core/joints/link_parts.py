@@ -29,15 +29,15 @@ class LinkParts:
 
     @property
     def rows(self) -> int:
-        """How many."""
+        """Number of rows."""
         return sum(len(one.compliance) for one in self.constraints)
 
     def reading(
         self, placed: Sequence[PlacedPair], bodies: Pose, twist: Twist, time: float, force: FloatArray
     ) -> LinkReading:
-        """Where the bodies are there, and the markers of its constraints ``placed``, with the ``force`` of its rows
-        (r,)."""
-        held, torque = self._held(placed, force)
+        """Gap, angle, force and torque of the link at poses ``bodies``, with the markers of its constraints ``placed``
+        and the ``force`` of its rows (r,)."""
+        held, torque = self._constraint_wrench(placed, force)
         pull = nothing(bodies)
         for spring in self.springs:
             spring.add_wrench(bodies, pull)
@@ -53,7 +53,7 @@ class LinkParts:
             torque=torque + pull.torque[self.first],
         )
 
-    def _held(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _constraint_wrench(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and torque of the rows on the first body."""
         pulled, turned, start = np.zeros(1), np.zeros(1), 0
         for one, at in zip(self.constraints, placed, strict=True):
