@@ -22,7 +22,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "backends.dolfinx": (17, 4),
     "backends.scikit_fem": (2, 0),
     "bodies": (4, 2),
-    "checks": (37, 27),
     "core.contact": (62, 35),
     "core.mechanics": (39, 37),
     "core.mesh": (30, 28),

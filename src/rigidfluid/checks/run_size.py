@@ -23,11 +23,12 @@ _LATER_OVER_FIRST = 1.05
 """Cells of a mesh made from another one over those of a first mesh, most often."""
 
 _SHARE_OF_REST = 0.8
-"""Of the gap at rest in the least gap of an impact that a film brakes, beside that where it would end without the film;
-fitted to the sphere of ten Cate et al. and of the paper, and to the paper's ellipsoid."""
+"""Weight of the gap at rest in the geometric mean with the gap at which an impact would end without the film [1], for
+the least gap of an impact that a film brakes; fitted to the sphere of ten Cate et al. and of the paper, and to the
+paper's ellipsoid."""
 
 _HELD = 0.01
-"""Of a law's range: what comes nearer is stopped by the film."""
+"""Least gap, over a law's range, that the law rather than the film determines [1]."""
 
 _DIAMETERS_OF_A_MESH = 2.0
 """A body goes so far until its mesh is worn."""
@@ -47,19 +48,7 @@ class RunSize:
 
 
 def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
-    """The sizes that a run is expected to have; None where the backend does not know what it takes.
-
-    Parameters
-    ----------
-    parts : Parts
-        For a detector that needs no mesh.
-    system : System
-        Bodies, domain and backend.
-    mesh : MeshTable
-        Sizes of the cells.
-    time : TimeTable
-        The end.
-    """
+    """Sizes that a run is expected to have; None where the backend cannot predict its cost."""
     sizes = sizes_of(mesh, system.domain)
     start = _count(system, system.pose, sizes)
     start_cost = system.backend.solver_cost(*start)
@@ -78,9 +67,9 @@ def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> 
 
 
 def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
-    """The gap g_rest^0.8 g_impact^0.2 that rest and impacts leave, at least what the finest cells resolve [length].
+    """Least gap g_rest^0.8 g_impact^0.2 by rest and impacts, at least what the finest cells resolve [length].
 
-    Where a law holds the bodies in one of the two alone it is that gap, and where in none, that of the finest cells.
+    If a law holds the bodies in one of the two alone it is that gap, and if in none, that of the finest cells.
     """
     finest = sizes.cells_per_gap * sizes.smallest
     rest = _least([(met, narrowest_gaps(met)) for met in contacts])
