@@ -1,4 +1,4 @@
-"""How much of an impact's energy does a step get wrong that does not resolve it?"""
+"""Error of an impact's energy by steps that do not resolve it."""
 
 from __future__ import annotations
 

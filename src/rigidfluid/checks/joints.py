@@ -20,7 +20,7 @@ from rigidfluid.core.setup.parts import Parts
 QUESTION = "joints"
 
 _WELL_RESOLVED = 0.2
-"""Up to this frequency times step a spring's period errs by less than 0.2 %."""
+"""Greatest frequency times step at which a spring's period errs by less than 0.2 % [1]."""
 
 _SCAN = np.linspace(0.0, np.pi, 73)[1:]
 _BISECTIONS = 10
@@ -56,7 +56,8 @@ def _freedom_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
 
 
 def _spring_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
-    """Added mass makes springs slower, by the mean of all that is linked."""
+    """Compare the frequency of the stiffest spring with the step; added mass slows it, by the mean of all that is
+    linked."""
     frequency, step = linkage.frequency, scene.time.step
     carrier = np.arange(len(system.mass)) if system.mechanisms is None else system.mechanisms.carrier
     linked = linkage.linked[carrier]
@@ -77,7 +78,7 @@ def _spring_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
 
 
 def _clearance_finding(parts: Parts, system: System, joint: Joint, second: int) -> Finding:
-    """How far the first body can turn either way before it touches the second."""
+    """Report how far the first body can turn either way before it touches the second."""
     names = system.surfaces[joint.first], system.surfaces[second]
     gap = partial(_gap, parts.exact_detector, system, joint, second)
     up, down = _touching_angle(gap, 1.0), _touching_angle(gap, -1.0)
@@ -97,7 +98,7 @@ def _clearance_finding(parts: Parts, system: System, joint: Joint, second: int) 
 
 
 def _drive_angles(scene: Scene, joint: Joint) -> tuple[float, float]:
-    """Least and greatest angle of its drive; 0 without one."""
+    """Least and greatest angle of a joint's drive; 0 without one."""
     if joint.drive is None:
         return 0.0, 0.0
     angles = [joint.drive(time)[0] for time in np.linspace(0.0, scene.time.end, _STROKE_SAMPLES)]
@@ -105,7 +106,7 @@ def _drive_angles(scene: Scene, joint: Joint) -> tuple[float, float]:
 
 
 def _touching_angle(gap: Callable[[float], float], sign: float) -> float:
-    """The angle at which they do either way, infinite where they do not within half a turn [rad]."""
+    """Angle at which the two bodies touch either way, infinite where they do not within half a turn [rad]."""
     before = 0.0
     for angle in _SCAN:
         if gap(sign * angle) <= 0.0:
@@ -121,7 +122,7 @@ def _touching_angle(gap: Callable[[float], float], sign: float) -> float:
 
 
 def _gap(detector: type[Detector], system: System, joint: Joint, second: int, angle: float) -> float:
-    """Between the two where the first has turned by an ``angle`` [length]."""
+    """Gap between the two bodies where the first has turned by an ``angle`` [length]."""
     pair = [joint.first, second]
     position, orientation = system.pose.position[pair], system.pose.orientation[pair]
     turn = _turn(joint, angle)

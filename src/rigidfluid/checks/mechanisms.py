@@ -23,7 +23,7 @@ _OFF_GRID = 1e-6
 
 
 class _Stroke(NamedTuple):
-    """One mechanism of a scene, by its name, and the number of its motion."""
+    """Mechanism of a scene, by its name, and the number of its motion."""
 
     name: str
     mechanism: Mechanism
@@ -98,7 +98,7 @@ def _wall_findings(stroke: _Stroke, end: float, system: System, carried: Mechani
 
 
 def _corner_findings(stroke: _Stroke, step: float, end: float) -> Iterator[Finding]:
-    """Steps end at corners; those that no step meets are approached by halved ones."""
+    """Warn of corners at which no step ends by itself, so that steps are halved towards them."""
     times = list(corners(stroke.mechanism, min(end, stroke.mechanism.period or end)))
     off = [time for time in times if abs(time / step - round(time / step)) > _OFF_GRID]
     if not off:

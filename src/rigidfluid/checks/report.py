@@ -1,4 +1,4 @@
-"""All questions, asked of one scene before any heavy work."""
+"""Report of all questions, asked of one scene before any heavy work."""
 
 from __future__ import annotations
 
@@ -67,11 +67,11 @@ class Report:
     findings: tuple[Finding, ...]
 
     def count(self, grade: str) -> int:
-        """How many findings have this grade."""
+        """Number of findings of this grade."""
         return sum(finding.grade == grade for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it, in values that JSON can hold."""
+        """Values of the report that JSON can hold."""
         return {
             "scene": self.scene,
             **{f"{grade}s": self.count(grade) for grade in GRADES},

@@ -1,6 +1,6 @@
-"""How a law answers along the gap: its largest force, where it holds a weight, how much it stores.
+"""Response of a law along the gap: its largest force, where it holds a weight, how much it stores.
 
-Everything is asked of the law itself, on contacts made up for the purpose, so that it holds for any law.
+The law itself is evaluated, on contacts made up for the purpose, so that this holds for any law.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How large the meshes of a run are going to be, at the start and at the most."""
+"""Sizes of the meshes expected in a run, at the start and at the most."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _HELD = 0.01
 """Least gap, over a law's range, that the law rather than the film determines [1]."""
 
 _DIAMETERS_OF_A_MESH = 2.0
-"""A body goes so far until its mesh is worn."""
+"""Distance that a body goes until its mesh is worn, over its diameter [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
 
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:
-    """How many meshes follow the first: one for each two diameters of a body's way, of the body with the most, and one
+    """Number of meshes after the first: one for each two diameters of a body's way, of the body with the most, and one
     for each time that a gap halves. A free body that is not settled goes on at its expected speed, through the domain
     at the most."""
     diameter = 2.0 * np.array([equal_volume_radius(body) for body in system.bodies])

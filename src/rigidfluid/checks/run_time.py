@@ -1,4 +1,4 @@
-"""How long does the run take?"""
+"""Time that a run is expected to take."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.setup.boundary import surfaces_of
 
 _MOST_BODIES = 60
-"""More bodies stay where they start: they are not followed one by one."""
+"""Greatest number of bodies that are followed one by one; with more, all stay where they start."""
 
 _SLOW = "brute_force"
 """A detector that takes minutes for the gaps between shapes of facets and walls of any shape."""

@@ -67,5 +67,5 @@ def _finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding
 
 
 def _deepest(met: DesignContacts) -> float:
-    """How far into overlap a law is asked: no body is gone through [length]."""
+    """Greatest overlap at which a law is evaluated [length]: no body is passed through."""
     return min(met.law.range, min(body.bounding_radius for body in met.system.bodies))

@@ -1,4 +1,4 @@
-"""How long does a contact last, and how many substeps does it take?"""
+"""Duration of contacts, and the substeps that resolve it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ QUESTION = "step"
 _STABLE = 2.0
 """Verlet's scheme explodes above this substep times frequency."""
 ACCURATE = 0.5
-"""Up to this step times frequency a contact is resolved."""
+"""Greatest frequency times step at which a contact is resolved [1]."""
 
 
 def step_findings(met: DesignContacts, time: TimeTable) -> Iterator[Finding]:
@@ -52,7 +52,7 @@ def _finding(met: DesignContacts, row: int, frequency: float, stiffness: float, 
 
 
 def _fixed_finding(names: tuple[str, str], text: str, found: dict[str, float], turn: float, substeps: int) -> Finding:
-    """``turn`` is ω times the step."""
+    """Compare a fixed substep with the contact's frequency; ``turn`` is ω times the step."""
     each = turn / substeps
     found |= {"substeps": substeps, "turn_per_substep": each}
     text += f" of {substeps} substeps; frequency times substep is {figure(each)}"

@@ -24,7 +24,7 @@ class Constraint(ABC):
 
     @abstractmethod
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
-        """E (r, d) and A (r, k) where the markers are there."""
+        """Matrices E (r, d) and A (r, k) with the markers at ``at``."""
 
     @abstractmethod
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
@@ -34,10 +34,10 @@ class Constraint(ABC):
     @property
     @abstractmethod
     def compliance(self) -> FloatArray:
-        """(r,), zero for rigid rows, 1/damping for those of dampers."""
+        """Compliance of each row (r,), zero for rigid rows, 1/damping for those of dampers."""
 
     def rate(self, time: float) -> FloatArray:
-        """(r,) [length/time | rad/time]."""
+        """Prescribed rate of each row (r,) [length/time | rad/time]."""
         return np.zeros_like(self.compliance)
 
     def add_rows(self, at: PlacedPair, rows: FloatArray) -> None:

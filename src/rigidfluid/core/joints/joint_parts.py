@@ -1,4 +1,4 @@
-"""From joints and ground links to what they ask of motions, and to their springs."""
+"""Constraints and springs of joints and ground links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How motions go that joints, held directions, springs and dampers link."""
+"""Motion of bodies linked by joints, held directions, springs and dampers."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PushedDynamics(MotionDynamics, Protocol):
     """Motions that take impulses."""
 
     def begin(self, ahead: float) -> None:
-        """Have, until the first drift, the twist after a corner that may be at the start: rates are read so much later
+        """Use, until the first drift, the twist after a corner that may be at the start: rates are read ``ahead`` later
         [time]."""
 
     def push(self, impulse: FloatArray) -> None:

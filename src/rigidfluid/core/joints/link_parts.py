@@ -1,4 +1,4 @@
-"""All that one joint or ground link is made of, and what can be read from it in a state."""
+"""Constraints and springs of one joint or ground link, and its reading in a state."""
 
 from __future__ import annotations
 
@@ -63,6 +63,6 @@ class LinkParts:
         return pulled, turned
 
     def _turn(self, hinge: PlacedPair, twist: Twist) -> tuple[float, float]:
-        """Angle and rate of the first seen from the second."""
+        """Angle and rate of the first body seen from the second."""
         spins = [0.0 if body is None else twist.angular_velocity[body] for body in (self.first, self.second)]
         return hinge.angle, float(hinge.spin_axis @ (spins[0] - spins[1]))

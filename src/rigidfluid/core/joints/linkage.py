@@ -247,7 +247,7 @@ class JointLinkage:
     def _link_clusters(
         self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]
     ) -> tuple[BoolArray, IntArray]:
-        """Which motions have links, and the lowest number of those that each is linked with."""
+        """Mask (N,) of the motions that have links, and the lowest number (N,) of those that each is linked with."""
         from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
 
         count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)

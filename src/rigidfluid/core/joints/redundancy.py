@@ -26,7 +26,7 @@ def refuse_void(constraints: Sequence[Constraint], carrier: IntArray, controlled
 
 
 def motion_of(body: int | None, carrier: IntArray, controlled: BoolArray) -> int | None:
-    """The free motion that carries a body; None for the ground, and for what moves as it is told."""
+    """Number of the free motion that carries a body; None for the ground and for prescribed motions."""
     return None if body is None or controlled[carrier[body]] else int(carrier[body])
 
 

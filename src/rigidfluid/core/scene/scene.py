@@ -319,7 +319,7 @@ _RESTITUTION_STOKES = Field(
 
 
 class ContactTable(_OpenTable):
-    """How contacts are found and stepped through, and a force law for all of them; `[[interaction]]` has more laws."""
+    """Detection and time stepping of contacts, and a force law for all of them; `[[interaction]]` has more laws."""
 
     detector: str = Field(
         default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
@@ -384,7 +384,7 @@ class RefineTable(_Table):
 
 
 class MeshTable(_Table):
-    """How fine the mesh is, and when it is made anew."""
+    """Resolution of the mesh, and when it is made again."""
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: SizeBody = Field(
@@ -422,7 +422,7 @@ class MeshTable(_Table):
 
 
 class TimeTable(_Table):
-    """How far and how fast time goes."""
+    """End, steps and tolerance of the simulation."""
 
     end: Positive = Field(description="Time at which the simulation ends [time]")
     step: Positive = Field(description="Size of a step [time]")

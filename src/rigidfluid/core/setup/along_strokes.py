@@ -15,7 +15,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 SAMPLES = 129
-"""A stroke is looked at so often, and at its corners."""
+"""Number of evenly spaced samples of a stroke, besides its corners."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def times_along(mechanism: Mechanism, end: float) -> FloatArray:
 
 
 def corners(moving: Mechanism | Stroke, end: float) -> Iterator[float]:
-    """The times at which its rate jumps, until the ``end``; no more than there are samples."""
+    """Times at which the rate of a mechanism or stroke jumps, until the ``end``; no more than there are samples."""
     time = moving.next_corner(0.0)
     for _ in range(SAMPLES):
         if time > end:

@@ -47,7 +47,7 @@ class SampledInflow:
 
 
 def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
-    """All velocities that the scene prescribes on surfaces that are not walls."""
+    """Velocities that the scene prescribes on surfaces that are not walls."""
     inflows = []
     for piece in domain.pieces:
         table = boundary_table(scene, piece.name)

@@ -133,7 +133,7 @@ def _peak_of_flux(piece: Piece, profile: Profile | None, flux: float | str, at: 
 
 
 def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:
-    """∏ 4 s(1 - s) over a surface's own coordinates s from 0 to 1, (N,), at ``points`` (N, d)."""
+    """Product ∏ 4 s(1 - s) over a surface's own coordinates s from 0 to 1, (N,), at ``points`` (N, d)."""
     s = coordinates(points)
     return np.asarray(np.prod(4 * s * (1 - s), axis=1))
 

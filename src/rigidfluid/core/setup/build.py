@@ -148,8 +148,8 @@ def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Tw
 
 
 def _sum_linked(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
-    """For each body the sum of ``rows`` (n, …) over all that a motion or joints let move with it: at most that is what
-    it meets something with."""
+    """Sum, for each body, of ``rows`` (n, …) over all bodies that a motion or joints link with it: an upper bound of
+    what it hits something with."""
     if carried is None and linkage is None:
         return rows
     motion = np.arange(len(rows)) if carried is None else carried.carrier

@@ -15,7 +15,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 LONGEST, DEEPEST = 1000, 200
-"""A formula has at most so many characters, and operations within one another."""
+"""Greatest number of characters of a formula, and of operations nested within one another."""
 
 _OPERATORS: dict[type[ast.AST], Callable[..., FloatArray]] = {
     ast.Add: np.add,

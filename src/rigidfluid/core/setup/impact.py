@@ -1,4 +1,5 @@
-"""How fast bodies are expected to hit: what gravity can give them on their way, and what the fluid lets them keep."""
+"""Speeds at which bodies are expected to hit: what gravity can give them on their way, and what the fluid lets them
+keep."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def check_joints(scene: Scene) -> None:
 
 
 def held_directions(body: BodyTable, dimension: int) -> BoolArray:
-    """In which directions (d+k,) a body is held by its key `free`."""
+    """Directions (d+k,) in which the key `free` of a body's table holds it."""
     names = DIRECTIONS[dimension]
     return np.array([body.free is not None and name not in body.free for name in names])
 

@@ -67,7 +67,7 @@ def _refuse_components(mechanism: Mechanism, at: str) -> None:
 
 
 def _refuse_placement(mechanism: Mechanism, at: str) -> None:
-    """So are places of a wrong shape, and a rate of what is said not to change."""
+    """Raise PluginError for a placement of a wrong shape, and for a rate of components that are not driven."""
     count, d = len(mechanism.components), mechanism.dimension
     k, q = (1, 1) if d == 2 else (3, 4)
     pose, rate = mechanism.placement(0.0), mechanism.rate(0.0)

@@ -192,7 +192,8 @@ def _refuse_detector(detector: type[Detector], mesh: bool) -> None:
 
 
 def _refuse_contact_keys(table: ContactTable, detector: type[Detector], laws: Sequence[type[ForceLaw]]) -> None:
-    """`[contact]` holds the keys of its detector, and of its law if it names one, which is the first then."""
+    """Refuse keys of `[contact]` that neither its detector nor its law reads; the law is the first of ``laws``, if the
+    table names one."""
     readers: list[type[Part]] = [detector, laws[0]] if table.law else [detector]
     hint = "" if table.law else "Name the law that reads it: `law = …`."
     _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)

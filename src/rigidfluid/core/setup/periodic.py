@@ -1,4 +1,4 @@
-"""Which surfaces of the domain are periodic, and with which others."""
+"""Periodic surfaces of the domain, and their opposite ones."""
 
 from __future__ import annotations
 

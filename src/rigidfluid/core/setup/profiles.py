@@ -1,4 +1,4 @@
-"""How a prescribed velocity is spread over a flat piece of the boundary: factors from 0 on its edges to 1."""
+"""Profiles of a prescribed velocity over a flat piece of the boundary: factors from 0 on its edges to 1."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
 _PANELS = 8
-"""A side is integrated in so many panels of three points."""
+"""Number of panels, of three points each, in which a side is integrated."""
 
 _TERMS = 200
 """Number of terms of a duct's series, which then misses its walls by 1e-6 of the peak."""
@@ -30,7 +30,7 @@ class Rectangle:
     along: FloatArray
 
     def coordinates(self, points: FloatArray) -> FloatArray:
-        """From 0 to 1 along each side, (N, d-1), of ``points`` (N, d)."""
+        """Coordinates of ``points`` (N, d) along each side, from 0 to 1, (N, d-1)."""
         return np.asarray(0.5 + (points - self.centre) @ self.along.T / self.sides)
 
     def points(self, coordinates: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SAMPLES = 400
 _FEWEST_STEPS = 8
-"""Motion that does not repeat is looked at for so many steps at least."""
+"""Least number of steps for which motion that does not repeat is sampled."""
 
 
 def refuse_quick_mechanisms(mechanisms: Mapping[str, Mechanism], time: TimeTable) -> None:
@@ -48,7 +48,8 @@ def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
 
 
 def _refuse(what: str, moving: Mechanism | Stroke, values: FloatArray, rates: FloatArray, time: TimeTable) -> None:
-    """Steps end at corners, so that what has them needs only that the shortest step is short enough."""
+    """Raise SceneError if a step, or with corners, at which steps end, the shortest step, is too long for the motion's
+    way."""
     way, speed = np.ptp(values, axis=0), np.abs(rates).max(axis=0)
     least = float(np.min(way[speed > 0.0] / speed[speed > 0.0], initial=np.inf))
     key = "shortest" if np.isfinite(moving.next_corner(0.0)) else "step"

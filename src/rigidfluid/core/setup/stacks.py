@@ -44,7 +44,7 @@ def _overlapping(direction: FloatArray, position: FloatArray, radius: FloatArray
 
 
 def _side_by_side(direction: FloatArray, radius: FloatArray, box: FloatArray) -> float:
-    """How many of the largest bodies fit side by side across ``direction`` (d,), at least one."""
+    """Number of the largest bodies that fit side by side across ``direction`` (d,), at least one."""
     across = np.prod(box) * np.sum(np.abs(direction) / box)
     return max(float(across // (2.0 * radius.max()) ** (len(box) - 1)), 1.0)
 

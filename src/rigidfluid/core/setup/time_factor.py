@@ -1,4 +1,4 @@
-"""How prescribed values change as a whole in time: a table, and a smooth rise from zero."""
+"""Common factor of prescribed values in time: a table, and a smooth rise from zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rigidfluid.errors import SceneError
 Rows = tuple[tuple[float, float], ...]
 
 MOST_ROWS = 100_000
-"""A table has at most so many, since it is kept with the scene in every checkpoint."""
+"""Greatest number of rows of a table: it is kept with the scene in every checkpoint."""
 
 
 @dataclass(frozen=True)
