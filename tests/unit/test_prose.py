@@ -18,14 +18,10 @@ PUBLIC_ROOMS = {"testing", "taylor_hood"}
 
 # Names and sentences without a subject, and sections on private names, left in each room. They only fall.
 LEFT: dict[str, tuple[int, int]] = {
-    "checks": (37, 27),
     "core.contact": (62, 35),
-    "core.joints": (29, 9),
     "core.mechanics": (38, 37),
     "core.model": (1, 0),
     "core.run": (1, 0),
-    "core.scene": (8, 5),
-    "core.setup": (39, 35),
 }
 
 

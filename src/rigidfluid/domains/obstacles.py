@@ -10,7 +10,7 @@ from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.setup.detector_choice import exact_detector
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, tables_by_name
 from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.domains.placed import PlacedBody
 from rigidfluid.errors import SceneError
@@ -28,7 +28,7 @@ def placed_obstacles(tables: Sequence[NestedBodyTable], dimension: int) -> dict[
     """
     return {
         name: PlacedBody(build_shape(table, f"{AT}.{number}", dimension), initial_pose([table], dimension))
-        for number, (name, table) in enumerate(by_name(tables, AT).items())
+        for number, (name, table) in enumerate(tables_by_name(tables, AT).items())
     }
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.reports.curves import add_legend, draw_bodies, widen
 from rigidfluid.reports.paths import draw_paths
 from rigidfluid.reports.results import Results
@@ -156,7 +156,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
     if not results.system.backend.needs_mesh or fluid.viscosity is None or fluid.density is None:
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
-    solid = np.array([body.density for body in with_components(results.scene)[0].body])
+    solid = np.array([body.density for body in append_components(results.scene)[0].body])
     per_density = 2.0 * radius * speed / fluid.viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 

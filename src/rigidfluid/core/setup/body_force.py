@@ -16,7 +16,7 @@ _KEY = "fluid.force"
 
 def body_force(scene: Scene) -> VectorExpression | None:
     """Force (N, d) at a time and points (N, d) [force/volume], None without any; raises SceneError for no formula."""
-    return None if scene.fluid.force is None else VectorExpression.of(scene.fluid.force, _KEY)
+    return None if scene.fluid.force is None else VectorExpression.parse(scene.fluid.force, _KEY)
 
 
 def check_body_force(scene: Scene, backend: type[FluidBackend]) -> None:

@@ -1,4 +1,5 @@
-"""What one key alone cannot show to be wrong: lengths of vectors, doubled names, keys that contradict each other."""
+"""Refuses scenes whose keys are valid one by one but not together: lengths of vectors, doubled names,
+contradictions."""
 
 from __future__ import annotations
 
@@ -27,18 +28,7 @@ MOST_STEPS = 10**9
 
 
 def check_tables(scene: Scene) -> None:
-    """Refuse what contradicts itself in the tables alone.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its single keys are valid.
-
-    Raises
-    ------
-    SceneError
-        At the first contradiction.
-    """
+    """Refuse, with SceneError, tables that contradict themselves or each other."""
     _check_vectors(scene)
     if not (scene.body or scene.mechanism):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
@@ -54,23 +44,8 @@ def check_tables(scene: Scene) -> None:
 
 
 def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
-    """Refuse a scene that lacks what its backend needs, or prescribes a flow that cannot be.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables are checked.
-    backend : type
-        The class that its fluid table names.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        If density, viscosity or the mesh is missing, or if more flows in than out; without a mesh, if there is a
-        tolerance; if the flow at the start is not for this backend.
-    """
+    """Refuse, with SceneError, a scene that lacks the density, viscosity or mesh that its backend needs, has a
+    tolerance for a backend without a mesh, or prescribes an impossible flow."""
     check_initial_flow(scene, backend, domain)
     check_body_force(scene, backend)
     check_periodic(scene, backend, domain)
