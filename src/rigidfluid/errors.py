@@ -22,21 +22,22 @@ class RigidfluidError(Exception):
     subject : str
         What the error is about: a field (``body.0.density``), a body, a pair or a time.
     found : object
-        The value found there.
-    allowed : str
-        What would have been accepted.
+        The value found there; or, without ``allowed``, a sentence that says what is wrong.
+    allowed : str, optional
+        What would have been accepted; None where that is no value.
     remedy : str
         What the user can do about it.
     """
 
-    def __init__(self, subject: str, found: object, allowed: str, remedy: str) -> None:
+    def __init__(self, subject: str, found: object, allowed: str | None, remedy: str) -> None:
         self.subject = subject
         self.found = found
         self.allowed = allowed
         self.remedy = remedy
-        super().__init__(f"{subject}: found {found}; allowed is {allowed}. {remedy}")
+        statement = found if allowed is None else f"found {found}; allowed is {allowed}"
+        super().__init__(f"{subject}: {statement}. {remedy}")
 
-    def __reduce__(self) -> tuple[type[RigidfluidError], tuple[str, str, str, str]]:
+    def __reduce__(self) -> tuple[type[RigidfluidError], tuple[str, str, str | None, str]]:
         """Pickle the error by its four parts, so that it can pass between processes."""
         return type(self), (self.subject, str(self.found), self.allowed, self.remedy)
 

@@ -222,8 +222,8 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
         "boundary.0.over_time.2: found time 1 after 1",
         "Sort",
     ),
-    "flux and velocity": ([LEFT | {"flux": 1.0}, OPEN], "boundary.0.flux: found it beside `velocity`", "Keep one"),
-    "flux on a wall": ([{"on": "left", "type": "wall", "flux": 1.0}], "boundary.0.flux: found it on a 'wall'", "Keep"),
+    "flux and velocity": ([LEFT | {"flux": 1.0}, OPEN], "0.flux: flux takes the place of velocity", "Keep one"),
+    "flux on a wall": ([{"on": "left", "type": "wall", "flux": 1.0}], "0.flux: flux is valid only with type", "Keep"),
     "flux in space": ([FLUX | {"flux": "y"}, OPEN], "boundary.0.flux: found an unknown name: 'y'", "t, pi"),
     "unbalanced flux": ([FLUX, FLUX | {"on": "right", "flux": "-t"}], "a net inflow of 1 [", "pressure"),
     "truth": ([LEFT | {"velocity": [True, 0.0]}, OPEN], "boundary.0.velocity.0: found True", "Velocity"),
@@ -235,7 +235,7 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
         "boundary.0.over_time.file: found 'nowhere.csv'",
         "Correct",
     ),
-    "ramp on a wall": ([{"on": "left", "type": "wall", "ramp": 1.0}], "boundary.0.ramp: found it on a 'wall'", "out"),
+    "ramp on a wall": ([{"on": "left", "type": "wall", "ramp": 1.0}], "0.ramp: ramp is valid only with", "out"),
     "expression on a wall": (
         [{"on": "top", "type": "wall", "velocity": ["sin(t)", 0.0]}],
         "boundary.0.velocity: found ['sin(t)', 0.0]",
@@ -269,7 +269,7 @@ def test_what_cannot_be_is_refused(boundary: list[dict[str, Any]], found: str, r
 
 def test_a_profile_that_the_surface_has_not() -> None:
     couette = {"on": "left", **inflow(velocity=[2.0, 0.0, 0.0], profile="couette")}
-    with pytest.raises(SceneError, match=r"boundary\.0\.profile: found 'couette' on 'left'.*segment, in 2D"):
+    with pytest.raises(SceneError, match=r"boundary\.0\.profile: 'couette' needs a surface that is a segment, in 2D, unlike 'left'"):
         scene_from_dict(tables([couette, OPEN], dimension=3))
 
 

@@ -80,13 +80,13 @@ REFUSED = {
     ),
     "a spring in a rod": (
         tables(*PAIR, joint=[{"type": "rod", "between": ["one", "two"], "stiffness": 1.0}]),
-        "joint.0.stiffness: found it in a rod",
+        "joint.0.stiffness: a rod has no `stiffness`; only a hinge does",
         "type = 'hinge'",
     ),
     "a rest angle alone": (tables(*PAIR, joint=[hinge("one", rest_angle=1.0)]), "joint.0.rest_angle", "`stiffness`"),
     "a drive and a damper": (
         tables(*PAIR, joint=[hinge("one", drive=STROKE, damping=1.0)]),
-        "joint.0.drive: found it beside `damping`",
+        "joint.0.drive: a hinge whose angle is driven does not feel a `damping`",
         "Remove `drive`",
     ),
     "a drive without rows": (tables(*PAIR, joint=[hinge("one", drive={})]), "joint.0.drive", "one of them"),

@@ -134,17 +134,17 @@ def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
 
 def test_a_body_that_comes_to_a_periodic_surface_ends_the_run_by_name() -> None:
     body = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [1.7, 0.6], "name": "swimmer"}
-    with pytest.raises(StepError, match=r"body 'swimmer' .*reaches the periodic surface 'right'"):
+    with pytest.raises(StepError, match=r"body 'swimmer' .*reaches the periodic 'right'"):
         run(channel(body=[body]))
 
 
 @pytest.mark.parametrize(
     ("boundary", "message"),
     [
-        ([ENDS[0]], r"boundary.0.type: found 'periodic' on 'left' alone; .* Set type = 'periodic' on 'right' too"),
-        ([ENDS[0], ENDS[1] | {"pressure_drop": 1.0}], r"boundary.0.pressure_drop: found it on 'left' and on 'right'"),
-        ([{"on": "top", "type": "slip", "pressure_drop": 1.0}], r"pressure_drop: found it on a 'slip' surface"),
-        ([ENDS[0] | {"velocity": [1.0, 0.0]}, ENDS[1]], r"boundary.0.velocity: found it on a 'periodic' surface"),
+        ([ENDS[0]], r"boundary.0.type: 'left' is periodic and the surface opposite to it is not. Set type = 'periodic' on 'right' too"),
+        ([ENDS[0], ENDS[1] | {"pressure_drop": 1.0}], r"boundary.0.pressure_drop: only one of 'left' and 'right'"),
+        ([{"on": "top", "type": "slip", "pressure_drop": 1.0}], r"is valid only with type = 'periodic', not 'slip'"),
+        ([ENDS[0] | {"velocity": [1.0, 0.0]}, ENDS[1]], r"0.velocity: velocity is valid only with type = 'velocity'"),
     ],
 )
 def test_what_periodic_surfaces_cannot_be_is_refused_by_name(boundary: list[dict[str, Any]], message: str) -> None:
@@ -154,7 +154,7 @@ def test_what_periodic_surfaces_cannot_be_is_refused_by_name(boundary: list[dict
 
 def test_a_surface_without_an_opposite_one_is_refused() -> None:
     bumps = [{"on": "bottom_bump", "type": "periodic"}]
-    with pytest.raises(SceneError, match=r"'periodic' on 'bottom_bump', which has no equal surface opposite to it"):
+    with pytest.raises(SceneError, match=r"an equal one opposite can be periodic, and 'bottom_bump' has none"):
         channel(bumps, domain={"type": "stenosis", "length": 6.0, "width": 3.0, "radius": 0.8})
 
 

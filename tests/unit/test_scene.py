@@ -166,7 +166,7 @@ BAD = {
     "prescribed and moving": (
         {"body.0.prescribed": {"velocity": [1, 0]}, "body.0.velocity": [1, 0]},
         "body.0.velocity",
-        "inside",
+        "has its velocities there",
         "Move it",
     ),
     "amplitude alone": (

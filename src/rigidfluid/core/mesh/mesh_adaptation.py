@@ -201,7 +201,7 @@ class MeshUpdater:
                 body = int(np.argmax(reaches))
                 raise StepRejected(
                     f"body {s.surfaces[body]!r}",
-                    f"it at {pose.position[body].tolist()}, where it reaches the periodic surface {piece.name!r}",
+                    f"its centre at {pose.position[body].tolist()}, where it reaches the periodic {piece.name!r}",
                     f"bodies that stay away from it by {margin:g}, the mesh.size_body, and their bounding radius",
                     "Lengthen the domain, end the run before, or hold the body.",
                 )
@@ -224,7 +224,7 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
         lower, upper = system.window.interval(pose)
         raise StepRejected(
             f"body {system.surfaces[left]!r}",
-            f"it at {pose.position[left].tolist()}, where it leaves the window",
+            f"its centre at {pose.position[left].tolist()}, where it leaves the window",
             f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
         )

@@ -104,30 +104,33 @@ def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
     if table.on not in allowed:
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
     if table.pressure_drop is not None and table.type != "periodic":
-        found = f"it on a {table.type!r} surface"
-        raise SceneError(f"{at}.pressure_drop", found, "it with type = 'periodic'", "Leave it out.")
+        statement = f"pressure_drop is valid only with type = 'periodic', not {table.type!r}"
+        raise SceneError(f"{at}.pressure_drop", statement, None, "Leave it out.")
     for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
         given = getattr(table, key) is not None
         if given and table.type not in types:
-            raise SceneError(f"{at}.{key}", f"it on a {table.type!r} surface", f"it with type = {key!r}", "Keep one.")
+            statement = f"{key} is valid only with type = {key!r}, not {table.type!r}"
+            raise SceneError(f"{at}.{key}", statement, None, "Keep one.")
         if table.type == key and not given and table.flux is None:
             raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
     if table.flux is not None and (table.type != "velocity" or table.velocity is not None):
-        found = "it beside `velocity`" if table.velocity is not None else f"it on a {table.type!r} surface"
-        raise SceneError(f"{at}.flux", found, "one of both, with type = 'velocity'", "Keep one.")
+        statement = f"flux is valid only with type = 'velocity', not {table.type!r}"
+        if table.velocity is not None:
+            statement = "flux takes the place of velocity, and both are given"
+        raise SceneError(f"{at}.flux", statement, None, "Keep one.")
     if table.profile != "uniform" and table.type != "velocity":
-        found = f"{table.profile!r} on a {table.type!r} surface"
-        raise SceneError(f"{at}.profile", found, "it with type = 'velocity'", "Leave it out.")
+        statement = f"a profile is valid only with type = 'velocity', not {table.type!r}"
+        raise SceneError(f"{at}.profile", statement, None, "Leave it out.")
     for key in ("over_time", "ramp"):
         if getattr(table, key) is not None and table.type not in ("velocity", "pressure"):
-            found = f"it on a {table.type!r} surface"
-            raise SceneError(f"{at}.{key}", found, "it with type = 'velocity' or 'pressure'", "Leave it out.")
+            statement = f"{key} is valid only with type = 'velocity' or 'pressure', not {table.type!r}"
+            raise SceneError(f"{at}.{key}", statement, None, "Leave it out.")
     if table.angular_velocity is not None and table.type != "wall":
-        found = f"it on a {table.type!r} surface"
+        statement = f"angular_velocity is valid only with type = 'wall', not {table.type!r}"
         remedy = "Give the velocity as expressions of x, y, z instead."
-        raise SceneError(f"{at}.angular_velocity", found, "it with type = 'wall'", remedy)
+        raise SceneError(f"{at}.angular_velocity", statement, None, remedy)
     if table.centre is not None and table.angular_velocity is None:
-        raise SceneError(f"{at}.centre", list(table.centre), "it with `angular_velocity`", "Leave it out.")
+        raise SceneError(f"{at}.centre", "a centre is read only with an angular_velocity", None, "Leave it out.")
     if table.type == "wall" and any(isinstance(component, str) for component in table.velocity or ()):
         remedy = "Give numbers, or set type = 'velocity'."
         raise SceneError(

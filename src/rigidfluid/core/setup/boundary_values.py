@@ -124,8 +124,8 @@ def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
 def _peak_of_flux(piece: Piece, profile: Profile | None, flux: float | str, at: str) -> PeakOfFlux:
     shape, plane = section(piece), piece.shape.plane
     if shape is None or plane is None:
-        allowed = "it on a surface that is a segment, a rectangle across an axis or a disk"
-        raise SceneError(at, f"it on {piece.name!r}", allowed, "Give `velocity` instead.")
+        statement = f"a flux needs a segment, a rectangle across an axis or a disk, and {piece.name!r} is none of them"
+        raise SceneError(at, statement, None, "Give `velocity` instead.")
     points, weights = shape.quadrature()
     whole = float(weights.sum() if profile is None else weights @ profile(points))
     # With no coordinates the only names are t and pi.
@@ -160,4 +160,4 @@ def _profile(piece: Piece, name: str, at: str) -> Profile | None:
     }[name]
     developed = name == "parabolic" and shape is not None
     remedy = "Set it to 'poiseuille'." if developed else "Give `velocity` as expressions of x, y, z instead."
-    raise SceneError(at, f"{name!r} on {piece.name!r}", f"it on a surface {needed}", remedy)
+    raise SceneError(at, f"{name!r} needs a surface {needed}, unlike {piece.name!r}", None, remedy)

@@ -86,7 +86,7 @@ def _law(table: LawTable, selected: Selected[ForceLaw], loads: Loads) -> ForceLa
         return Restitution(law, table.restitution or 1.0, _film_loss(table, selected.part, own))
     except SceneError as error:  # a law does not know its table
         subject = f"{table.at}.{error.subject.removeprefix('contact.')}"
-        allowed = error.allowed.replace("contact.range", f"{table.at}.range")
+        allowed = (error.allowed or "").replace("contact.range", f"{table.at}.range") or None
         raise SceneError(subject, error.found, allowed, error.remedy) from None
 
 

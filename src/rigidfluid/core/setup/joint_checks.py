@@ -74,7 +74,8 @@ def _check_spring(body: BodyTable, dimension: int, at: str) -> None:
     if not any(any(values) for values in _strengths(body.spring)):
         raise SceneError(f"{at}.spring", "no stiffness and no damping above 0", "one of them", "Add it.")
     if body.spring.rest is not None and not any(body.spring.stiffness or ()):
-        raise SceneError(f"{at}.spring.rest", "it without `stiffness`", "`rest` beside `stiffness`", "Remove it.")
+        statement = "a spring has a rest position only if it has a stiffness"
+        raise SceneError(f"{at}.spring.rest", statement, None, "Remove it.")
 
 
 def _strengths(spring: SpringTable) -> list[tuple[float, ...]]:
@@ -86,7 +87,8 @@ def _refuse_beside(body: BodyTable, key: str, at: str) -> None:
     """Whose motion is given cannot be held or pulled."""
     for other in ("fixed", "prescribed"):
         if getattr(body, other):
-            raise SceneError(f"{at}.{key}", f"it beside {other!r}", "one of them", f"Remove `{key}` or `{other}`.")
+            statement = f"a body of which {other!r} is given cannot have {key!r} as well"
+            raise SceneError(f"{at}.{key}", statement, None, f"Remove `{key}` or `{other}`.")
 
 
 def _check_ends(scene: Scene, joint: JointTable, at: str) -> None:
@@ -104,7 +106,8 @@ def _check_ends(scene: Scene, joint: JointTable, at: str) -> None:
 def _check_rod(joint: JointTable, dimension: int, at: str) -> None:
     for key in ("axis", "stiffness", "rest_angle", "damping", "drive"):
         if getattr(joint, key) is not None:
-            raise SceneError(f"{at}.{key}", "it in a rod", "it in a hinge", f"Set type = 'hinge', or remove `{key}`.")
+            remedy = f"Set type = 'hinge', or remove `{key}`."
+            raise SceneError(f"{at}.{key}", f"a rod has no `{key}`; only a hinge does", None, remedy)
 
 
 def _check_hinge(joint: JointTable, dimension: int, at: str) -> None:
@@ -117,12 +120,13 @@ def _check_hinge(joint: JointTable, dimension: int, at: str) -> None:
     if joint.axis is not None and not any(joint.axis):
         raise SceneError(f"{at}.axis", list(joint.axis), "a vector of length above 0", "Give its direction.")
     if joint.rest_angle is not None and joint.stiffness is None:
-        raise SceneError(f"{at}.rest_angle", "it without `stiffness`", "both", "Add `stiffness`, or remove it.")
+        statement = "a hinge has a rest angle only if it has a stiffness"
+        raise SceneError(f"{at}.rest_angle", statement, None, "Add `stiffness`, or remove it.")
     _refuse_in_drive(joint, ("stiffness", "damping"), at)
 
 
 def _refuse_in_drive(joint: JointTable, keys: Sequence[str], at: str) -> None:
     for key in keys:
         if joint.drive is not None and getattr(joint, key) is not None:
-            found = f"it beside `{key}`, which a given angle does not feel"
-            raise SceneError(f"{at}.drive", found, "one of them", f"Remove `drive` or `{key}`.")
+            statement = f"a hinge whose angle is driven does not feel a `{key}`"
+            raise SceneError(f"{at}.drive", statement, None, f"Remove `drive` or `{key}`.")

@@ -33,16 +33,17 @@ def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
         at, name = table_key(scene, table), domain.names[i]
         others = [j for j in range(len(tables)) if _is_opposite(domain, domain.pieces[i], domain.pieces[j])]
         if not others:
-            found = f"'periodic' on {name!r}, which has no equal surface opposite to it"
-            raise SceneError(f"{at}.type", found, "it on a flat surface with such a one", "Choose another type.")
+            statement = f"only a flat surface with an equal one opposite can be periodic, and {name!r} has none"
+            raise SceneError(f"{at}.type", statement, None, "Choose another type.")
         if others[0] not in chosen:
             remedy = f"Set type = 'periodic' on {domain.names[others[0]]!r} too."
-            raise SceneError(f"{at}.type", f"'periodic' on {name!r} alone", "it on the opposite surface too", remedy)
+            statement = f"{name!r} is periodic and the surface opposite to it is not"
+            raise SceneError(f"{at}.type", statement, None, remedy)
         other = tables[others[0]]
         assert other is not None
         if table.pressure_drop is not None and other.pressure_drop is not None:
-            found = f"it on {name!r} and on {domain.names[others[0]]!r}"
-            raise SceneError(f"{at}.pressure_drop", found, "it on one of two opposite surfaces", "Keep one.")
+            statement = f"only one of {name!r} and {domain.names[others[0]]!r} can have the drop of pressure"
+            raise SceneError(f"{at}.pressure_drop", statement, None, "Keep one.")
         if table.pressure_drop is not None or (other.pressure_drop is None and i < others[0]):
             pairs.append((i, others[0]))
     return tuple(pairs)

@@ -120,7 +120,8 @@ def _check_control(body: BodyTable, at: str) -> None:
         raise SceneError(f"{at}.fixed", f"true beside {other!r}", "one of them", f"Remove `fixed` or {other!r}.")
     if body.prescribed and given:
         where = f"`{at}.prescribed`"
-        raise SceneError(f"{at}.{given[0]}", "it beside `prescribed`", f"it inside {where}", f"Move it into {where}.")
+        statement = "a body with `prescribed` has its velocities there"
+        raise SceneError(f"{at}.{given[0]}", statement, None, f"Move it into {where}.")
     if body.prescribed and (body.prescribed.amplitude is None) != (body.prescribed.frequency is None):
         missing = "amplitude" if body.prescribed.amplitude is None else "frequency"
         field = f"{at}.prescribed.{missing}"

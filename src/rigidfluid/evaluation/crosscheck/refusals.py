@@ -44,7 +44,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
             )
         for key in ("free", "spring"):
             if getattr(table, key) is not None:
-                raise CrosscheckError(f"{field}.{key}", "it", "bodies that nothing holds", f"Leave `{key}` out.")
+                statement = "bodies that are held are not compared with LAMMPS"
+                raise CrosscheckError(f"{field}.{key}", statement, None, f"Leave `{key}` out.")
         if table.part_of is not None:
             raise CrosscheckError(f"{field}.part_of", repr(table.part_of), "bodies of one part", "Leave part_of out.")
     for wall in system.walls:
