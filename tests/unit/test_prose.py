@@ -25,7 +25,6 @@ LEFT: dict[str, tuple[int, int]] = {
     "checks": (37, 27),
     "core.contact": (62, 35),
     "core.joints": (29, 9),
-    "core.mechanics": (38, 37),
     "core.model": (1, 0),
     "core.run": (1, 0),
     "core.scene": (8, 5),
