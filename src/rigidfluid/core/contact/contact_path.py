@@ -28,7 +28,7 @@ from rigidfluid.core.mechanics.motions import (
     outer_load,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, together
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, wrench_sum
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling, uncoupled
@@ -165,7 +165,7 @@ def _dry(system: System, state: State, start: float) -> BodyDynamics:
 def _body_load(system: System, state: State) -> Wrench:
     """Weight and applied wrenches on the bodies, n rows."""
     weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
-    return weight if state.applied is None else together(weight, state.applied)
+    return weight if state.applied is None else wrench_sum(weight, state.applied)
 
 
 def _dry_motions(system: System, state: State, start: float) -> DryDynamics:

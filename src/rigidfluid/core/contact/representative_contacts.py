@@ -21,8 +21,7 @@ FAR_AHEAD = 1e6
 """Distance of a far point, over the size of the domain."""
 
 MOST = 40
-"""Largest number of representatives; beyond it those with the extremes of mass, weight, size, speed and stack remain.
-"""
+"""Largest number of representatives; of more those with the extremes of mass, weight, size, speed and stack remain."""
 
 
 def body_classes(system: System) -> tuple[tuple[int, ...], ...]:

@@ -92,7 +92,7 @@ class Repulsion(ForceLaw):
         return np.where(contacts.at_wall, self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
 
     def closeness(self, contacts: Contacts) -> FloatArray:
-        """Penetration of the range w = max(range - gap, 0), (m,) [length]."""
+        """Depth of each contact in the range w = max(range - gap, 0), (m,) [length]."""
         return np.maximum(self.range - contacts.gap, 0.0)
 
     def _epsilon(self, wanted: float | Literal["auto"], contacts: Contacts) -> FloatArray:

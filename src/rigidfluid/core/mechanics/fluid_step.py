@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.motions import applied_wrench, weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
-from rigidfluid.core.mechanics.wrenches import flat, together, wrench_of
+from rigidfluid.core.mechanics.wrenches import flat, wrench_of, wrench_sum
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import Mechanisms, System
 from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step, Twist, Wrench
@@ -66,16 +66,16 @@ def _newton_euler(
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
     applied = applied_wrench(system, state, kinematics)
-    pushed = together(impulse, Wrench(size * applied.force, size * applied.torque))
+    pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
     if system.linkage is not None and system.backend.needs_mesh:
-        pushed = together(pushed, system.linkage.spring_wrench(pose, time))
+        pushed = wrench_sum(pushed, system.linkage.spring_wrench(pose, time))
     mechanisms = system.mechanisms
     if mechanisms is None:
         wrench = Wrench(pushed.force + system.weight, pushed.torque)
         return newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     weight = weights(system, kinematics)
-    wrench = together(pushed, weight)
+    wrench = wrench_sum(pushed, weight)
     inertia = mechanisms.inertia(time)
     mass_matrix, load = newton_euler(mechanisms.mass, inertia, pose, poses, twists, derivative, wrench)
     if mechanisms.driven:
@@ -88,10 +88,10 @@ def _latest_push(system: System, state: State) -> Wrench:
     enter the time scheme in the same way."""
     pushed = state.free_contact
     if state.past is not None and state.past.applied is not None:
-        pushed = together(pushed, state.past.applied)
+        pushed = wrench_sum(pushed, state.past.applied)
     if state.link is None or system.backend.needs_mesh:
         return pushed
-    return together(pushed, wrench_of(state.link.wrench, system.dimension))
+    return wrench_sum(pushed, wrench_of(state.link.wrench, system.dimension))
 
 
 def _relative_momentum_rate(

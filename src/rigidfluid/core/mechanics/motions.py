@@ -6,7 +6,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench, levers
 from rigidfluid.core.mechanics.rigid import cross, inverse_lab_inertia, lab_inertia, rotation_matrices
-from rigidfluid.core.mechanics.wrenches import flat, nothing, together, wrench_of
+from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of, wrench_sum
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
@@ -30,7 +30,7 @@ def applied_wrench(system: System, state: State, kinematics: Kinematics | None) 
 def outer_load(system: System, state: State) -> Wrench:
     """Weight and applied wrenches on all that each motion carries, N rows."""
     kinematics = kinematics_now(system, state)
-    return together(weights(system, kinematics), applied_wrench(system, state, kinematics))
+    return wrench_sum(weights(system, kinematics), applied_wrench(system, state, kinematics))
 
 
 def newly_applied(system: System, state: State) -> Wrench:

@@ -42,7 +42,7 @@ def wrench_of(rows: FloatArray, dimension: int) -> Wrench:
     return Wrench(rows[:, :dimension], rows[:, dimension:])
 
 
-def together(one: Wrench, other: Wrench) -> Wrench:
+def wrench_sum(one: Wrench, other: Wrench) -> Wrench:
     """Sum of two wrenches."""
     return Wrench(one.force + other.force, one.torque + other.torque)
 
