@@ -35,7 +35,7 @@ CLOUD = 200
 
 def ring_fields(mesh: Mesh) -> dict[str, tuple[int, Callable[[], object], FloatArray, FloatArray]]:
     """Name → values, the call to time, the points, the distances found there, all for the ring of Table 1."""
-    topology, work = Topology.of(mesh), new_workspace(len(mesh.points))
+    topology, work = Topology.from_mesh(mesh), new_workspace(len(mesh.points))
     surface = np.unique(mesh.facets[mesh.markers == INNER])
     tree = cKDTree(mesh.points[surface])
     flat = np.column_stack([mesh.points, np.zeros(len(mesh.points))])

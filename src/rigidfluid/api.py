@@ -155,7 +155,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """What runs a scene when it is first asked for: plug-ins, which are imported at every start, need no loop."""
+    """Import `run` and `Simulation` on first use: plug-ins are imported at every start and need no loop."""
     if name not in _LOOP:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_LOOP[name]), name)

@@ -366,12 +366,12 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
     with Bar(*columns, console=console) as bar:
         task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"), warning="")
         yield lambda now: bar.update(
-            task, completed=now.time, step=now.step, gap=now.gap, warning=_of_meshes(now.failed_remeshes)
+            task, completed=now.time, step=now.step, gap=now.gap, warning=_mesh_failures(now.failed_remeshes)
         )
 
 
-def _of_meshes(failed: int) -> str:
-    """Of new meshes that could not be made, for the line that shows where a run is."""
+def _mesh_failures(failed: int) -> str:
+    """Words on failed re-meshes, for the progress bar; empty without any."""
     return f", {failed} failed re-meshes" if failed else ""
 
 
@@ -466,7 +466,7 @@ def _print_end(history: History, folder: Path) -> None:
         style = "yellow" if remark["grade"] == "warning" else ""
         _print(f"{remark['grade']}: {remark['text']}. {remark['remedy']}", style)
     if summary["unknowns"]:
-        _print(_of_stages(summary["wall_time_per_stage"], summary["wall_time"]))
+        _print(_stage_costs(summary["wall_time_per_stage"], summary["wall_time"]))
     _print(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
 
 
@@ -476,8 +476,8 @@ def _print_positions(position: Mapping[str, Sequence[float]]) -> None:
     _print(f"position at the end: {_figure(shown)}" + (f", and {more} more in bodies.csv" if more else ""))
 
 
-def _of_stages(seconds: Mapping[str, float], total: float) -> str:
-    """What meshes and linear systems took of a run."""
+def _stage_costs(seconds: Mapping[str, float], total: float) -> str:
+    """Words on the wall time of a run, of its meshes and its linear systems [s]."""
     made, moved, carried, solved, answered = (
         seconds.get(stage, 0.0) for stage in ("mesh", "move mesh", "transfer", "advance", "response")
     )
@@ -488,7 +488,7 @@ def _of_stages(seconds: Mapping[str, float], total: float) -> str:
 
 
 def _print_energy(energy: Mapping[str, Any]) -> None:
-    """What came from nowhere, what vanished and what is missing at the end; where it is much, the causes."""
+    """Print energy created, lost and unaccounted for at the end, and warnings with their causes."""
     from rigidfluid.core.output.energy_account import per_cent
 
     put_in, friction = energy["put_in"], ""
@@ -526,7 +526,7 @@ def _print_domain(report: Report) -> None:
 
 
 def _print_bodies(report: Report) -> None:
-    """Those that are nearest to anything, if there are many."""
+    """Print a table of the bodies; of many, those nearest to another surface."""
     nearest = sorted(report.bodies, key=lambda body: float("inf") if body.smallest_gap is None else body.smallest_gap)
     shown = nearest[:MOST_BODIES]
     table = Table("body", "type", "mass", "submerged weight", "impact speed", "smallest gap", "to")

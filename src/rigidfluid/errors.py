@@ -37,7 +37,7 @@ class RigidfluidError(Exception):
         super().__init__(f"{subject}: found {found}; allowed is {allowed}. {remedy}")
 
     def __reduce__(self) -> tuple[type[RigidfluidError], tuple[str, str, str, str]]:
-        """By its four parts, as it travels between processes."""
+        """Pickle the error by its four parts, so that it can pass between processes."""
         return type(self), (self.subject, str(self.found), self.allowed, self.remedy)
 
 

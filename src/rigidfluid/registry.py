@@ -143,7 +143,7 @@ class Registry:
         return part
 
     def find(self, kind: Kind[P], name: str, subject: str | None = None) -> type[P]:
-        """As `get`, but also where a package that the part needs is missing."""
+        """Part of that kind and name, as `get`, even if a package that it needs is missing; raises PluginError."""
         for entry in self.entries:
             if entry.kind is kind and entry.name == name:
                 return cast(type[P], entry.part)

@@ -108,7 +108,7 @@ def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
 
     wall = BoundaryCondition(1, "outer", "wall", None, turning)
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
-    start = Flow.start(_backend(1, (wall,)), bend(layers, None), pose, Bodies.of(pose))
+    start = Flow.start(_backend(1, (wall,)), bend(layers, None), pose, Bodies.uniform(pose))
     return start.after(None, twist=np.array([[0.0, 0.0, inner]]))
 
 

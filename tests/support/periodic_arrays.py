@@ -21,7 +21,10 @@ def array_of_balls(dimension: int, layers: int) -> float:
     posed = FluidProblem(dimension, 1, 1.0, 1.0, False, tuple(faces))
     pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
     start = Flow.start(
-        ScikitFem(ScikitFem.Options(tolerance=1e-12), posed), ball_in_a_box(dimension, layers), pose, Bodies.of(pose)
+        ScikitFem(ScikitFem.Options(tolerance=1e-12), posed),
+        ball_in_a_box(dimension, layers),
+        pose,
+        Bodies.uniform(pose),
     )
     flow = start.after(None)
     force = float(flow.advance.hydrodynamic_wrench.force[0, 0])

@@ -355,7 +355,7 @@ def test_a_run_taken_up_again_has_the_same_inflow_to_the_last_bit(tmp_path: Path
 
 def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> None:
     """Where the shape of a surface is not known beforehand, it shows in the first step."""
-    along = [VectorExpression.of([source, 0.0], "u") for source in ("1 + t", "1 - t")]
+    along = [VectorExpression.parse([source, 0.0], "u") for source in ("1 + t", "1 - t")]
     values = dict(zip(("x0", "x1"), along, strict=True))
     posed = problem(2, dict.fromkeys(values, "velocity"), values)
     flow = Flow.start(ScikitFem(ScikitFem.Options(), posed), box(2, 4), nobody(2))
@@ -367,7 +367,7 @@ def test_flows_that_do_not_balance_on_the_mesh_are_refused_with_the_time() -> No
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_shear_flows_in_and_out_through_the_same_faces(dimension: int) -> None:
     """Nothing flows through a face in sum, but for rounding, and half of each face is an inlet."""
-    shear = VectorExpression.of(["y - 0.5", *[0.0] * (dimension - 1)], "u")
+    shear = VectorExpression.parse(["y - 0.5", *[0.0] * (dimension - 1)], "u")
     values = dict.fromkeys([f"{axis}{side}" for axis in "xyz"[:dimension] for side in "01"], shear)
     posed = replace(problem(dimension, dict.fromkeys(values, "velocity"), values), inertia=False)
     mesh = box(dimension, 5)
@@ -399,7 +399,7 @@ def test_flux_against_pressure_drop_between_plates() -> None:
 def test_flux_against_pressure_drop_in_a_square_duct() -> None:
     """Q = 0.035144 Δp h⁴/(μ L) (White 2006): an inflow with this profile is developed at once."""
     shape = Rectangle(np.array([0.0, 0.5, 0.5]), np.ones(2), np.eye(3)[1:])
-    inflow = BoundaryVelocity(VectorExpression.of([1.0, 0.0, 0.0], "u"), partial(poiseuille, shape))
+    inflow = BoundaryVelocity(VectorExpression.parse([1.0, 0.0, 0.0], "u"), partial(poiseuille, shape))
     flow = developed(3, 5, inflow, "velocity")
     middle = np.array([[x, 0.5, 0.5] for x in (0.25, 0.5, 0.75)])
     velocity, pressure = flow.probe(middle)

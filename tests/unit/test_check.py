@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from rigidfluid.checks import Finding, Report, check
-from rigidfluid.checks.finding import at_least, at_most
+from rigidfluid.checks.finding import round_down, round_up
 from rigidfluid.cli import app
 from rigidfluid.core.contact.representative_contacts import representatives
 from rigidfluid.core.setup.build import build_system
@@ -375,7 +375,7 @@ def test_a_third_party_law_is_asked_like_any_other(install: Install, law: str) -
 
 @pytest.mark.parametrize(("value", "down", "up"), [(0.46789, "0.467", "0.468"), (1234.0, "1.23e+03", "1.24e+03")])
 def test_rounding_to_the_safe_side(value: float, down: str, up: str) -> None:
-    assert (at_most(value), at_least(value)) == (down, up)
+    assert (round_down(value), round_up(value)) == (down, up)
 
 
 def write(data: dict[str, Any], folder: Path) -> Path:

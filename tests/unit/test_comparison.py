@@ -193,7 +193,7 @@ def test_known_differences() -> None:
             "energy": 1 / 6,
         }
     )  # fmt: skip
-    assert found["position"].where == (1, 1)
+    assert found["position"].largest_at == (1, 1)
     assert found["position"].final == pytest.approx(5 / 3 * 2e-3)
     assert found["energy"].final == 0.25
 

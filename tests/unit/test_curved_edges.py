@@ -53,8 +53,8 @@ def test_all_edges_on_a_body_pass_through_its_surface(around_an_ellipsoid) -> No
 
 def test_nodes_on_other_edges_are_half_way(around_an_ellipsoid) -> None:
     *_, mesh = around_an_ellipsoid
-    numbering = Numbering.of(mesh)
-    nodes, straight = numbering.node_points(mesh.geometry), numbering.at_nodes(mesh.points)
+    numbering = Numbering.from_mesh(mesh)
+    nodes, straight = numbering.node_points(mesh.geometry), numbering.interpolate_to_nodes(mesh.points)
     np.testing.assert_array_equal(nodes[numbering.on_curves], mesh.curved.middles)
     others = np.setdiff1d(np.arange(numbering.nodes), numbering.on_curves)
     np.testing.assert_array_equal(nodes[others], straight[others])
@@ -83,7 +83,7 @@ def test_the_cells_volumes_are_the_domains_less_the_bodys(around_an_ellipsoid) -
     exact = 2.0**d - body.volume
     found = {}
     for kind, each in (("curved", mesh), ("straight", replace(mesh, curved=None))):
-        numbering = Numbering.of(each)
+        numbering = Numbering.from_mesh(each)
         posed = np.ones((numbering.nodes, d))
         assembly = ScikitFem.assembly(None, numbering)  # type: ignore[arg-type]
         found[kind] = abs(assembly.mass_times(each.geometry, posed)[:, 0].sum() / exact - 1.0)
@@ -93,7 +93,7 @@ def test_the_cells_volumes_are_the_domains_less_the_bodys(around_an_ellipsoid) -
 def test_the_least_jacobian_is_that_of_the_quadratic_map(around_an_ellipsoid) -> None:
     *_, mesh = around_an_ellipsoid
     cells, d = CurvedCells(mesh), mesh.points.shape[1]
-    numbering = Numbering.of(mesh)
+    numbering = Numbering.from_mesh(mesh)
     np.testing.assert_array_equal(cells.cells, mesh.cells[numbering.curved_cells])
     nodes = numbering.curved_cell_points(mesh.geometry)
     at = np.vstack([np.eye(d + 1), [np.eye(d + 1)[list(pair)].mean(axis=0) for pair in combinations(range(d + 1), 2)]])
@@ -188,7 +188,7 @@ def test_edges_on_a_curved_wall_bend_outwards() -> None:
 def test_points_are_found_in_curved_cells(around_an_ellipsoid) -> None:
     """Whichever straight cell they seem to be in."""
     *_, mesh = around_an_ellipsoid
-    numbering, d = Numbering.of(mesh), mesh.points.shape[1]
+    numbering, d = Numbering.from_mesh(mesh), mesh.points.shape[1]
     nodes = numbering.curved_cell_points(mesh.geometry)
     inside = np.random.default_rng(0).dirichlet(np.ones(d + 1), size=len(nodes))
     targets = np.einsum("cb,cbi->ci", quadratic_basis(inside), nodes)

@@ -167,7 +167,7 @@ def test_linear_functions_have_what_is_linear_along_each_edge():
     operator.mult(whole, everything)
     velocity = space.velocities(everything.array[: space.owned_nodes.size * 3])
     vertices, free = space.numbering.vertices, discretisation.surfaces.velocity_free
-    expected = space.numbering.at_nodes(velocity[:vertices])
+    expected = space.numbering.interpolate_to_nodes(velocity[:vertices])
     np.testing.assert_allclose(velocity[vertices:][free[vertices:]], expected[vertices:][free[vertices:]], atol=1e-12)
     np.testing.assert_array_equal(fine.array[-12:], coarse.array[-12:])  # twists are themselves
 

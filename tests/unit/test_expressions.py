@@ -40,7 +40,7 @@ def test_a_number_is_the_same_everywhere() -> None:
 
 
 def test_a_vector_has_its_components() -> None:
-    found = VectorExpression.of(["z", 1.0, "t"], "a")(2.0, np.array([[0.0, 0.0, 5.0]]))
+    found = VectorExpression.parse(["z", 1.0, "t"], "a")(2.0, np.array([[0.0, 0.0, 5.0]]))
     np.testing.assert_array_equal(found, [[5.0, 1.0, 2.0]])
 
 

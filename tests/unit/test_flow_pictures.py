@@ -70,7 +70,7 @@ def test_a_quadratic_field_is_sampled_exactly_and_nothing_outside_the_mesh() -> 
     x = np.add.outer(np.zeros(10), -0.25 + 0.05 * np.arange(40))
     y = np.add.outer(0.1 + 0.05 * np.arange(10), np.zeros(40))
     values = fields.points[:, 0] ** 2 - 3.0 * fields.points[:, 0] * fields.points[:, 1]
-    image = Sampling.of(fields, grid).image(values[fields.cells])
+    image = Sampling.locate(fields, grid).image(values[fields.cells])
     inside = (x > 1e-6) & (x < 1.0 - 1e-6)
     np.testing.assert_allclose(image[inside], (x**2 - 3.0 * x * y)[inside], atol=1e-13)
     assert np.isnan(image[(x < -1e-6) | (x > 1.0 + 1e-6)]).all()
@@ -82,7 +82,7 @@ def test_a_slice_through_a_tetrahedron_is_sampled_exactly() -> None:
     fields = Fields(points, np.arange(10)[None], np.zeros_like(points), np.zeros(10))
     grid = Grid(np.array([0.02, 0.02, 0.25]), np.array([0.1, 0.0, 0.0]), np.array([0.0, 0.1, 0.0]), 10, 10)
     x, y = 0.02 + 0.1 * np.arange(10)[None, :], 0.02 + 0.1 * np.arange(10)[:, None]
-    image = Sampling.of(fields, grid).image((points[:, 0] * points[:, 1] + points[:, 2] ** 2)[None])
+    image = Sampling.locate(fields, grid).image((points[:, 0] * points[:, 1] + points[:, 2] ** 2)[None])
     inside = x + y < 0.75
     np.testing.assert_allclose(image[inside], (x * y + 0.0625)[inside], atol=1e-13)
     assert np.isnan(image[~inside]).all()
@@ -90,7 +90,7 @@ def test_a_slice_through_a_tetrahedron_is_sampled_exactly() -> None:
 
 def moment(fields: Fields) -> Moment:
     """All of a plane field."""
-    section = Section.of(fields, ViewPlane.of_axes(0, 1, 2), np.zeros(2))
+    section = Section.cut(fields, ViewPlane.coordinate_plane(0, 1, 2), np.zeros(2))
     return Moment(time=0.0, section=section, centre=np.zeros(2), width=0.1, gap=0.1)
 
 

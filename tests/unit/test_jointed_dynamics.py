@@ -69,7 +69,7 @@ def test_energy_is_kept_to_second_order_and_joints_fit(dimension):
         errors.append(abs(energy(motion) / before - 1.0))
         assert np.abs(motion._linkage.misfit(motion.pose, 0.0)).max() < 1e-12
         motion.drift(0.01)
-        assert np.abs(motion._missing()).max() < 1e-12
+        assert np.abs(motion._missing_rate()).max() < 1e-12
     assert errors[1] < 0.3 * errors[0] < 0.01
 
 

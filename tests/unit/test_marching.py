@@ -14,7 +14,7 @@ SURFACES = [[INNER], [OUTER], [INNER, OUTER]]
 
 
 def field_everywhere(mesh, surfaces, **options):
-    return distance_field(Topology.of(mesh), mesh.points, surfaces, **options).everywhere(len(mesh.points))
+    return distance_field(Topology.from_mesh(mesh), mesh.points, surfaces, **options).everywhere(len(mesh.points))
 
 
 def star_shaped(mesh):
@@ -36,7 +36,7 @@ def distortions(mesh):
 def test_exact_march_equals_the_nearest_of_all_facets(dimension, shape, surfaces):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
     points = distortions(mesh)[shape]
-    found = distance_field(Topology.of(mesh), points, surfaces).everywhere(len(points))
+    found = distance_field(Topology.from_mesh(mesh), points, surfaces).everywhere(len(points))
     expected = naive_distances(points, points, mesh.facets[np.isin(mesh.markers, surfaces)])
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
@@ -45,7 +45,7 @@ def test_exact_march_equals_the_nearest_of_all_facets(dimension, shape, surfaces
 def test_exact_march_among_ragged_stars_equals_the_nearest_of_all_facets(dimension, seeds):
     for number in range(seeds):
         mesh, surfaces = stars(dimension, number)
-        topology = Topology.of(mesh)
+        topology = Topology.from_mesh(mesh)
         expected = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[np.isin(mesh.markers, surfaces)]])
         for width in (np.inf, np.quantile(expected, 0.4) * (1 + 1e-9)):
             field = distance_field(topology, mesh.points, surfaces, width)
@@ -63,7 +63,7 @@ def test_a_tree_is_planted_unless_the_surface_is_convex_from_the_fluid(dimension
         (star_shaped(mesh), [INNER], False),
     ]:
         work = new_workspace(len(points))
-        wave = march_from(Topology.of(mesh), points, surfaces, np.inf, 0.0, "exact", work)
+        wave = march_from(Topology.from_mesh(mesh), points, surfaces, np.inf, 0.0, "exact", work)
         assert (len(wave.tree.order) == 0) == convex
 
 
@@ -100,7 +100,7 @@ def test_plane_wave_from_a_wall_is_exact_where_no_cell_is_obtuse(dimension, accu
 def test_first_order_on_bad_cells_stays_an_upper_bound_near_the_truth(dimension):
     mesh = box(dimension, 8, seed=1)
     squeezed = mesh.points * np.array([1.0, 0.2, 1.0])[:dimension]
-    found = distance_field(Topology.of(mesh), squeezed, [0], accuracy="first-order").everywhere(len(squeezed))
+    found = distance_field(Topology.from_mesh(mesh), squeezed, [0], accuracy="first-order").everywhere(len(squeezed))
     assert np.all(found >= squeezed[:, 0] - 1e-12)
     assert np.abs(found - squeezed[:, 0]).max() < 0.1
 
@@ -109,7 +109,7 @@ def test_first_order_on_bad_cells_stays_an_upper_bound_near_the_truth(dimension)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_band_is_the_full_field_cut_off(dimension, accuracy):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
-    topology = Topology.of(mesh)
+    topology = Topology.from_mesh(mesh)
     full = distance_field(topology, mesh.points, [INNER], accuracy=accuracy).everywhere(len(mesh.points))
     band = distance_field(topology, mesh.points, [INNER], band_width=0.35, accuracy=accuracy)
     assert set(band.vertices) == set(np.flatnonzero(full <= 0.35))
@@ -121,7 +121,7 @@ def test_a_band_is_the_full_field_cut_off(dimension, accuracy):
 @pytest.mark.parametrize("accuracy", ["exact", "first-order"])
 def test_a_workspace_serves_again_as_if_new(accuracy):
     mesh = shell(2, 0.3, 1.2, 0.06)
-    topology = Topology.of(mesh)
+    topology = Topology.from_mesh(mesh)
     work = new_workspace(len(mesh.points))
     distance_field(topology, mesh.points, [OUTER], accuracy=accuracy, workspace=work)
     again = distance_field(topology, mesh.points, [INNER], 0.2, accuracy, work)
@@ -133,7 +133,7 @@ def test_a_workspace_serves_again_as_if_new(accuracy):
 
 def test_a_surface_that_is_not_there_reaches_nothing():
     mesh = box(2, 4)
-    field = distance_field(Topology.of(mesh), mesh.points, [17])
+    field = distance_field(Topology.from_mesh(mesh), mesh.points, [17])
     assert len(field.vertices) == 0
     assert field.largest == 0.0
 
@@ -141,7 +141,7 @@ def test_a_surface_that_is_not_there_reaches_nothing():
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_nearest_facets_are_those_of_the_distance(dimension):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
-    field = distance_field(Topology.of(mesh), mesh.points, [INNER])
+    field = distance_field(Topology.from_mesh(mesh), mesh.points, [INNER])
     for vertex, distance, facet in list(zip(field.vertices, field.distance, field.facet, strict=True))[::37]:
         naive = naive_distances(mesh.points[vertex][None], mesh.points, mesh.facets[facet][None])
         assert naive[0] == pytest.approx(distance, abs=1e-12)
@@ -150,7 +150,7 @@ def test_nearest_facets_are_those_of_the_distance(dimension):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_walk_over_a_convex_surface_ends_on_the_nearest_facet(dimension):
     mesh = shell(dimension, 0.3, 1.2, SIZE[dimension])
-    topology = Topology.of(mesh)
+    topology = Topology.from_mesh(mesh)
     seeds, wanted, _ = topology.seeds([INNER])
     middle = mesh.points[mesh.facets].mean(axis=1)
     for vertex in range(len(mesh.points))[-1:0:-101]:

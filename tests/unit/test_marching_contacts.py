@@ -47,7 +47,7 @@ def test_gaps_from_ragged_stars_are_those_of_all_pairs_of_facets(dimension, seed
     found = 0
     for number in range(seeds):
         mesh, _ = stars(dimension, number)
-        topology, work = Topology.of(mesh), new_workspace(len(mesh.points))
+        topology, work = Topology.from_mesh(mesh), new_workspace(len(mesh.points))
         star, wanted, _ = topology.seeds([0])
         wave = march_from(topology, mesh.points, [0], np.inf, 0.0, accuracy, work)
         if accuracy == "first-order":

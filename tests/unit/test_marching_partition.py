@@ -32,7 +32,7 @@ def layers(mesh, count):
 def test_parts_give_the_field_of_the_whole(dimension, size, count, owners, surfaces):
     mesh = shell(dimension, 0.3, 1.2, size)
     parts = split(mesh, owners(mesh, count))
-    whole = distance_field(Topology.of(mesh), mesh.points, surfaces, 0.6)
+    whole = distance_field(Topology.from_mesh(mesh), mesh.points, surfaces, 0.6)
     field = field_in_threads(parts, mesh.points, surfaces, 0.6)
     again = field_in_threads(parts, mesh.points, surfaces, 0.6)
     assert set(field.vertices) == set(whole.vertices)

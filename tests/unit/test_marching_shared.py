@@ -120,7 +120,7 @@ def test_the_band_ends_where_that_of_the_whole_does(dimension, seed):
     """It goes further at a vertex with a long edge, which may be in another part."""
     mesh, _ = stars(dimension, seed)
     whole = new_workspace(len(mesh.points))
-    march_from(Topology.of(mesh), mesh.points, [0], 0.1, 0.5, "exact", whole)
+    march_from(Topology.from_mesh(mesh), mesh.points, [0], 0.1, 0.5, "exact", whole)
 
     def work(ranks):
         part = part_of(mesh, ranks)

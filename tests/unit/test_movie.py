@@ -103,9 +103,9 @@ def test_the_fluid_is_shown_as_it_is_in_the_files(wet: Path) -> None:
     fastest = np.nanmax(image)
     assert fastest == pytest.approx(-results.bodies["vy"][-1, 0], rel=0.1)
     assert np.isnan(image).sum() * grid.right[0] * grid.up[1] == pytest.approx(results.system.bodies[0].volume, rel=0.1)
-    colours = Scale.of("speed", [image]).colours(image)
+    colours = Scale.fit("speed", [image]).colours(image)
     assert colours.shape == (*image.shape, 3)
-    assert Scale.of("vorticity", [image]).lowest == -Scale.of("vorticity", [image]).highest
+    assert Scale.fit("vorticity", [image]).lowest == -Scale.fit("vorticity", [image]).highest
 
 
 def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from rigidfluid.taylor_hood.pieces import cut, joined
 
 def bent(mesh, rng):
     """Some of its edges are curved."""
-    edges = rng.permutation(Numbering.of(mesh).edges)[:12]
+    edges = rng.permutation(Numbering.from_mesh(mesh).edges)[:12]
     middles = mesh.points[edges].mean(axis=1) + 0.01
     curves = CurvedEdges(edges, np.zeros(len(edges), dtype=np.int64), middles)
     return Mesh(mesh.points, mesh.cells, mesh.facets, mesh.markers, curved=curves)
@@ -23,7 +23,7 @@ def bent(mesh, rng):
 def test_parts_of_a_state_make_it_again(dimension, count):
     rng = np.random.default_rng(0)
     mesh = bent(stars(dimension, 3)[0], rng)
-    nodes = Numbering.of(mesh).nodes
+    nodes = Numbering.from_mesh(mesh).nodes
     sizes = {"velocity": (nodes, dimension), "pressure": (len(mesh.points),), "twist": (2, 3), "position": (2, 2)}
     state = {name + age: rng.normal(size=size) for name, size in sizes.items() for age in ("", "_previous")}
     state["points_previous"] = mesh.geometry + 0.01 * rng.normal(size=mesh.geometry.shape)
@@ -37,13 +37,13 @@ def test_parts_of_a_state_make_it_again(dimension, count):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_part_has_the_values_of_its_points(dimension):
     mesh = bent(stars(dimension, 3)[0], np.random.default_rng(0))
-    points = Numbering.of(mesh).node_points(mesh.geometry)
+    points = Numbering.from_mesh(mesh).node_points(mesh.geometry)
     fields = dict.fromkeys(("velocity", "velocity_previous"), points)
     heights = dict.fromkeys(("pressure", "pressure_previous"), mesh.points[:, 1])
     parts = parts_of(mesh, partition(mesh, 3))
     for part, state in zip(
         parts, cut({**fields, **heights, "points_previous": mesh.geometry}, mesh, parts), strict=True
     ):
-        np.testing.assert_array_equal(state["velocity"], Numbering.of(part).node_points(part.geometry))
+        np.testing.assert_array_equal(state["velocity"], Numbering.from_mesh(part).node_points(part.geometry))
         np.testing.assert_array_equal(state["pressure"], part.points[:, 1])
         np.testing.assert_array_equal(state["points_previous"], part.geometry)

@@ -39,7 +39,7 @@ def given(request):
     """A discretisation, its geometry and pose, and a velocity with divergence."""
     simulation = Simulation(request.param(), None, False)
     state = simulation.step()
-    target = simulation.system.backend._for_projection(state.mesh).inner
+    target = simulation.system.backend._projecting_discretisation(state.mesh).inner
     noise = np.random.default_rng(0).normal(size=state.fluid["velocity"].shape)
     return target, state.mesh.geometry, state.fluid["position"], state.fluid["velocity"] + 0.1 * noise
 

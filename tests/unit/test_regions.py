@@ -118,7 +118,7 @@ def test_curved_walls_are_as_fine_as_they_ask_for():
 
 
 def test_the_outline_of_a_stenosis_has_its_bumps():
-    x, y, distance = distance_grid(stenosis(), ViewPlane.of_axes(0, 1, 2), np.zeros(2))
+    x, y, distance = distance_grid(stenosis(), ViewPlane.coordinate_plane(0, 1, 2), np.zeros(2))
     i, j = np.argmin(np.abs(x)), np.argmin(np.abs(y + 2.0))
     np.testing.assert_allclose(distance[j, i], np.hypot(x[i], y[j] + 4.0) - 3.125, rtol=1e-14)
     assert distance[np.argmin(np.abs(y)), i] > 0.8

@@ -56,12 +56,12 @@ def area(triangles: FloatArray) -> float:
 
 @pytest.mark.parametrize(
     ("plane", "expected"),
-    [(ViewPlane.of_axes(0, 1, 3), 1.0), (OBLIQUE, 1.0 / 0.8), (ACROSS_THE_DIAGONAL, 0.75 * np.sqrt(3.0))],
+    [(ViewPlane.coordinate_plane(0, 1, 3), 1.0), (OBLIQUE, 1.0 / 0.8), (ACROSS_THE_DIAGONAL, 0.75 * np.sqrt(3.0))],
     ids=["xy", "oblique", "diagonal"],
 )
 def test_a_slice_has_the_area_of_the_cross_section(plane: ViewPlane, expected: float) -> None:
     """Through the middle of a unit cube; across its diagonal it is a regular hexagon."""
-    section = Section.of(cube(3), plane, np.full(3, 0.5))
+    section = Section.cut(cube(3), plane, np.full(3, 0.5))
     assert area(section.slice_points) == pytest.approx(expected, rel=1e-12)
     np.testing.assert_allclose((section.slice_points - 0.5) @ plane.normal, 0.0, atol=1e-14)
 
@@ -70,7 +70,7 @@ def test_a_slice_shows_a_linear_field_exactly_and_the_vorticity_to_the_observer(
     fields = cube(2)
     spin = np.array([0.3, -0.7, 1.9])
     fields = Fields(fields.points, fields.cells, np.cross(spin, fields.points), fields.points @ spin)
-    section = Section.of(fields, OBLIQUE, np.array([0.5, 0.4, 0.45]))
+    section = Section.cut(fields, OBLIQUE, np.array([0.5, 0.4, 0.45]))
     triangulation, values = section.triangles(section.fields.pressure)
     flat = np.stack([triangulation.x, triangulation.y], axis=1)
     np.testing.assert_allclose(values, OBLIQUE.lifted(flat, section.through) @ spin, atol=1e-13)
@@ -79,7 +79,7 @@ def test_a_slice_shows_a_linear_field_exactly_and_the_vorticity_to_the_observer(
 
 def test_edges_of_a_slice_are_those_of_the_cells() -> None:
     """A plane across z cuts a cube's six tetrahedra into a square, its diagonal, and pieces along the sides."""
-    section = Section.of(cube(1), ViewPlane.of_axes(0, 1, 3), np.array([0.0, 0.0, 0.3]))
+    section = Section.cut(cube(1), ViewPlane.coordinate_plane(0, 1, 3), np.array([0.0, 0.0, 0.3]))
     assert len(section.fields.cells) == 6
     length = np.linalg.norm(np.diff(section.edges, axis=1), axis=2).sum()
     assert length == pytest.approx(4.0 + np.sqrt(2.0) + 2.0 * (0.3 + 0.7), rel=1e-12)
@@ -154,7 +154,7 @@ def test_the_smallest_gap_is_found_in_the_plane_and_in_no_other(gap: float, tilt
     middle = gap_middle(tilted, -1, 0, plane)
     assert middle is not None
     np.testing.assert_allclose(middle, [plane.flat(centre)[0], 0.5 * gap], atol=1e-2 * gap)
-    assert gap_middle(tilted, -1, 0, ViewPlane.of_axes(0, 2, 3)) is None
+    assert gap_middle(tilted, -1, 0, ViewPlane.coordinate_plane(0, 2, 3)) is None
 
 
 @pytest.mark.parametrize("kind", ["sphere", "ellipsoid"])
@@ -182,13 +182,13 @@ def test_a_drawing_process_that_fails_leaves_the_picture_to_matplotlib(
 
 
 def test_what_is_nearer_hides_what_is_behind() -> None:
-    plane, flat = ViewPlane.of_axes(0, 1, 3), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    plane, flat = ViewPlane.coordinate_plane(0, 1, 3), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     near, far, box = flat + [0.0, 0.0, 1.0], flat, np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
     none = np.zeros((0, 3, 3))
     axes = Figure().add_subplot()
     draw_space(axes, Space(np.array([near, far]), none, box, none, none), plane)
     last = axes.collections[0].get_paths()[-1].vertices[:3]
-    np.testing.assert_allclose(last, Camera.of(plane).seen(near, box))
+    np.testing.assert_allclose(last, Camera.place(plane).seen(near, box))
 
 
 def test_matplotlib_lights_bodies_from_above(tilted: Results, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.stacks import stacked
+from rigidfluid.core.setup.stacks import stack_loads
 
 BOX = np.array([2.0, 3.0, 4.0])
 
@@ -40,20 +40,20 @@ def test_sums_over_all_pairs(dimension: int) -> None:
     weight = np.zeros((count, dimension))
     weight[:, -1] = np.round(rng.normal(-1.0, 2.0, count))  # some rise, some have no weight
     own = np.column_stack([np.abs(weight[:, -1]), rng.random(count)])
-    found = stacked(own, weight, position, radius, box)
+    found = stack_loads(own, weight, position, radius, box)
     np.testing.assert_allclose(found, one_by_one(own, weight, position, radius, box))
 
 
 def test_without_weight_each_bears_its_own() -> None:
     own = np.array([[1.0, 2.0], [3.0, 4.0]])
-    assert stacked(own, np.zeros((2, 2)), np.eye(2), np.ones(2), BOX[:2]) is own
+    assert stack_loads(own, np.zeros((2, 2)), np.eye(2), np.ones(2), BOX[:2]) is own
 
 
 def test_gravity_aslant_is_gravity_along_an_axis_in_a_turned_box() -> None:
     """Along a diagonal bodies overlap that lie behind each other on it; the square is √2 as wide there."""
     diagonal, across = np.array([1.0, 1.0]) / np.sqrt(2.0), np.array([1.0, -1.0]) / np.sqrt(2.0)
     position = np.array([[1.0, 1.0], [1.0, 1.0] - 0.5 * diagonal, [1.0, 1.0] - 0.5 * diagonal + 0.5 * across])
-    found = stacked(np.ones((3, 1)), np.tile(diagonal, (3, 1)), position, np.full(3, 0.1), np.array([2.0, 2.0]))
+    found = stack_loads(np.ones((3, 1)), np.tile(diagonal, (3, 1)), position, np.full(3, 0.1), np.array([2.0, 2.0]))
     fit = np.floor(2.0 * np.sqrt(2.0) / 0.2)
     np.testing.assert_allclose(found[0], 1.0 + 1.0 + 1.0 / fit)
 

@@ -31,7 +31,7 @@ def spinning():
 
 
 def on(simulation, mesh):
-    return simulation.system.backend._on(mesh, simulation.system.controlled)
+    return simulation.system.backend._discretisation(mesh, simulation.system.controlled)
 
 
 def divergence(discretisation, points, velocity):

@@ -49,7 +49,7 @@ def test_the_integrals_are_those_of_scikit_fem_wherever_the_mesh_moves(dimension
 def test_the_integrals_are_those_of_scikit_fem_on_curved_cells(dimension: int) -> None:
     """But for the stress, whose integrand is a ratio of polynomials there."""
     mesh = ball_in_a_box(dimension, 2)
-    numbering, points = Numbering.of(mesh), mesh.geometry
+    numbering, points = Numbering.from_mesh(mesh), mesh.geometry
     expected, found = CompiledAssembly(numbering), FormAssembly(numbering, convection=True)
     field, flow = np.random.default_rng(4).normal(size=(2, numbering.nodes, dimension))
     none, weight = np.zeros(len(numbering.cells)), np.ones(len(numbering.cells))

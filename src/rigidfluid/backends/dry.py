@@ -23,15 +23,7 @@ from rigidfluid.core.model.types import (
 
 
 class Dry(FluidBackend):
-    """Newton–Euler without a fluid: mass_matrix · twist = load for free motions, the given twist for controlled ones.
-
-    Parameters
-    ----------
-    options : PartOptions
-        None are read.
-    problem : FluidProblem or None
-        Not read.
-    """
+    """Newton–Euler without a fluid: mass_matrix · twist = load for free motions, the prescribed twist for others."""
 
     name: ClassVar[str] = "dry"
     needs_mesh: ClassVar[bool] = False
@@ -55,7 +47,7 @@ class Dry(FluidBackend):
         )
 
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
-        """That of the bodies' own masses."""
+        """Twists (c, n, d+k) that ``impulses`` give by the bodies' own masses, inviscid and viscous alike."""
         free, twists = ~step.controlled, np.zeros_like(impulses)
         masses = step.mass_matrix[free] / step.derivative[0]
         twists[:, free] = np.linalg.solve(masses, impulses[:, free, :, None])[..., 0]
@@ -77,11 +69,11 @@ class Dry(FluidBackend):
         return np.zeros_like(points), np.zeros(len(points))
 
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        """None: each body's equation stands alone."""
+        """Zero unknowns: each body's equation stands alone."""
         return 0
 
     def forget(self) -> None:
-        """Nothing is cached."""
+        """Do nothing: nothing is cached."""
 
 
 def _solve(step: Step) -> FloatArray:

@@ -11,22 +11,12 @@ _SMALLEST = 1e-100
 
 
 def closest_point(points: FloatArray, semi_axes: FloatArray) -> FloatArray:
-    """Nearest points of the surface Σ (x_i/a_i)² = 1.
+    """Nearest points (N, d) of the surface Σ (x_i/a_i)² = 1 to ``points`` y (N, d), ``semi_axes`` a (d,) [length].
+
+    One of them is taken if several are nearest.
 
     The nearest point is x_i = a_i p_i, p_i = r_i z_i/(s + r_i - 1) with z_i = y_i/a_i, r_i = (a_i/a_min)², where s > 0
     is the largest root of |p(s)| = 1, see `secular_image`.
-
-    Parameters
-    ----------
-    points : (N, d) array
-        Points y in the ellipsoid's frame [length].
-    semi_axes : (d,) array
-        Semi-axes a [length].
-
-    Returns
-    -------
-    (N, d) array
-        Nearest points of the surface; where several are nearest, one of them [length].
     """
     shortest = int(np.argmin(semi_axes))
     ratios = (semi_axes / semi_axes[shortest]) ** 2

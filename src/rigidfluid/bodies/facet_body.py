@@ -1,4 +1,4 @@
-"""What polygons and polyhedra have in common: a shape that its facets say all about."""
+"""Common base of polygons and polyhedra: a shape that its facets define."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 _LEAST_VOLUME = 1e-9
-"""Of the cube around the body: what has less is flat."""
+"""Volume over that of the cube around the body, below which a shape is flat [1]."""
 
 _GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
 """Steps of the evenest sequence of points in a square (M. Roberts, 2018)."""
@@ -23,19 +23,8 @@ _GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
 class FacetBody(Body):
     """The inside of a closed surface of facets, moved so that its centre of mass is the origin.
 
-    Parameters
-    ----------
-    options : PartOptions
-        The type's own keys.
-    facets : Facets
-        Closed, in any frame and of either sense.
-    key : str
-        The key that the facets are from, for messages.
-
-    Raises
-    ------
-    SceneError
-        If the surface is not closed, crosses itself or encloses nothing.
+    ``facets`` are closed, in any frame and of either sense, and ``key`` is the one that they are from, for messages. A
+    surface that crosses itself or encloses nothing raises SceneError.
     """
 
     def __init__(self, options: PartOptions, facets: Facets, key: str) -> None:
@@ -74,7 +63,7 @@ class FacetBody(Body):
 
     @property
     def bounding_radius(self) -> float:
-        """Of the farthest vertex [length]."""
+        """Distance of the farthest vertex from the centre of mass [length]."""
         return float(np.linalg.norm(self.facets.points, axis=1).max())
 
     def closest_point(self, points: FloatArray) -> FloatArray:

@@ -16,7 +16,7 @@ from rigidfluid.errors import SceneError
 Point = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 _SHORTEST_EDGE = 1e-9
-"""Over the size of the polygon."""
+"""Least length of an edge over the size of the polygon [1]."""
 
 _FOLDED = 1e-9
 """Sine of the angle at a corner that goes straight back."""

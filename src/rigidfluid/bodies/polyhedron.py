@@ -80,9 +80,9 @@ def _refuse_open(points: FloatArray, vertices: IntArray) -> None:
     if unlike.any():
         found = f"{np.count_nonzero(unlike)} edges that triangles go along in one sense"
         allowed = "triangles that all go round alike, two at each edge"
-        raise SceneError("body.file", f"{found}{_at(points, edges, unlike)}", allowed, "Repair the file.")
+        raise SceneError("body.file", f"{found}{_first_edge(points, edges, unlike)}", allowed, "Repair the file.")
     if alone.any():
-        found = f"an open surface, {np.count_nonzero(alone)} edges with one triangle{_at(points, edges, alone)}"
+        found = f"an open surface, {np.count_nonzero(alone)} edges with one triangle{_first_edge(points, edges, alone)}"
         raise SceneError("body.file", found, "two triangles at each edge", "Close the holes, or join double points.")
     joined = coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(len(points),) * 2)
     pieces = connected_components(joined, directed=False)[0]
@@ -91,6 +91,6 @@ def _refuse_open(points: FloatArray, vertices: IntArray) -> None:
         raise SceneError("body.file", f"a surface in {pieces} pieces", "one piece", remedy)
 
 
-def _at(points: FloatArray, edges: IntArray, chosen: np.ndarray) -> str:
+def _first_edge(points: FloatArray, edges: IntArray, chosen: np.ndarray) -> str:
     a, b = points[edges[np.flatnonzero(chosen)[0]]].tolist()
     return f", the first from {a} to {b}"

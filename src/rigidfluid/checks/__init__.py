@@ -1,4 +1,4 @@
-"""What `rigidfluid check` asks of a scene before anything runs."""
+"""Questions that `rigidfluid check` asks of a scene before anything runs."""
 
 from rigidfluid.checks.finding import Finding
 from rigidfluid.checks.report import Report, check

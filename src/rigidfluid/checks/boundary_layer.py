@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
 from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
@@ -13,21 +13,9 @@ from rigidfluid.core.scene.scene import MeshTable
 QUESTION = "layer"
 
 
-def in_the_layer(system: System, mesh: MeshTable) -> Iterator[Finding]:
-    """Compare the thickness d/√Re of the thinnest boundary layer, at the expected speeds, with the cells on its body.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, speeds and fluid.
-    mesh : MeshTable
-        Sizes of the cells.
-
-    Yields
-    ------
-    Finding
-        One in a fluid with inertia where something moves; a warning where less than one cell fits.
-    """
+def layer_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the thickness d/√Re of the thinnest boundary layer, at the expected speeds, with the cells on its body,
+    in a fluid with inertia; a warning where less than one cell fits."""
     problem, speeds = system.backend.problem, system.loads.travel_speed
     if problem is None or not problem.inertia or speeds is None:
         return
@@ -45,8 +33,8 @@ def in_the_layer(system: System, mesh: MeshTable) -> Iterator[Finding]:
     text += f"; {CELLS_WANTED:g} are wanted, for forces and torques that do not change at new meshes"
     enough = {"size_body": size}
     if layer.cells >= FEWEST_CELLS:
-        text += f": mesh.size_body = {at_most(size)}"
+        text += f": mesh.size_body = {round_down(size)}"
         yield Finding("note", QUESTION, (name,), text, found=found, enough=enough)
         return
-    remedy = f'Set mesh.size_body to {at_most(size)} or less, or to "auto".'
+    remedy = f'Set mesh.size_body to {round_down(size)} or less, or to "auto".'
     yield Finding("warning", QUESTION, (name,), text, remedy, found, enough)

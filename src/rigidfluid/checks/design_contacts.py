@@ -35,7 +35,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.core.model.wall import Wall
 
 MOST_SHOWN = 8
-"""Of the classes of pairs, for one question."""
+"""Greatest number of kinds of pairs that one question reports."""
 
 
 @dataclass(frozen=True)
@@ -63,19 +63,19 @@ class DesignContacts:
     kind: Mapping[int, int]
 
     def turning_gaps(self) -> FloatArray:
-        """Where the impacts end, that the stacked weight pushes on (m,) [length]."""
+        """Gaps at which the impacts end while the stacked weight pushes on (m,) [length]."""
         return turning_gap(self.law, self.contacts, self.energy, self.stacked_weight)
 
     def stiffness(self) -> FloatArray:
-        """The greatest on the way to the turning gaps (m,) [force/length]."""
+        """Greatest stiffness on the way to the turning gaps (m,) [force/length]."""
         return greatest_stiffness(self.law, self.contacts, self.turning_gaps())
 
     def smallest_gap(self) -> float | None:
-        """The largest that the scene asks for in these contacts, None if it asks for none [length]."""
+        """Largest of the smallest gaps that the scene asks for in these contacts, None if it asks for none [length]."""
         return max((one.smallest_gap for one in self.interactions if one.smallest_gap is not None), default=None)
 
     def names(self, row: int) -> tuple[str, str]:
-        """Of the two surfaces."""
+        """Names of the two surfaces."""
         surfaces = self.system.surfaces
         return surfaces[self.contacts.body_a[row]], surfaces[self.contacts.body_b[row]]
 
@@ -100,49 +100,28 @@ class RepresentativeContacts(NamedTuple):
 
 
 def representative_contacts(system: System) -> Iterator[RepresentativeContacts]:
-    """Of bodies with the wall that their weight presses them on, or else any wall; and with each other.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, walls and interactions.
-
-    Yields
-    ------
-    RepresentativeContacts
-        For walls, and then for bodies, one for each set of interactions that act together.
-    """
+    """Contacts of bodies with the wall that their weight presses them on, or else any wall, and then with each other,
+    grouped by the interactions that act together."""
     bodies = representatives(system)
     moving = free(system, bodies)
     if system.walls and moving:
-        contacts = wall_contacts(system, moving, [_pressing(system, body) for body in moving])
-        yield from _by_interactions(system, True, contacts, _pressing_share(system, moving, contacts))
+        contacts = wall_contacts(system, moving, [_pressing_wall(system, body) for body in moving])
+        yield from _group_by_interactions(system, True, contacts, _pressing_share(system, moving, contacts))
     contacts = pair_contacts(system, bodies)
     if len(contacts):
-        yield from _by_interactions(system, False, contacts, np.ones(len(contacts)))
+        yield from _group_by_interactions(system, False, contacts, np.ones(len(contacts)))
 
 
 def design_contacts(system: System) -> Iterator[DesignContacts]:
-    """The representative contacts in which a law with an energy acts, with all that is expected of them.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, walls, loads and interactions.
-
-    Yields
-    ------
-    DesignContacts
-        As `representative_contacts` gives them.
-    """
+    """Representative contacts in which a law with an energy acts, with the loads and speeds expected of them."""
     kind = {body: number for number, alike in enumerate(body_classes(system)) for body in alike}
     for met in representative_contacts(system):
         law = acting_together(met.interactions)
         if law is not None and law.conservative:
-            yield _designed(system, law, met, kind)
+            yield _design(system, law, met, kind)
 
 
-def _by_interactions(
+def _group_by_interactions(
     system: System, at_walls: bool, contacts: Contacts, pressing: FloatArray
 ) -> Iterator[RepresentativeContacts]:
     acts = np.array([interaction.acts_in(contacts) for interaction in system.interactions]).reshape(-1, len(contacts))
@@ -152,7 +131,7 @@ def _by_interactions(
         yield RepresentativeContacts(at_walls, together, select(contacts, here), pressing[here])
 
 
-def _pressing(system: System, body: int) -> Wall:
+def _pressing_wall(system: System, body: int) -> Wall:
     return max(system.walls, key=lambda wall: -float(facing_normal(system, body, wall.shape) @ system.weight[body]))
 
 
@@ -164,7 +143,7 @@ def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> Fl
     return share
 
 
-def _designed(system: System, law: ForceLaw, met: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
+def _design(system: System, law: ForceLaw, met: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
     loads, contacts = system.loads, met.contacts
     nearest = [one.law.loads.smallest_gap for one in met.interactions if one.law.loads is not None]
     share = share_left(contacts, loads, law.range, max(nearest, default=law.range))

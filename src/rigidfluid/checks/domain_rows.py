@@ -1,4 +1,4 @@
-"""What a scene's domain is: its size, its file, and the surfaces of its boundary."""
+"""Description of a scene's domain: its size, its file, and the surfaces of its boundary."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rigidfluid.core.setup.boundary import boundary_table
 
 @dataclass(frozen=True)
 class SurfaceRow:
-    """A surface of the domain: what shape it has, how large it is, and what holds on it."""
+    """A surface of the domain: its shape, area and boundary condition."""
 
     name: str
     shape: str
@@ -38,7 +38,7 @@ class DomainRow:
 
 
 def domain_row(scene: Scene, domain: Domain) -> DomainRow:
-    """What to tell of a scene's domain."""
+    """Description of a scene's domain."""
     lower, upper = (tuple(corner.tolist()) for corner in domain.extent)
     surfaces = tuple(
         SurfaceRow(piece.name, _shape(piece.shape, domain), piece.area, _condition(scene, piece.name))

@@ -1,4 +1,4 @@
-"""How much of an impact's energy does a step get wrong that does not resolve it?"""
+"""Error of an impact's energy by steps that do not resolve it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.stepping import ACCURATE
 from rigidfluid.core.contact.loads import pair_values
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
@@ -17,7 +17,7 @@ from rigidfluid.core.run.impacts import HALVINGS, TOLERATED
 
 QUESTION = "energy-error"
 _ALLOWED = 0.05
-"""Of the energy of an impact."""
+"""Greatest error of an impact's energy that is allowed, over that energy [1]."""
 _LAYER_FACTOR = 1.0
 """Empirical: what a falling disk was seen to lose with four steps is 1 to 1.5 times the estimate with it."""
 
@@ -31,8 +31,8 @@ class _Rates(NamedTuple):
     def error(self, step: float) -> float:
         return self.layer * float(np.sqrt(step)) + self.fall * step
 
-    def at_impact(self, step: float, bodies: int) -> float:
-        """What a run cuts the ``step`` to where one of so many bodies hits [time]."""
+    def cut_step(self, step: float, bodies: int) -> float:
+        """Step [time] that a run cuts the nominal ``step`` to where one of so many bodies hits."""
         for _ in range(HALVINGS):
             if self.error(step) <= TOLERATED * bodies:
                 break
@@ -40,36 +40,21 @@ class _Rates(NamedTuple):
         return step
 
     def longest_step(self, bodies: int) -> float:
-        """With the error that is allowed, in the steps at the impact [time]."""
+        """Longest nominal step with the allowed error, in the cut steps at the impact [time]."""
         root = 2.0 * _ALLOWED / (self.layer + np.sqrt(self.layer**2 + 4.0 * _ALLOWED * self.fall))
         cut = HALVINGS if TOLERATED * bodies < _ALLOWED else 0
         return float(2.0**cut * root**2)
 
 
-def in_the_fluid(met: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:
-    """Estimate what share of an impact's energy the fluid's step gets wrong, where it is long beside the contact.
+def energy_error_findings(met: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:
+    """Estimate the share of an impact's energy that the fluid's ``step`` Δt [time] gets wrong, for contacts of
+    frequency ω Δt > 0.5; a warning above 5 %. A fluid without inertia lets nothing rebound, and nothing is estimated.
 
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, with a wall or with each other.
-    fluid : FluidProblem
-        The fluid; without inertia it lets nothing rebound, and nothing is estimated.
-    step : float
-        The nominal step Δt [time].
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair with a contact of frequency ω Δt > 0.5, a warning where more than 5 % are wrong.
-
-    Notes
-    -----
     A run shortens steps in impacts that take much of all energy, and the estimate is that of the shortened step, all
-    bodies taken as alike. Two parts are added. In a step the fluid's answer to an impulse is a viscous layer of
+    bodies taken as alike. Two parts are added. In a step the fluid's response to an impulse is a viscous layer of
     thickness δ = √(ν Δt), which is as heavy as ρ δ S/m beside the mass, added mass included, S being the surface of a
-    ball of equal volume. And the weight acts for one step at a velocity that is the one before or after the impact:
-    a Δt/v, with a = W/m.
+    ball of equal volume. And the weight acts for one step at a velocity that is the one before or after the impact: a
+    Δt/v, with a = W/m.
     """
     frequency = np.sqrt(met.stiffness() * met.inverse_mass)
     struck = fluid.inertia & (met.speed > 0.0) & (frequency * step > ACCURATE)
@@ -98,7 +83,7 @@ def _fall_rate(met: DesignContacts) -> FloatArray:
 
 def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
     bodies = int(np.sum(~met.system.controlled))
-    cut = rates.at_impact(step, bodies)
+    cut = rates.cut_step(step, bodies)
     error = min(rates.error(cut), 1.0)
     found = {
         "energy_error": error,
@@ -114,5 +99,5 @@ def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, ste
     if error <= _ALLOWED:
         return Finding("note", QUESTION, met.names(row), text, found=found)
     enough = {"time_step": max(rates.longest_step(bodies), ACCURATE / frequency)}
-    remedy = f"Set time.step to {at_most(enough['time_step'])} or less for {figure(100.0 * _ALLOWED)} %."
+    remedy = f"Set time.step to {round_down(enough['time_step'])} or less for {figure(100.0 * _ALLOWED)} %."
     return Finding("warning", QUESTION, met.names(row), text, remedy, found, enough)

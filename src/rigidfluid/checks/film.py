@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rigidfluid.checks.design_contacts import representative_contacts
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
@@ -25,21 +25,9 @@ def resolved_gap(mesh: MeshTable, radius: FloatArray) -> FloatArray:
     return np.asarray((mesh.size_body / 2**mesh.refinements) ** 2 / radius)
 
 
-def counted_once(system: System, mesh: MeshTable) -> Iterator[Finding]:
-    """Compare the ranges of laws of films with h²/R: there the finest cells h are as wide as the film, √(R gap).
-
-    Parameters
-    ----------
-    system : System
-        Bodies and laws.
-    mesh : MeshTable
-        Sizes of the cells.
-
-    Yields
-    ------
-    Finding
-        A warning for each such law at walls, and one between bodies, where the mesh resists as well.
-    """
+def film_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the ranges of laws of films with h²/R, the gap where the finest cells h are as wide as the film, √(R
+    gap); a warning where the mesh resolves the film that a law counts as well."""
     for met in representative_contacts(system):
         for interaction in met.interactions:
             if interaction.law.film and len(met.contacts):
@@ -58,6 +46,6 @@ def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh:
         f"{' and '.join(names)}: the finest cells, {figure(finest)}, resolve films down to gaps of {figure(resolved)}"
     )
     text += f", and {interaction.law.name!r} counts them again from {figure(law_range)} on"
-    remedy = f"Leave the law out, set {interaction.field}.range to {at_most(resolved)}, or lower mesh.refinements."
+    remedy = f"Leave the law out, set {interaction.field}.range to {round_down(resolved)}, or lower mesh.refinements."
     found = {"range": law_range, "resolved": resolved, "finest_cell": finest}
     yield Finding("warning", QUESTION, names, text, remedy, found, {"range": resolved})

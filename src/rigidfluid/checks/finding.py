@@ -1,4 +1,4 @@
-"""What a check finds: how grave, about whom, how much, and what would be enough."""
+"""Answer to a question: how grave it is, about whom, how much, and what would be enough."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Finding:
     enough: Figures = field(default_factory=dict)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON, which knows neither infinity nor NaN: such figures are null."""
+        """Values for JSON, which knows neither infinity nor NaN: such figures are null."""
         return {
             "grade": self.grade,
             "question": self.question,
@@ -47,13 +47,13 @@ def figure(value: float) -> str:
     return f"{value:.3g}"
 
 
-def at_most(value: float) -> str:
-    """A positive number rounded down to three digits, so that whoever copies it stays on the right side."""
+def round_down(value: float) -> str:
+    """Round a positive number down to three digits, so that whoever copies it stays on the right side."""
     return _rounded(value, floor)
 
 
-def at_least(value: float) -> str:
-    """A positive number rounded up to three digits."""
+def round_up(value: float) -> str:
+    """Round a positive number up to three digits."""
     return _rounded(value, ceil)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, figure
-from rigidfluid.checks.remedies import stronger
+from rigidfluid.checks.remedies import strength_remedy
 from rigidfluid.checks.response import barrier, energy_along
 from rigidfluid.core.model.types import FloatArray
 
@@ -17,19 +17,11 @@ _SLACK = 0.8
 """An impact may end at this share of the smallest gap wanted."""
 
 
-def on_impact(met: DesignContacts) -> Iterator[Finding]:
-    """Compare what the law stores up to contact with the energy of the impact, that of a stack if need be, + W range.
+def impact_findings(met: DesignContacts) -> Iterator[Finding]:
+    """Compare the energy that the law stores up to contact with that of the impact, in a stack if need be, + W range.
 
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, with a wall or with each other.
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair that moves or has weight; an error where the law is too weak for the two alone and
-        nothing else brakes, a warning where a fluid or the law's dampers brake too, or bodies come down together.
+    An error where the law is too weak for the two alone and nothing else brakes; a warning where a fluid or the law's
+    dampers brake too, or bodies come down together.
     """
     work = met.energy + met.stacked_weight * met.law.range
     stored = barrier(met.law, met.contacts)
@@ -41,7 +33,7 @@ def on_impact(met: DesignContacts) -> Iterator[Finding]:
             yield _finding(met, row, float(share[row]), bool(stops_two[row]), float(gaps[row]))
     wanted = met.smallest_gap()
     if wanted is not None:
-        yield from _too_near(met, gaps, wanted)
+        yield from _near_findings(met, gaps, wanted)
 
 
 def _finding(met: DesignContacts, row: int, share: float, stops_two: bool, gap: float) -> Finding:
@@ -53,7 +45,7 @@ def _finding(met: DesignContacts, row: int, share: float, stops_two: bool, gap: 
         text = f"{fast} is stopped at a gap of {figure(gap)}, if nothing else brakes it"
         return Finding("note", QUESTION, met.names(row), text, found=found)
     text = f"{fast}: up to contact the law takes up only {figure(share)} of the impact"
-    enough, remedy = stronger(met, share)
+    enough, remedy = strength_remedy(met, share)
     braked = met.system.backend.needs_mesh or met.law.dissipative
     if braked:
         text += (
@@ -63,13 +55,13 @@ def _finding(met: DesignContacts, row: int, share: float, stops_two: bool, gap: 
     return Finding(grade, QUESTION, met.names(row), text, remedy, found, enough)
 
 
-def _too_near(met: DesignContacts, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
-    """Which impacts end nearer than the smallest gap that the scene asks for."""
+def _near_findings(met: DesignContacts, gaps: FloatArray, wanted: float) -> Iterator[Finding]:
+    """Report impacts that end nearer than the smallest gap that the scene asks for."""
     needed = met.energy + met.stacked_weight * (met.law.range - wanted)
     stored = energy_along(met.law, met.contacts, np.full((len(gaps), 1), wanted))[:, 0]
     for row in met.worst(-gaps):
         if gaps[row] < _SLACK * wanted:
-            enough, remedy = stronger(met, float(stored[row] / needed[row]))
+            enough, remedy = strength_remedy(met, float(stored[row] / needed[row]))
             pair = " and ".join(met.names(row))
             text = f"{pair} may come as near as {figure(gaps[row])}, and smallest_gap is {figure(wanted)}"
             found = _figures(met, row, float(gaps[row]))

@@ -1,4 +1,4 @@
-"""What do joints leave free, how fast do their springs swing, and how far can hinges turn?"""
+"""Freedoms that joints leave, frequencies of their springs, and angles to which hinges can turn."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.core.model.linkage import Joint, Linkage
@@ -20,41 +20,31 @@ from rigidfluid.core.setup.parts import Parts
 QUESTION = "joints"
 
 _WELL_RESOLVED = 0.2
-"""Up to this frequency times step a spring's period errs by less than 0.2 %."""
+"""Greatest frequency times step at which a spring's period errs by less than 0.2 % [1]."""
 
 _SCAN = np.linspace(0.0, np.pi, 73)[1:]
 _BISECTIONS = 10
 _STROKE_SAMPLES = 400
 
 
-def of_joints(parts: Parts, system: System) -> Iterator[Finding]:
-    """Count freedoms, compare springs with the step, and turn hinges until their bodies touch.
+def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
+    """Count freedoms, compare springs with the step, and turn hinges between two bodies until these touch.
 
-    Parameters
-    ----------
-    parts : Parts
-        Of the scene.
-    system : System
-        What was built from it.
-
-    Yields
-    ------
-    Finding
-        A note on all of them; one on springs, a warning where frequency times step is above 0.2; and one for each hinge
-        between two bodies, a warning where they touch within half a turn, an error where a drive leads there.
+    A warning where frequency times step is above 0.2, or bodies touch within half a turn; an error where a drive leads
+    there.
     """
     if system.linkage is None:
         return
     scene = parts.scene
-    yield _freedoms(scene, system, system.linkage)
+    yield _freedom_finding(scene, system, system.linkage)
     if system.linkage.frequency > 0.0:
-        yield _springs(scene, system, system.linkage)
+        yield _spring_finding(scene, system, system.linkage)
     for joint in joints_of(scene, system.pose):
         if joint.type == "hinge" and joint.second is not None:
-            yield _clearance(parts, system, joint, joint.second)
+            yield _clearance_finding(parts, system, joint, joint.second)
 
 
-def _freedoms(scene: Scene, system: System, linkage: Linkage) -> Finding:
+def _freedom_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
     motions = system.pose if system.mechanisms is None else system.mechanisms.pose
     links = linkage.links(motions, 0.0)
     width = links.rows.shape[2]
@@ -65,8 +55,9 @@ def _freedoms(scene: Scene, system: System, linkage: Linkage) -> Finding:
     return Finding("note", QUESTION, (), text, found=found)
 
 
-def _springs(scene: Scene, system: System, linkage: Linkage) -> Finding:
-    """Added mass makes springs slower, by the mean of all that is linked."""
+def _spring_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
+    """Compare the frequency of the stiffest spring with the step; added mass slows it, by the mean of all that is
+    linked."""
     frequency, step = linkage.frequency, scene.time.step
     carrier = np.arange(len(system.mass)) if system.mechanisms is None else system.mechanisms.carrier
     linked = linkage.linked[carrier]
@@ -82,21 +73,21 @@ def _springs(scene: Scene, system: System, linkage: Linkage) -> Finding:
     if frequency * step <= _WELL_RESOLVED:
         return Finding("note", QUESTION, (), text, found=found)
     enough = {"time_step": _WELL_RESOLVED / frequency}
-    remedy = f"Set time.step to {at_most(enough['time_step'])} or less."
+    remedy = f"Set time.step to {round_down(enough['time_step'])} or less."
     return Finding("warning", QUESTION, (), f"{text}: few steps for that", remedy, found, enough)
 
 
-def _clearance(parts: Parts, system: System, joint: Joint, second: int) -> Finding:
-    """How far the first body can turn either way before it touches the second."""
+def _clearance_finding(parts: Parts, system: System, joint: Joint, second: int) -> Finding:
+    """Report how far the first body can turn either way before it touches the second."""
     names = system.surfaces[joint.first], system.surfaces[second]
     gap = partial(_gap, parts.exact_detector, system, joint, second)
-    up, down = _touches(gap, 1.0), _touches(gap, -1.0)
+    up, down = _touching_angle(gap, 1.0), _touching_angle(gap, -1.0)
     found = {"gap": gap(0.0), "least_angle": -down, "greatest_angle": up}
     text = f"hinge {joint.name} of {names[0]} and {names[1]}, a gap of {figure(gap(0.0))} apart, "
     if np.isinf(up) and np.isinf(down):
         return Finding("note", QUESTION, names, text + "turns all around", found=found)
     text += f"turns from {figure(-down)} to {figure(up)} until they touch"
-    least, greatest = _driven(parts.scene, joint)
+    least, greatest = _drive_angles(parts.scene, joint)
     if least <= -down or greatest >= up:
         text += f", and its drive from {figure(least)} to {figure(greatest)}"
         return Finding("error", QUESTION, names, text, "Move them apart, or drive it less far.", found)
@@ -106,16 +97,16 @@ def _clearance(parts: Parts, system: System, joint: Joint, second: int) -> Findi
     return Finding("warning", QUESTION, names, text, remedy, found)
 
 
-def _driven(scene: Scene, joint: Joint) -> tuple[float, float]:
-    """Least and greatest angle of its drive; 0 without one."""
+def _drive_angles(scene: Scene, joint: Joint) -> tuple[float, float]:
+    """Least and greatest angle of a joint's drive; 0 without one."""
     if joint.drive is None:
         return 0.0, 0.0
     angles = [joint.drive(time)[0] for time in np.linspace(0.0, scene.time.end, _STROKE_SAMPLES)]
     return min(angles), max(angles)
 
 
-def _touches(gap: Callable[[float], float], sign: float) -> float:
-    """The angle at which they do either way, infinite where they do not within half a turn [rad]."""
+def _touching_angle(gap: Callable[[float], float], sign: float) -> float:
+    """Angle at which the two bodies touch either way, infinite where they do not within half a turn [rad]."""
     before = 0.0
     for angle in _SCAN:
         if gap(sign * angle) <= 0.0:
@@ -131,7 +122,7 @@ def _touches(gap: Callable[[float], float], sign: float) -> float:
 
 
 def _gap(detector: type[Detector], system: System, joint: Joint, second: int, angle: float) -> float:
-    """Between the two where the first has turned by an ``angle`` [length]."""
+    """Gap between the two bodies where the first has turned by an ``angle`` [length]."""
     pair = [joint.first, second]
     position, orientation = system.pose.position[pair], system.pose.orientation[pair]
     turn = _turn(joint, angle)

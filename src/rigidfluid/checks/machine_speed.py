@@ -1,4 +1,4 @@
-"""How fast this machine solves, beside the one on which steps were timed."""
+"""Speed of this machine's solver, relative to the machine on which steps were timed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What do mechanisms do along their strokes: is there room, can the mesh follow, and do steps and cycles fit?"""
+"""Course of mechanisms along their strokes: room, resolution of the mesh, steps and cycles."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.system import Mechanisms, System
 from rigidfluid.core.scene.scene import MeshTable
@@ -19,33 +19,22 @@ QUESTION = "stroke"
 
 _MOST_CORNERS_NAMED = 4
 _OFF_GRID = 1e-6
-"""Of a step: corners that near to one's end are there."""
+"""Greatest distance of a corner from the end of a step, over the step, that counts as being there [1]."""
 
 
 class _Stroke(NamedTuple):
-    """One mechanism of a scene, by its name, and the number of its motion."""
+    """Mechanism of a scene, by its name, and the number of its motion."""
 
     name: str
     mechanism: Mechanism
     motion: int
 
 
-def of_mechanisms(parts: Parts, system: System) -> Iterator[Finding]:
-    """Follow the strokes of each mechanism from where it starts.
+def mechanism_findings(parts: Parts, system: System) -> Iterator[Finding]:
+    """Follow the strokes of each mechanism from where it starts: a note on its momentum and its cycles.
 
-    Parameters
-    ----------
-    parts : Parts
-        Of the scene.
-    system : System
-        What was built from it.
-
-    Yields
-    ------
-    Finding
-        Of each mechanism that moves relatively: a note on its momentum and its cycles; a warning where components come
-        nearer to each other than the mesh resolves, where a component would reach a wall if the whole stayed where it
-        starts, and where corners are within steps.
+    A warning where components come nearer to each other than the mesh resolves, where a component would reach a wall if
+    the whole stayed where it starts, and where corners are within steps.
     """
     carried, scene = system.mechanisms, parts.scene
     if carried is None:
@@ -55,13 +44,13 @@ def of_mechanisms(parts: Parts, system: System) -> Iterator[Finding]:
     for number, (name, mechanism) in enumerate(parts.mechanisms.items()):
         if mechanism.driven:
             stroke = _Stroke(name, mechanism, first + number)
-            yield _cycles(stroke, scene.time.end)
-            yield from _components(stroke, scene.time.end, parts, mesh)
-            yield from _walls(stroke, scene.time.end, system, carried, parts)
-            yield from _corners(stroke, scene.time.step, scene.time.end)
+            yield _cycle_finding(stroke, scene.time.end)
+            yield from _component_findings(stroke, scene.time.end, parts, mesh)
+            yield from _wall_findings(stroke, scene.time.end, system, carried, parts)
+            yield from _corner_findings(stroke, scene.time.step, scene.time.end)
 
 
-def _cycles(stroke: _Stroke, end: float) -> Finding:
+def _cycle_finding(stroke: _Stroke, end: float) -> Finding:
     text = f"{stroke.name} is carried by its centre of mass: its strokes give no linear momentum, whatever their rates"
     period = stroke.mechanism.period
     if period is None:
@@ -71,7 +60,7 @@ def _cycles(stroke: _Stroke, end: float) -> Finding:
     return Finding("note", QUESTION, (stroke.name,), text, found={"period": period, "cycles": end / period})
 
 
-def _components(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTable | None) -> Iterator[Finding]:
+def _component_findings(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTable | None) -> Iterator[Finding]:
     nearest = nearest_components(stroke.mechanism, end, parts.exact_detector)
     if nearest is None:
         return
@@ -85,11 +74,11 @@ def _components(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTable | Non
         return
     text += f", and {mesh.cells_per_gap} cells of the finest size need {figure(finest)}"
     size = nearest.gap * 2**mesh.refinements / mesh.cells_per_gap
-    remedy = f"Set mesh.size_body to {at_most(size)} or less, allow more mesh.refinements, or shorten the stroke."
+    remedy = f"Set mesh.size_body to {round_down(size)} or less, allow more mesh.refinements, or shorten the stroke."
     yield Finding("warning", QUESTION, names, text, remedy, found, {"size_body": size})
 
 
-def _walls(stroke: _Stroke, end: float, system: System, carried: Mechanisms, parts: Parts) -> Iterator[Finding]:
+def _wall_findings(stroke: _Stroke, end: float, system: System, carried: Mechanisms, parts: Parts) -> Iterator[Finding]:
     """The least gap to a surface of the domain while the whole is where it starts."""
     mine = np.flatnonzero(carried.carrier == stroke.motion)
     shapes = [system.bodies[body] for body in mine]
@@ -108,8 +97,8 @@ def _walls(stroke: _Stroke, end: float, system: System, carried: Mechanisms, par
     yield Finding("warning", QUESTION, names, text, "Start farther from it.", {"gap": least, "time": when})
 
 
-def _corners(stroke: _Stroke, step: float, end: float) -> Iterator[Finding]:
-    """Steps end at corners; those that no step meets are approached by halved ones."""
+def _corner_findings(stroke: _Stroke, step: float, end: float) -> Iterator[Finding]:
+    """Warn of corners at which no step ends by itself, so that steps are halved towards them."""
     times = list(corners(stroke.mechanism, min(end, stroke.mechanism.period or end)))
     off = [time for time in times if abs(time / step - round(time / step)) > _OFF_GRID]
     if not off:

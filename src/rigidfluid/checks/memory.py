@@ -11,19 +11,9 @@ from rigidfluid.core.model.memory import REMEDY, available_memory, gigabytes
 QUESTION = "memory"
 
 
-def in_memory(size: RunSize) -> Iterator[Finding]:
-    """Compare the most memory that the backend expects to take, at the start or later, with what is available now.
-
-    Parameters
-    ----------
-    size : RunSize
-        Of the meshes.
-
-    Yields
-    ------
-    Finding
-        A warning where that is more than there is.
-    """
+def memory_findings(size: RunSize) -> Iterator[Finding]:
+    """Compare the most memory that the backend expects to take, at the start or later, with what is available now; a
+    warning where it is more."""
     start, most = size.start_cost, size.most_cost
     costly = max(start, most, key=lambda cost: cost.memory)
     available = available_memory()

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.loads import impact_energy
 from rigidfluid.core.contact.proximity import are_separate
 from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
@@ -20,23 +20,9 @@ from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.scene import MeshTable
 
 
-def at_the_start(system: System, interaction: Interaction, start: Contacts) -> Iterator[Finding]:
-    """Which surfaces are within range at the start, and whether what is stored there drives them apart like an impact.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and loads.
-    interaction : Interaction
-        One of its laws.
-    start : Contacts
-        Of the bodies and all surfaces of the domain at the start.
-
-    Yields
-    ------
-    Finding
-        One, of the pair that stores most; a warning where that is more than the expected impact.
-    """
+def start_findings(system: System, interaction: Interaction, start: Contacts) -> Iterator[Finding]:
+    """Report the pair within range at the start that stores most energy; a warning where that is more than the expected
+    impact. ``start`` has the contacts of bodies and all surfaces of the domain."""
     repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
     law = interaction.law
     near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
@@ -54,26 +40,14 @@ def at_the_start(system: System, interaction: Interaction, start: Contacts) -> I
         return
     text += f", which stores {figure(energy)}: more than the expected impact of {figure(impact[most])}"
     remedy = (
-        f"Move them apart by {figure(law.range - gap)}, or set {interaction.field}.range to {at_most(gap)} or less."
+        f"Move them apart by {figure(law.range - gap)}, or set {interaction.field}.range to {round_down(gap)} or less."
     )
     yield Finding("warning", "start", names, text, remedy, found, {"range": gap})
 
 
-def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]:
-    """Whether a body midway between parallel flat walls is free of both.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and walls.
-    interaction : Interaction
-        One of its laws.
-
-    Yields
-    ------
-    Finding
-        One for each shape and pair of walls that is never free: a warning; or only at some angles: a note.
-    """
+def parallel_wall_findings(system: System, interaction: Interaction) -> Iterator[Finding]:
+    """Find parallel flat walls between which a body midway is never free of both: a warning; or only at some angles: a
+    note."""
     flat = [(wall, plane) for wall in system.walls if (plane := wall.shape.plane)]
     for (wall, plane), (opposite, other) in combinations(flat, 2):
         if not np.array_equal(plane.unit_normal, -other.unit_normal):
@@ -82,10 +56,12 @@ def between_walls(system: System, interaction: Interaction) -> Iterator[Finding]
         for kind in body_classes(system):
             both = wall_contacts(system, kind[:1] * 2, [wall, opposite])
             if free(system, kind) and interaction.acts_in(both).all():
-                yield from _between(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, interaction)
+                yield from _between_finding(system.surfaces[kind[0]], system.bodies[kind[0]], pair, width, interaction)
 
 
-def _between(name: str, body: Body, pair: list[str], width: float, interaction: Interaction) -> Iterator[Finding]:
+def _between_finding(
+    name: str, body: Body, pair: list[str], width: float, interaction: Interaction
+) -> Iterator[Finding]:
     law_range = interaction.law.range
     least, most = 0.5 * width - body.bounding_radius, 0.5 * width - inscribed_radius(body)
     if law_range <= least:
@@ -95,39 +71,24 @@ def _between(name: str, body: Body, pair: list[str], width: float, interaction: 
     text = f"midway between {pair[0]} and {pair[1]} {name} has gaps of {figure(least)} to {figure(most)}"
     text += ", so that both act in every place" if always else ", so that at some angles both act in every place"
     key = f"{interaction.field}.range"
-    remedy = f"Set {key} to {at_most(least)} or less, or mean it." if least > 0.0 else "Widen the domain."
+    remedy = f"Set {key} to {round_down(least)} or less, or mean it." if least > 0.0 else "Widen the domain."
     yield Finding("warning" if always else "note", "free-gap", (name, *pair), text, remedy, found, {"range": least})
 
 
-def beside_sizes(system: System, interaction: Interaction, mesh: MeshTable | None) -> Iterator[Finding]:
-    """Compare the range with the smallest body and with the finest cells in gaps, but for laws of films.
-
-    Parameters
-    ----------
-    system : System
-        Bodies.
-    interaction : Interaction
-        One of its laws.
-    mesh : MeshTable or None
-        Sizes of the cells, if there are any.
-
-    Yields
-    ------
-    Finding
-        Warnings alone.
-    """
+def range_findings(system: System, interaction: Interaction, mesh: MeshTable | None) -> Iterator[Finding]:
+    """Warn of a range wider than the smallest body, or narrower than the finest cells in gaps but for laws of films."""
     law, key = interaction.law, f"{interaction.field}.range"
     smallest = min((kind[0] for kind in body_classes(system)), key=lambda body: half_thickness(system.bodies[body]))
     name, size = system.surfaces[smallest], half_thickness(system.bodies[smallest])
     if law.range > size:
         text = f"the law reaches {figure(law.range)}, further than the largest ball inside {name}, {figure(size)}"
-        remedy, found = f"Set {key} to {at_most(size)} or less.", {"range": law.range, "half_thickness": size}
+        remedy, found = f"Set {key} to {round_down(size)} or less.", {"range": law.range, "half_thickness": size}
         yield Finding("warning", "range", (name,), text, remedy, found, {"range": size})
     if mesh is None or law.film:
         return
     finest, enough = mesh.size_body / 2**mesh.refinements, law.range * 2**mesh.refinements
     if law.range < finest:
         text = f"the law begins at {figure(law.range)}, within one of the finest cells of {figure(finest)}"
-        remedy = f"Set mesh.size_body to {at_most(enough)} or less, or widen {key}."
+        remedy = f"Set mesh.size_body to {round_down(enough)} or less, or widen {key}."
         found = {"range": law.range, "size_body": mesh.size_body, "finest_cell": finest}
         yield Finding("warning", "range", (), text, remedy, found, {"size_body": enough})

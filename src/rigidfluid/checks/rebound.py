@@ -1,4 +1,4 @@
-"""What would come back of the expected impact, and does the law give back more?"""
+"""Rebound expected of an impact in a film, beside what the law gives back."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.film import resolved_gap
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.film_loss import braking
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
@@ -22,33 +22,19 @@ REBOUND = 10.0
 BALLS = 35.0
 """β of balls in liquids: they come back with exp(-β/St) of the speed of a dry rebound."""
 COMES_BACK = 0.1
-"""Where nothing should come back, a law that gives back more than that of the speed is warned of."""
+"""Least part of the speed that counts as a rebound [1]: a law that gives back more is warned of where nothing should
+come back."""
 _HALVINGS = 50
 
 
-def in_a_film(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
-    """Say what a law without losses means at the Stokes number of the impact.
+def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the rebound that a law without losses gives with that expected at the Stokes number of the impact: a
+    warning where nothing should come back and something does, else a note. A fluid without inertia lets nothing
+    rebound, and nothing is said.
 
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, with a wall or with each other.
-    film : Film
-        Of the fluid; without inertia it lets nothing rebound, and nothing is said.
-    mesh : MeshTable
-        Sizes of the cells, which may resolve the film before the law acts.
-
-    Yields
-    ------
-    Finding
-        For each kind of pair that moves, where no law takes energy out: a warning where nothing should come back and
-        something does, else a note.
-
-    Notes
-    -----
-    Gondret, Lance and Petit, Phys. Fluids 14 (2002) 643, doi:10.1063/1.1427920; Joseph, Zenit, Hunt and Rosenwinkel,
-    J. Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470; β: Legendre, Daniel and Guiraud, Phys. Fluids 17
-    (2005) 097105, doi:10.1063/1.2010527.
+    Gondret, Lance and Petit, Phys. Fluids 14 (2002) 643, doi:10.1063/1.1427920; Joseph, Zenit, Hunt and Rosenwinkel, J.
+    Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470; β: Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005)
+    097105, doi:10.1063/1.2010527.
     """
     if met.law.dissipative or not film.inertia:
         return
@@ -93,7 +79,7 @@ def _finding(met: DesignContacts, film: Film, row: int, stokes: float, resolved:
     enough, remedy = {"restitution_stokes": BALLS}, f"Set {field}.restitution_stokes to {BALLS:g}"
     thin = _range_that_stops(select(met.contacts, np.array([row])), film, stokes)
     if thin is not None and thin > resolved:
-        remedy, enough["range"] = f"{remedy}, or {field}.range to {at_most(thin)}", thin
+        remedy, enough["range"] = f"{remedy}, or {field}.range to {round_down(thin)}", thin
     return Finding("warning", QUESTION, met.names(row), text, f"{remedy}.", found, enough)
 
 

@@ -1,4 +1,4 @@
-"""All questions, asked of one scene before any heavy work."""
+"""Report of all questions, asked of one scene before any heavy work."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.checks.boundary_layer import in_the_layer
+from rigidfluid.checks.boundary_layer import layer_findings
 from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.domain_rows import DomainRow, domain_row
-from rigidfluid.checks.energy_error import in_the_fluid
-from rigidfluid.checks.film import counted_once
+from rigidfluid.checks.energy_error import energy_error_findings
+from rigidfluid.checks.film import film_findings
 from rigidfluid.checks.finding import GRADES, Finding
-from rigidfluid.checks.impact import on_impact
-from rigidfluid.checks.joints import of_joints
-from rigidfluid.checks.mechanisms import of_mechanisms
-from rigidfluid.checks.memory import in_memory
-from rigidfluid.checks.range_checks import at_the_start, beside_sizes, between_walls
-from rigidfluid.checks.rebound import in_a_film
-from rigidfluid.checks.resolution import in_the_gap
+from rigidfluid.checks.impact import impact_findings
+from rigidfluid.checks.joints import joint_findings
+from rigidfluid.checks.mechanisms import mechanism_findings
+from rigidfluid.checks.memory import memory_findings
+from rigidfluid.checks.range_checks import parallel_wall_findings, range_findings, start_findings
+from rigidfluid.checks.rebound import rebound_findings
+from rigidfluid.checks.resolution import resolution_findings
 from rigidfluid.checks.run_size import run_size
-from rigidfluid.checks.run_time import in_time
-from rigidfluid.checks.separation import by_a_law, by_auto, by_walls
-from rigidfluid.checks.shapes import of_facets
-from rigidfluid.checks.static_load import at_rest, under_a_stack
-from rigidfluid.checks.stepping import in_steps
-from rigidfluid.checks.tolerance import to_a_tolerance
+from rigidfluid.checks.run_time import run_time_findings
+from rigidfluid.checks.separation import law_findings, open_face_findings, strength_findings
+from rigidfluid.checks.shapes import facet_findings
+from rigidfluid.checks.static_load import rest_findings, stack_findings
+from rigidfluid.checks.stepping import step_findings
+from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray
@@ -58,7 +58,7 @@ class BodyRow:
 
 @dataclass(frozen=True)
 class Report:
-    """What a check has found: the domain, what is switched on and off, the bodies, and findings, the gravest first."""
+    """Answers of a check: the domain, features switched on and off, bodies, and findings, the gravest first."""
 
     scene: str
     domain: DomainRow
@@ -67,11 +67,11 @@ class Report:
     findings: tuple[Finding, ...]
 
     def count(self, grade: str) -> int:
-        """How many findings have this grade."""
+        """Number of findings of this grade."""
         return sum(finding.grade == grade for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it, in values that JSON can hold."""
+        """Values of the report that JSON can hold."""
         return {
             "scene": self.scene,
             **{f"{grade}s": self.count(grade) for grade in GRADES},
@@ -83,23 +83,8 @@ class Report:
 
 
 def check(scene: Scene) -> Report:
-    """Ask all questions of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        A validated scene; no mesh is made.
-
-    Returns
-    -------
-    Report
-        Features, bodies and findings.
-
-    Raises
-    ------
-    RigidfluidError
-        If the scene cannot be built at all.
-    """
+    """Ask all questions of a validated scene, without making a mesh; raises RigidfluidError if it cannot be built at
+    all."""
     with no_exit():
         system, parts = build_system(scene), known_parts(scene)
         scene = parts.scene
@@ -114,26 +99,26 @@ def check(scene: Scene) -> Report:
 def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
     scene = parts.scene
-    yield from chain(by_a_law(system), by_walls(system), by_auto(system))
-    yield from chain(to_a_tolerance(scene.time), of_facets(system))
-    yield from chain(of_joints(parts, system), of_mechanisms(parts, system))
+    yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
+    yield from chain(tolerance_findings(scene.time), facet_findings(system))
+    yield from chain(joint_findings(parts, system), mechanism_findings(parts, system))
     mesh = scene.mesh if system.backend.needs_mesh else None
     if mesh is not None:
         size = run_size(parts, system, mesh, scene.time)
         if size is not None:
-            yield from chain(in_memory(size), in_time(size, system, scene.time))
-        yield from chain(in_the_layer(system, mesh), counted_once(system, mesh))
+            yield from chain(memory_findings(size), run_time_findings(size, system, scene.time))
+        yield from chain(layer_findings(system, mesh), film_findings(system, mesh))
     for met in design_contacts(system):
-        yield from chain(at_rest(met), under_a_stack(met), on_impact(met), in_steps(met, scene.time))
+        yield from chain(rest_findings(met), stack_findings(met), impact_findings(met), step_findings(met, scene.time))
         if mesh is not None:
-            yield from in_the_gap(met, mesh)
+            yield from resolution_findings(met, mesh)
         if mesh is not None and system.backend.problem is not None:
-            yield from in_the_fluid(met, system.backend.problem, scene.time.step)
+            yield from energy_error_findings(met, system.backend.problem, scene.time.step)
         if mesh is not None and system.loads.film is not None:
-            yield from in_a_film(met, system.loads.film, mesh)
+            yield from rebound_findings(met, system.loads.film, mesh)
     for interaction in system.interactions:
-        yield from at_the_start(system, interaction, start)
-        yield from chain(between_walls(system, interaction), beside_sizes(system, interaction, mesh))
+        yield from start_findings(system, interaction, start)
+        yield from chain(parallel_wall_findings(system, interaction), range_findings(system, interaction, mesh))
 
 
 def _rows(scene: Scene, system: System, start: Contacts) -> Iterator[BodyRow]:
@@ -152,7 +137,8 @@ def _rows(scene: Scene, system: System, start: Contacts) -> Iterator[BodyRow]:
 
 
 def _nearest(system: System, start: Contacts) -> tuple[FloatArray, list[str]]:
-    """Of each body the gap to the nearest body or repelling wall (n,), infinite where none is near, and its name."""
+    """Gap of each body to the nearest body or repelling wall (n,), infinite where none is near, and that surface's
+    name."""
     count = len(system.bodies)
     gaps, names = np.full(count, np.inf), [""] * count
     solid = {*range(count), *(wall.surface for wall in system.walls)}

@@ -8,7 +8,7 @@ from math import ceil, log2
 import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.response import rest_gap
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import MeshTable
@@ -18,21 +18,9 @@ _MOST_REFINEMENTS = 20
 _ROUNDING = 1e-9
 
 
-def in_the_gap(met: DesignContacts, mesh: MeshTable) -> Iterator[Finding]:
-    """Compare the finest cells, size_body/2^refinements, with the gap at rest under a stack, or where an impact ends.
-
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, with a wall or with each other.
-    mesh : MeshTable
-        Sizes of the cells.
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair whose gap is known; a warning where fewer than cells_per_gap cells fit.
-    """
+def resolution_findings(met: DesignContacts, mesh: MeshTable) -> Iterator[Finding]:
+    """Compare the finest cells, size_body/2^refinements, with the gap at rest under a stack, or where an impact ends; a
+    warning where fewer than cells_per_gap cells fit."""
     gaps, finest = narrowest_gaps(met), mesh.size_body / 2**mesh.refinements
     for row in met.worst(-np.nan_to_num(gaps, nan=np.inf)):
         if np.isfinite(gaps[row]):
@@ -59,5 +47,5 @@ def _finding(met: DesignContacts, row: int, gap: float, finest: float, mesh: Mes
         remedy = f"Set mesh.refinements to {refinements} or more."
         return Finding("warning", QUESTION, met.names(row), text, remedy, found, {"refinements": refinements})
     size = gap * 2**mesh.refinements / mesh.cells_per_gap
-    remedy = f"Set mesh.size_body to {at_most(size)} or less, or stiffen the law."
+    remedy = f"Set mesh.size_body to {round_down(size)} or less, or stiffen the law."
     return Finding("warning", QUESTION, met.names(row), text, remedy, found, {"size_body": size})

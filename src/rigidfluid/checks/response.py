@@ -1,6 +1,6 @@
-"""How a law answers along the gap: its largest force, where it holds a weight, how much it stores.
+"""Response of a law along the gap: its largest force, where it holds a weight, how much it stores.
 
-Everything is asked of the law itself, on contacts made up for the purpose, so that it holds for any law.
+The law itself is evaluated, on contacts made up for the purpose, so that this holds for any law.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 _HALVINGS = 60
 _ZOOMS = 3
 _FRACTIONS = np.concatenate([np.logspace(-9, -2, 36), np.linspace(0.02, 1.0, 99)])
-"""Of the range: dense near contact, for laws that are unbounded there."""
+"""Gaps over the range [1]: dense near contact, for laws that are unbounded there."""
 
 
 def force_along(law: ForceLaw, contacts: Contacts, gaps: FloatArray) -> FloatArray:
@@ -78,7 +78,7 @@ def barrier(law: ForceLaw, contacts: Contacts) -> FloatArray:
 
 
 def turning_gap(law: ForceLaw, contacts: Contacts, energy: FloatArray, weight: FloatArray) -> FloatArray:
-    """Where an approach of this kinetic ``energy`` (m,) ends that a ``weight`` (m,) pushes on, (m,) [length].
+    """Gap at which an approach of kinetic ``energy`` (m,) ends while a ``weight`` (m,) pushes on, (m,) [length].
 
     It is the gap with U(gap) = energy + weight (range - gap), and next to nothing where the law stops nothing.
     """

@@ -1,4 +1,4 @@
-"""How large the meshes of a run are going to be, at the start and at the most."""
+"""Sizes of the meshes expected in a run, at the start and at the most."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ _LATER_OVER_FIRST = 1.05
 """Cells of a mesh made from another one over those of a first mesh, most often."""
 
 _SHARE_OF_REST = 0.8
-"""Of the gap at rest in the least gap of an impact that a film brakes, beside that where it would end without the film;
-fitted to the sphere of ten Cate et al. and of the paper, and to the paper's ellipsoid."""
+"""Weight of the gap at rest in the geometric mean with the gap at which an impact would end without the film [1], for
+the least gap of an impact that a film brakes; fitted to the sphere of ten Cate et al. and of the paper, and to the
+paper's ellipsoid."""
 
 _HELD = 0.01
-"""Of a law's range: what comes nearer is stopped by the film."""
+"""Least gap, over a law's range, that the law rather than the film determines [1]."""
 
 _DIAMETERS_OF_A_MESH = 2.0
-"""A body goes so far until its mesh is worn."""
+"""Distance that a body goes until its mesh is worn, over its diameter [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,19 +48,7 @@ class RunSize:
 
 
 def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
-    """The sizes that a run is expected to have; None where the backend does not know what it takes.
-
-    Parameters
-    ----------
-    parts : Parts
-        For a detector that needs no mesh.
-    system : System
-        Bodies, domain and backend.
-    mesh : MeshTable
-        Sizes of the cells.
-    time : TimeTable
-        The end.
-    """
+    """Sizes that a run is expected to have; None where the backend cannot predict its cost."""
     sizes = sizes_of(mesh, system.domain)
     start = _count(system, system.pose, sizes)
     start_cost = system.backend.solver_cost(*start)
@@ -78,9 +67,9 @@ def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> 
 
 
 def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
-    """The gap g_rest^0.8 g_impact^0.2 that rest and impacts leave, at least what the finest cells resolve [length].
+    """Least gap g_rest^0.8 g_impact^0.2 by rest and impacts, at least what the finest cells resolve [length].
 
-    Where a law holds the bodies in one of the two alone it is that gap, and where in none, that of the finest cells.
+    If a law holds the bodies in one of the two alone it is that gap, and if in none, that of the finest cells.
     """
     finest = sizes.cells_per_gap * sizes.smallest
     rest = _least([(met, narrowest_gaps(met)) for met in contacts])
@@ -102,7 +91,7 @@ def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
 
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:
-    """How many meshes follow the first: one for each two diameters of a body's way, of the body with the most, and one
+    """Number of meshes after the first: one for each two diameters of a body's way, of the body with the most, and one
     for each time that a gap halves. A free body that is not settled goes on at its expected speed, through the domain
     at the most."""
     diameter = 2.0 * np.array([equal_volume_radius(body) for body in system.bodies])

@@ -1,4 +1,4 @@
-"""How long does the run take?"""
+"""Time that a run is expected to take."""
 
 from __future__ import annotations
 
@@ -26,23 +26,8 @@ _CONTACT_SECONDS = {True: 0.005, False: 0.1}
 _UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 
 
-def in_time(size: RunSize, system: System, time: TimeTable) -> Iterator[Finding]:
-    """Say between which times of one core of this machine a run is expected to take.
-
-    Parameters
-    ----------
-    size : RunSize
-        Of the meshes.
-    system : System
-        Its dimension, bodies and law.
-    time : TimeTable
-        Steps.
-
-    Yields
-    ------
-    Finding
-        A note.
-    """
+def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterator[Finding]:
+    """Predict the least and the greatest time of one core of this machine that a run takes."""
     steps = ceil(time.end / time.step * (1.0 - 1e-12))
     speed = machine_speed()
     of_cell, contact = _MESH_SECONDS[system.dimension], 0.0
@@ -55,10 +40,10 @@ def in_time(size: RunSize, system: System, time: TimeTable) -> Iterator[Finding]
     )
     most += steps * contact / speed
     found: Figures = {"steps": steps, "meshes": size.meshes, "least": least, "most": most, "speed": speed}
-    text = f"{steps} steps and some {size.meshes} meshes take {_in_words(least, most)} of one core, as fast as now"
+    text = f"{steps} steps and some {size.meshes} meshes take {_time_in_words(least, most)} of one core, as fast as now"
     yield Finding("note", QUESTION, (), text, found=found)
 
 
-def _in_words(least: float, most: float) -> str:
+def _time_in_words(least: float, most: float) -> str:
     _, unit, name = next(row for row in _UNITS if most >= row[0])
     return f"{least / unit:.2g} to {most / unit:.2g} {name}"

@@ -14,25 +14,14 @@ from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.system import System
 
 
-def by_a_law(system: System) -> Iterator[Finding]:
-    """Whether there is a law, and whether it has an energy, which alone keeps bodies apart.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, law and backend.
-
-    Yields
-    ------
-    Finding
-        One where nothing repels: a warning in a fluid, whose film also brakes, and an error without. A warning for
-        walls or pairs that no law with an energy acts in, where there is such a law elsewhere.
-    """
+def law_findings(system: System) -> Iterator[Finding]:
+    """Find moving bodies that no law with an energy keeps apart: a warning in a fluid, whose film also brakes, and an
+    error without. A warning for walls or pairs without such a law where there is one elsewhere."""
     moving = [i for i in free(system, range(len(system.bodies))) if _moves(system, i)]
     if not moving:
         return
     if system.law is not None and system.law.conservative:
-        yield from _lawless(system)
+        yield from _lawless_findings(system)
         return
     text = "nothing keeps bodies apart"
     laws = " and ".join(repr(interaction.law.name) for interaction in system.interactions)
@@ -42,7 +31,7 @@ def by_a_law(system: System) -> Iterator[Finding]:
     yield Finding(grade, "law", (system.surfaces[moving[0]],), text, remedy, {"moving_bodies": len(moving)})
 
 
-def _lawless(system: System) -> Iterator[Finding]:
+def _lawless_findings(system: System) -> Iterator[Finding]:
     for met in representative_contacts(system):
         if not any(interaction.law.conservative for interaction in met.interactions):
             names = system.surfaces[met.contacts.body_a[0]], system.surfaces[met.contacts.body_b[0]]
@@ -53,19 +42,8 @@ def _lawless(system: System) -> Iterator[Finding]:
             yield Finding("warning", "law", names, text, remedy, {"pairs": len(met.contacts)})
 
 
-def by_walls(system: System) -> Iterator[Finding]:
-    """Whether the surface that a weight drives bodies to repels.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and walls.
-
-    Yields
-    ------
-    Finding
-        A warning for each such surface that is no wall.
-    """
+def open_face_findings(system: System) -> Iterator[Finding]:
+    """Find surfaces that a weight drives bodies to but that are no walls, and do not repel; a warning for each."""
     solid = {wall.name for wall in system.walls}
     for piece in system.domain.pieces:
         name, moving = piece.name, (kind[0] for kind in body_classes(system) if free(system, kind))
@@ -76,19 +54,8 @@ def by_walls(system: System) -> Iterator[Finding]:
             yield Finding("warning", "open-face", (system.surfaces[driven[0]], name), text, remedy)
 
 
-def by_auto(system: System) -> Iterator[Finding]:
-    """Which ε `auto` has chosen, and why.
-
-    Parameters
-    ----------
-    system : System
-        Law and loads.
-
-    Yields
-    ------
-    Finding
-        Notes: the largest and the smallest ε at walls, and between bodies.
-    """
+def strength_findings(system: System) -> Iterator[Finding]:
+    """Report the largest and the smallest ε that `auto` has chosen, at walls and between bodies, and why."""
     for row in chosen_strengths(system):
         a, b = row.pop("between")
         epsilon, speed, gap = (figure(row[key]) for key in ("epsilon", "impact_speed", "smallest_gap"))

@@ -1,4 +1,4 @@
-"""Where the bodies are when gaps are as narrow as they get: fallen along their weights onto walls and each other."""
+"""Poses of the narrowest gaps: bodies fallen along their weights onto walls and each other."""
 
 from __future__ import annotations
 
@@ -12,37 +12,23 @@ from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.setup.boundary import surfaces_of
 
 _MOST_BODIES = 60
-"""More bodies stay where they start: they are not followed one by one."""
+"""Greatest number of bodies that are followed one by one; with more, all stay where they start."""
 
 _SLOW = "brute_force"
 """A detector that takes minutes for the gaps between shapes of facets and walls of any shape."""
 
 _MOST_ADVANCES = 500
 _TOLERANCE = 0.05
-"""Of the gap asked for."""
+"""Relative tolerance of the gap asked for [1]."""
 _ALONG = 1e-9
 """Cosine up to which a way leads along a surface and not to it."""
 
 
 def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
-    """The pose with each free body moved along its weight, the foremost first, until a ``gap`` [length] is left ahead.
+    """Pose with each free body moved along its weight, the foremost first, until a ``gap`` [length] is left ahead.
 
     Bodies without weight, of given motion, and all that mechanisms or joints hold stay where they start; so do all
-    where there are very many, or only a slow detector knows their gaps.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, domain and weights, at their start.
-    detector : type of Detector
-        One that finds gaps without a mesh.
-    gap : float
-        What is left to the next surface [length].
-
-    Returns
-    -------
-    Pose
-        Of all bodies.
+    where there are very many, or only a slow detector knows their gaps. The ``detector`` needs no mesh.
     """
     pose, weight = system.pose, system.weight
     count = len(system.bodies)

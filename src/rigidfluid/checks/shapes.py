@@ -10,19 +10,8 @@ from rigidfluid.core.model.system import System
 QUESTION = "shape"
 
 
-def of_facets(system: System) -> Iterator[Finding]:
-    """Say the sizes of bodies of facets, and where `position` puts them.
-
-    Parameters
-    ----------
-    system : System
-        Its bodies.
-
-    Yields
-    ------
-    Finding
-        A note for each shape, with the name of the first body that has it.
-    """
+def facet_findings(system: System) -> Iterator[Finding]:
+    """Report the sizes of bodies of facets, and the point of the facets that `position` places, once for each shape."""
     seen: list[object] = []
     for name, body in zip(system.surfaces, system.bodies, strict=False):
         if body.facets is None or (body.name, body.options) in seen:

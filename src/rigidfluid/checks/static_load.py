@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure
-from rigidfluid.checks.remedies import stronger
+from rigidfluid.checks.remedies import strength_remedy
 from rigidfluid.checks.response import largest_force, rest_gap
 
 QUESTION = "rest"
@@ -16,19 +16,9 @@ _STACK = "stack"
 _ROUNDING = 1e-9
 
 
-def at_rest(met: DesignContacts) -> Iterator[Finding]:
-    """Compare the largest force without overlap with the weight, and say at which gap they balance.
-
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, one at a wall or on another body.
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair with weight; an error where the law is too weak.
-    """
+def rest_findings(met: DesignContacts) -> Iterator[Finding]:
+    """Compare the largest force without overlap with the weight, and report the gap at which they balance; an error
+    where the law is too weak."""
     rows = np.flatnonzero(met.weight > 0.0)
     if len(rows) == 0:
         return
@@ -40,36 +30,25 @@ def at_rest(met: DesignContacts) -> Iterator[Finding]:
             yield _finding(met, row, float(share[row]), float(gaps[row]))
 
 
-def under_a_stack(met: DesignContacts) -> Iterator[Finding]:
-    """Compare the largest force without overlap with the weight of all that may come to press on the contact.
-
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, one at a wall or on another body.
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair that bears more than its own weight, and at least that; a warning where the law is
-        too weak.
-    """
+def stack_findings(met: DesignContacts) -> Iterator[Finding]:
+    """Compare the largest force without overlap with the weight of all that may come to press on the contact, where
+    that is more than its own; a warning where the law is too weak."""
     most, _ = largest_force(met.law, met.contacts)
     borne = (met.stacked_weight > met.weight * (1.0 + _ROUNDING)) & (most >= met.weight)
     share = np.divide(most, met.stacked_weight, out=np.full(len(most), np.inf), where=borne)
     gaps = rest_gap(met.law, met.contacts, met.stacked_weight, _deepest(met))
     for row in met.worst(-share):
         if borne[row]:
-            yield _stack(met, row, float(share[row]), float(gaps[row]))
+            yield _stack_finding(met, row, float(share[row]), float(gaps[row]))
 
 
-def _stack(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
+def _stack_finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
     pressing = float(met.stacked_weight[row])
     found = {"force_over_stacked_weight": share, "stacked_weight": pressing, "rest_gap": gap}
     text = f"{' on '.join(met.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
     if share >= 1.0:
         return Finding("note", _STACK, met.names(row), f"{text}, and rests at a gap of {figure(gap)}", found=found)
-    enough, remedy = stronger(met, share)
+    enough, remedy = strength_remedy(met, share)
     text += f", of which the law gives at most {figure(share)}: they may press it through"
     return Finding("warning", _STACK, met.names(row), text, remedy, found, enough)
 
@@ -83,10 +62,10 @@ def _finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding
         return Finding("note", QUESTION, met.names(row), text, found=found)
     end = "nothing stops it" if np.isnan(gap) else f"it would rest only in overlap, at a gap of {figure(gap)}"
     text = f"{pair}: the law gives at most {figure(share)} of its weight; {end}"
-    enough, remedy = stronger(met, share)
+    enough, remedy = strength_remedy(met, share)
     return Finding("error", QUESTION, met.names(row), text, remedy, found, enough)
 
 
 def _deepest(met: DesignContacts) -> float:
-    """How far into overlap a law is asked: no body is gone through [length]."""
+    """Greatest overlap at which a law is evaluated [length]: no body is passed through."""
     return min(met.law.range, min(body.bounding_radius for body in met.system.bodies))

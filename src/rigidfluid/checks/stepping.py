@@ -1,4 +1,4 @@
-"""How long does a contact last, and how many substeps does it take?"""
+"""Duration of contacts, and the substeps that resolve it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import ceil, log2
 import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
-from rigidfluid.checks.finding import Finding, Grade, at_most, figure
+from rigidfluid.checks.finding import Finding, Grade, figure, round_down
 from rigidfluid.core.contact.contact_path import MOST_SUBSTEPS
 from rigidfluid.core.contact.substep import RESOLUTION
 from rigidfluid.core.scene.scene import TimeTable
@@ -17,24 +17,15 @@ QUESTION = "step"
 _STABLE = 2.0
 """Verlet's scheme explodes above this substep times frequency."""
 ACCURATE = 0.5
-"""Up to this step times frequency a contact is resolved."""
+"""Greatest frequency times step at which a contact is resolved [1]."""
 
 
-def in_steps(met: DesignContacts, time: TimeTable) -> Iterator[Finding]:
-    """Compare π √(m/k), with the greatest stiffness k that the impact reaches, with the step and its substeps.
+def step_findings(met: DesignContacts, time: TimeTable) -> Iterator[Finding]:
+    """Compare the contact time π √(m/k), k the greatest stiffness that the impact reaches, with the step and its
+    substeps.
 
-    Parameters
-    ----------
-    met : DesignContacts
-        The bodies, with a wall or with each other.
-    time : TimeTable
-        Nominal and shortest step.
-
-    Yields
-    ------
-    Finding
-        One for each kind of pair. With fixed substeps h, ω h > 2 is an error and > 0.5 a warning; in one implicit step
-        h, ω h > 0.5 is a warning where there are dampers.
+    For fixed substeps h, ω h > 2 is an error and ω h > 0.5 a warning; for one implicit step h, ω h > 0.5 is a warning
+    where there are dampers.
     """
     stiffness = met.stiffness()
     frequency = np.sqrt(stiffness * met.inverse_mass)
@@ -54,14 +45,14 @@ def _finding(met: DesignContacts, row: int, frequency: float, stiffness: float, 
     pair = " and ".join(met.names(row))
     text = f"{pair}: a contact lasts about {figure(np.pi / frequency)}, and a step {figure(time.step)}"
     if met.system.implicit:
-        return _implicit(met.names(row), text, found, frequency, time, met.law.dissipative)
+        return _implicit_finding(met.names(row), text, found, frequency, time, met.law.dissipative)
     if met.system.substeps is None:
-        return _adapted(met.names(row), text, found, frequency, time)
-    return _fixed(met.names(row), text, found, frequency * time.step, met.system.substeps)
+        return _adapted_finding(met.names(row), text, found, frequency, time)
+    return _fixed_finding(met.names(row), text, found, frequency * time.step, met.system.substeps)
 
 
-def _fixed(names: tuple[str, str], text: str, found: dict[str, float], turn: float, substeps: int) -> Finding:
-    """``turn`` is ω times the step."""
+def _fixed_finding(names: tuple[str, str], text: str, found: dict[str, float], turn: float, substeps: int) -> Finding:
+    """Compare a fixed substep with the contact's frequency; ``turn`` is ω times the step."""
     each = turn / substeps
     found |= {"substeps": substeps, "turn_per_substep": each}
     text += f" of {substeps} substeps; frequency times substep is {figure(each)}"
@@ -74,7 +65,7 @@ def _fixed(names: tuple[str, str], text: str, found: dict[str, float], turn: flo
     return Finding(grade, QUESTION, names, text, remedy, found, enough)
 
 
-def _implicit(
+def _implicit_finding(
     names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable, damped: bool
 ) -> Finding:
     turn = frequency * time.step
@@ -83,18 +74,20 @@ def _implicit(
     if turn <= ACCURATE or not damped:
         return Finding("note", QUESTION, names, text, found=found)
     enough = {"time_step": ACCURATE / frequency}
-    remedy = f"Set time.step to {at_most(enough['time_step'])} or less, or contact.stepping to substeps."
+    remedy = f"Set time.step to {round_down(enough['time_step'])} or less, or contact.stepping to substeps."
     return Finding("warning", QUESTION, names, f"{text}: dampers are missed above 0.5", remedy, found, enough)
 
 
-def _adapted(names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable) -> Finding:
+def _adapted_finding(
+    names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable
+) -> Finding:
     substeps, least = (2 ** ceil(log2(max(size * frequency / RESOLUTION, 1.0))) for size in (time.step, time.shortest))
     found |= {"substeps": substeps}
     text += f", divided into about {substeps}"
     if substeps <= MOST_SUBSTEPS:
         return Finding("note", QUESTION, names, text, found=found)
     enough = {"time_step": MOST_SUBSTEPS * RESOLUTION / frequency / 2.0}
-    remedy = f"Soften the law, widen its range, or set time.step to {at_most(enough['time_step'])} or less."
+    remedy = f"Soften the law, widen its range, or set time.step to {round_down(enough['time_step'])} or less."
     if least <= MOST_SUBSTEPS:
         return Finding("warning", QUESTION, names, f"{text}: steps will be cut", remedy, found, enough)
     text += f", and even the shortest step more than the {MOST_SUBSTEPS} that are allowed"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rigidfluid.checks.finding import Finding, at_most, figure
+from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import START_LEVEL
 from rigidfluid.core.scene.scene import TimeTable
@@ -12,19 +12,9 @@ from rigidfluid.core.scene.scene import TimeTable
 QUESTION = "tolerance"
 
 
-def to_a_tolerance(time: TimeTable) -> Iterator[Finding]:
-    """Compare the shortest step with the longest, where the scene has a tolerance.
-
-    Parameters
-    ----------
-    time : TimeTable
-        Steps and tolerance.
-
-    Yields
-    ------
-    Finding
-        One with a tolerance: a warning where there are fewer halvings than the first step takes.
-    """
+def tolerance_findings(time: TimeTable) -> Iterator[Finding]:
+    """Compare the shortest step with the longest, where the scene has a tolerance; a warning where there are fewer
+    halvings between them than the first step takes."""
     if time.tolerance is None:
         return
     halvings = Clock.for_steps(time.step, time.shortest, time.end).levels
@@ -36,5 +26,5 @@ def to_a_tolerance(time: TimeTable) -> Iterator[Finding]:
         return
     enough = {"shortest": time.step / 2**START_LEVEL}
     text += f"; {halvings} halvings are fewer than the {START_LEVEL} of the first step"
-    remedy = f"Set time.shortest to {at_most(enough['shortest'])} or less, or leave it out."
+    remedy = f"Set time.shortest to {round_down(enough['shortest'])} or less, or leave it out."
     yield Finding("warning", QUESTION, (), text, remedy, found, enough)

@@ -62,15 +62,6 @@ class BruteForceDetector(Detector):
 
     The best of many samples starts a local minimisation on the surface, so that the gap of smooth convex bodies is
     accurate to rounding (the points to its square root). Costs grow with the square of the number of bodies.
-
-    Parameters
-    ----------
-    options : BruteForceOptions
-        ``samples``: points on each surface [1].
-    bodies : sequence of Body
-        Shapes of any kind.
-    walls : sequence of Wall
-        The walls that repel.
     """
 
     name: ClassVar[str] = "brute_force"

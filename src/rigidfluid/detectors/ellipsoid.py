@@ -18,24 +18,11 @@ from rigidfluid.errors import SceneError
 class EllipsoidDetector(Detector):
     """gap = max over unit n of n·(x_a - x_b) - h_a(n) - h_b(n), with h(n) = |diag(a) Rᵀn| the reach of an ellipsoid.
 
-    The gap is the distance of the surfaces, and where they overlap, minus the shortest way apart; n is the normal. At a
-    flat wall n is known, so that the gap is in closed form. A round wall that bulges into the fluid is a ball. In a
+    The gap is the distance of the surfaces, and where they overlap, minus the shortest way apart; n is the normal. A
+    flat wall has a known n, and so a gap in closed form. A round wall that bulges into the fluid is a ball. In a
     hollow of radius R the gap is R less the largest distance of the surface from the centre; a body has a contact with
-    it at each local maximum of that distance, two at most, if the wall is there.
-
-    Parameters
-    ----------
-    options : PartOptions
-        None are read.
-    bodies : sequence of Body
-        Balls, ellipses and ellipsoids.
-    walls : sequence of Wall
-        The walls that repel.
-
-    Raises
-    ------
-    SceneError
-        If a body has no semi-axes, or a wall is neither flat nor round.
+    it at each local maximum of that distance, two at most, if the wall is there. Bodies without semi-axes, and
+    walls neither flat nor round, raise SceneError.
     """
 
     name: ClassVar[str] = "ellipsoid"
@@ -63,12 +50,9 @@ class EllipsoidDetector(Detector):
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), from the shapes alone.
 
-        Raises
-        ------
-        StepError
-            If the normal of a pair is not found; it is named.
+        Pairs whose normal is not found raise StepError.
         """
-        contacts = in_order([self._contacts.between(pose, reach), *self._contacts.at_walls(pose, reach)])
+        contacts = in_order([self._contacts.pair_contacts(pose, reach), *self._contacts.wall_contacts(pose, reach)])
         return select(contacts, contacts.gap <= reach)
 
 

@@ -1,4 +1,4 @@
-"""Where ellipsoids touch a round hollow that they are in: the points farthest from its centre."""
+"""Points of ellipsoids that touch a round hollow around them: those farthest from its centre."""
 
 from __future__ import annotations
 
@@ -12,26 +12,16 @@ _MOST_STEPS = 100
 
 
 def farthest_points(offset: FloatArray, half: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Points y = d + S u of ellipsoids, |u| = 1, where |y| is largest, and where it is so among all points around.
+    """Points y = d + S u (N, d) of ellipsoids with largest |y|, |u| = 1, further local maxima (N, d), and which exist
+    (N,).
 
     Both are u_i = b_i/(λ - a_i²) along the axes, with b = Sᵀd and |u(λ)| = 1. The largest has λ above all a_i²; another
     maximum, there is one at most, has λ between the two largest a_i², and is on the other side of the longest axis.
-
-    Parameters
-    ----------
-    offset : (N, d) array
-        Centres d of the ellipsoids, from the point that is looked from [length].
-    half : (N, d, d) array
-        S = R diag(a), with orthogonal columns [length].
-
-    Returns
-    -------
-    (N, d) array, (N, d) array, (N,) array of bool
-        The farthest points, the others, and which of these there are [length].
+    ``offset`` (N, d) are the centres d from the hollow's, ``half`` (N, d, d) is S = R diag(a) [length].
 
     Notes
     -----
-    At most one further maximum: J. M. Martínez, SIAM J. Optim. 4 (1994) 159, doi:10.1137/0804009.
+    There is at most one further maximum: J. M. Martínez, SIAM J. Optim. 4 (1994) 159, doi:10.1137/0804009.
     """
     rows, squares = np.arange(len(offset)), np.sum(half**2, axis=1)
     longest = np.argmax(squares, axis=1)

@@ -1,4 +1,5 @@
-"""Where an ellipsoid is nearest to a surface of facets: inside facets, at corners, and in space along edges."""
+"""Places of a surface of facets that are nearest to an ellipsoid: inside facets, at corners, and in space along
+edges."""
 
 from __future__ import annotations
 
@@ -14,10 +15,10 @@ from rigidfluid.detectors.facet_features import Features
 
 _BISECTIONS = 60
 _UPHILL = -1e-9
-"""Slope of a distance along a straight line that is none but for rounding."""
+"""Slope of a distance along a straight line that is zero but for rounding [1]."""
 
 _SAME = 1e-7
-"""Over the size: places nearer than this are one."""
+"""Distance of two places over the size of body and surface, below which they are one [1]."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class PlacedEllipsoid:
         return distance, normal @ self.rotation.T
 
     def farthest(self, directions: FloatArray) -> FloatArray:
-        """Its points (N, d) that are farthest in ``directions`` (N, d)."""
+        """Points (N, d) of the ellipsoid that are farthest in ``directions`` (N, d)."""
         assert self.shape.semi_axes is not None
         scaled = self.shape.semi_axes * (directions @ self.rotation)
         on_ball = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
@@ -49,42 +50,29 @@ class PlacedEllipsoid:
 def ellipsoid_touches(body: PlacedEllipsoid, surface: FacetSurface, features: Features, reach: float) -> Nearby:
     """Places of the surface, by their distance to the ellipsoid, at its local minima.
 
-    Inside a facet the nearest point of the ellipsoid is that farthest against the facet's normal. At a corner and along
-    an edge the distance to the ellipsoid, which is convex, must not fall along any edge or facet that begins there. An
+    Inside a facet the nearest point of the ellipsoid is that farthest against the facet's normal. The distance to the
+    ellipsoid, which is convex, must not fall from a corner or an edge along any edge or facet that begins there. An
     ellipsoid with its centre behind the surface, or deep in it, has one place, that nearest to the centre.
 
-    Parameters
-    ----------
-    body : PlacedEllipsoid
-        In the frame of the surface.
-    surface : FacetSurface
-        Closed, or a part of a closed one.
-    features : Features
-        Of the surface.
-    reach : float
-        Largest distance [length].
-
-    Returns
-    -------
-    Nearby
-        ``point`` 0 in all rows; ``foot`` on the surface, ``distance`` and ``normal`` from there to the ellipsoid.
+    ``body`` is in the frame of the surface, ``reach`` the largest distance [length]. ``point`` is 0 in all rows of the
+    result, ``foot`` on the surface, ``distance`` and ``normal`` from there to the ellipsoid.
     """
     centre = surface.nearby(body.position[None], np.inf, 0.0)
     towards = np.sum((body.farthest(-centre.normal) - centre.foot) * centre.normal, axis=1)
     overlap = centre._replace(distance=towards)
     if centre.distance[0] < 0:
         return overlap
-    parts = [_in_facets(body, surface), _at_corners(body, surface, features, reach)]
+    parts = [_facet_minima(body, surface), _corner_minima(body, surface, features, reach)]
     if len(body.position) == 3:
-        parts.append(_along_edges(body, surface, features, reach))
+        parts.append(_edge_minima(body, surface, features, reach))
     found = Nearby(*(np.concatenate(each) for each in zip(*parts, strict=True)))
     if len(found.distance) == 0 and towards[0] < 0:
         return overlap  # so deep that the distance to the ellipsoid has a kink where it is least
     size = body.shape.bounding_radius + float(np.max(surface.bounds[1] - surface.bounds[0]))
-    return _apart(found, reach, _SAME * size)
+    return _distinct_places(found, reach, _SAME * size)
 
 
-def _apart(found: Nearby, reach: float, same: float) -> Nearby:
+def _distinct_places(found: Nearby, reach: float, same: float) -> Nearby:
     """The nearest first, and each place once: on the edge of two facets it may be found in both."""
     chosen: list[int] = []
     for row in np.argsort(found.distance, kind="stable").tolist():
@@ -95,7 +83,7 @@ def _apart(found: Nearby, reach: float, same: float) -> Nearby:
     return Nearby(found.point[rows], found.foot[rows], found.distance[rows], found.normal[rows])
 
 
-def _in_facets(body: PlacedEllipsoid, surface: FacetSurface) -> Nearby:
+def _facet_minima(body: PlacedEllipsoid, surface: FacetSurface) -> Nearby:
     normal = surface.facet_normals
     corners = surface.facets.points[surface.facets.vertices]
     before = np.flatnonzero(np.sum((body.position - corners[:, 0]) * normal, axis=1) > 0)
@@ -118,7 +106,7 @@ def _are_inside(points: FloatArray, corners: FloatArray, normals: FloatArray) ->
     return inside
 
 
-def _at_corners(body: PlacedEllipsoid, surface: FacetSurface, features: Features, reach: float) -> Nearby:
+def _corner_minima(body: PlacedEllipsoid, surface: FacetSurface, features: Features, reach: float) -> Nearby:
     points = surface.facets.points
     within = np.linalg.norm(points - body.position, axis=1) - body.shape.bounding_radius <= reach
     near = np.flatnonzero(within & np.isin(np.arange(len(points)), features.corners))
@@ -133,7 +121,7 @@ def _at_corners(body: PlacedEllipsoid, surface: FacetSurface, features: Features
     return _places(points[near][lowest], distance[lowest], -normal[lowest])
 
 
-def _along_edges(body: PlacedEllipsoid, surface: FacetSurface, features: Features, reach: float) -> Nearby:
+def _edge_minima(body: PlacedEllipsoid, surface: FacetSurface, features: Features, reach: float) -> Nearby:
     ends = surface.facets.points[features.edges]
     middle, half = ends.mean(axis=1), 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     near = np.linalg.norm(middle - body.position, axis=1) - half - body.shape.bounding_radius <= reach

@@ -5,8 +5,8 @@ n it reaches h(n) = |Sᵀn| from its centre, to the point S Sᵀn/h. With c = x_
 
     g(n) = n·c - h_a(n) - h_b(n),
 
-and the gap is its largest value over all unit n. Where g > 0 a local maximum is the largest, as g is concave over the
-cone of all vectors. Where they overlap, -g is the distance from the inside of their Minkowski sum to its surface; a
+and the gap is its largest value over all unit n. A local maximum with g > 0 is the largest, as g is concave over
+the cone of all vectors. If they overlap, -g is the distance from the inside of their Minkowski sum to its surface; a
 local maximum is the largest for sure if -g is at most the sum's least radius of curvature, for then a ball of that
 radius rolls in it freely (Blaschke). Deeper than that, many starts are tried and the best is kept.
 
@@ -25,7 +25,7 @@ import numpy as np
 from numba import njit
 
 FOUND, BEYOND, LOST = 0, 1, 2
-"""What became of a pair: its normal is found, its gap is beyond reach, or the highest climb came to no rest."""
+"""States of a pair: its normal is found, its gap is beyond reach, or the highest climb came to no rest."""
 
 # a vector without a direction becomes NaN, and a pair with NaN is LOST
 _kernel = njit(cache=True, nogil=True, error_model="numpy")
@@ -40,24 +40,11 @@ _BISECTIONS = 40
 
 @_kernel
 def separate(offset, first, second, half, directions, reach, normal, state):
-    """The normals from b to a of pairs of ellipsoids.
+    """Write the unit ``normal`` (m, 3) from b to a of pairs of ellipsoids, and ``state`` (m,): FOUND, BEYOND or LOST.
 
-    Parameters
-    ----------
-    offset : (m, 3) array
-        Centre of a minus centre of b [length].
-    first, second : (m,) arrays
-        Numbers of a and b.
-    half : (n, 3, 3) array
-        The matrices S [length].
-    directions : (k, 3) array
-        Unit vectors spread over all directions, to start from where the overlap is deep [1].
-    reach : float
-        Pairs with a larger gap are given up as soon as that is known [length].
-    normal : (m, 3) array
-        Written: unit normals [1].
-    state : (m,) array of int
-        Written: FOUND, BEYOND or LOST.
+    ``offset`` (m, 3) is the centre of a minus that of b [length], ``first`` and ``second`` (m,) are their numbers,
+    ``half`` (n, 3, 3) the matrices S [length]. ``directions`` (k, 3) are unit vectors to start from in a deep overlap.
+    Pairs with a gap above ``reach`` [length] are given up as soon as that is known.
     """
     for k in range(len(first)):
         c = (offset[k, 0], offset[k, 1], offset[k, 2])

@@ -1,4 +1,4 @@
-"""What of a surface of facets can touch others: corners that stick out, and in space edges that do."""
+"""Features of a surface of facets that can touch others: corners that stick out, and in space edges that do."""
 
 from __future__ import annotations
 

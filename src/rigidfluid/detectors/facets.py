@@ -26,47 +26,35 @@ from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError
 
 SPREAD = 0.5
-"""Of a body's bounding radius: contacts of a pair that are farther than this behind the nearest are left out."""
+"""Greatest difference of gap between contacts of a pair, over the smaller bounding radius [1]; others are left out."""
 
 
 class Touches(NamedTuple):
-    """Where two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a, ``gap`` (m,)."""
+    """Places at which two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a,
+    ``gap`` (m,)."""
 
     point_a: FloatArray
     point_b: FloatArray
     normal: FloatArray
     gap: FloatArray
 
-    def at(self, chosen: BoolArray) -> Touches:
-        """Those chosen."""
+    def select(self, chosen: BoolArray) -> Touches:
+        """Places that are ``chosen`` (m,)."""
         return Touches(*(each[chosen] for each in self))
 
     def turned(self) -> Touches:
-        """The same with a and b in each other's place."""
+        """The same places with a and b exchanged."""
         return Touches(self.point_b, self.point_a, -self.normal, self.gap)
 
 
 class FacetDetector(Detector):
     """One contact for each corner of a pair that faces the other's surface, so that a box lies on all its corners.
 
-    Of a corner at x with the nearest points p of the other surface, gap = |x - p| and normal = (x - p)/|x - p|, and in
-    space the same between edges that pass each other. A ball or an ellipsoid has a contact with each place that is
-    nearer to it than all around. Overlap is the depth of the deepest corner, or that of the shallowest edge that goes
-    through a facet.
-
-    Parameters
-    ----------
-    options : PartOptions
-        None are read.
-    bodies : sequence of Body
-        Balls, ellipses, ellipsoids, and bodies of facets.
-    walls : sequence of Wall
-        Flat, round or made of facets.
-
-    Raises
-    ------
-    SceneError
-        If a body or a wall is of another shape.
+    A corner at x with the nearest points p of the other surface has gap = |x - p| and normal = (x - p)/|x - p|; in
+    space the same holds between edges that pass each other. A ball or an ellipsoid has a contact with each place that
+    is nearer to it than all around. Overlap is the depth of the deepest corner, or that of the shallowest edge that
+    goes through a facet. Bodies other than ellipsoids and bodies of facets, and walls neither flat, round nor of
+    facets, raise SceneError.
     """
 
     name: ClassVar[str] = "facets"
@@ -106,25 +94,25 @@ class FacetDetector(Detector):
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap), from the shapes alone."""
         rotation = rotation_matrices(pose.orientation)
         placed = [self._placed(i, pose.position[i], rotation[i]) for i in range(len(self.bodies))]
-        found = self._between_smooth(pose, reach)
+        found = self._smooth_pair_contacts(pose, reach)
         for a, b in zip(*near_pairs(pose.position, self._bounds, reach), strict=True):
             if isinstance(placed[a], _Facets) or isinstance(placed[b], _Facets):
                 spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
-                touches = _between(placed[a], placed[b], reach, spread)
+                touches = _pair_touches(placed[a], placed[b], reach, spread)
                 found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
         for body, wall in near_walls(pose.position, self._bounds, self.walls, reach):
             fixed, one = self._fixed[wall.surface], placed[body]
             if isinstance(fixed, _Facets) or not isinstance(one, _Ellipsoid):
-                touches = _between(one, fixed, reach, SPREAD * float(self._bounds[body]))
+                touches = _pair_touches(one, fixed, reach, SPREAD * float(self._bounds[body]))
                 radii = self._radii[body], radius_of(wall.shape)
                 found.append(_contacts(body, wall.surface, touches, *radii, True))
         return in_order(found)
 
-    def _between_smooth(self, pose: Pose, reach: float) -> list[Contacts]:
-        """Of balls and ellipsoids with each other, and of the latter with flat and round walls."""
-        pairs = self._smooth_contacts.between(_of(pose, self._smooth), reach)
+    def _smooth_pair_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
+        """Contacts of balls and ellipsoids with each other, and of the latter with flat and round walls."""
+        pairs = self._smooth_contacts.pair_contacts(_select_bodies(pose, self._smooth), reach)
         pairs = replace(pairs, body_a=self._smooth[pairs.body_a], body_b=self._smooth[pairs.body_b])
-        at_walls = self._long_contacts.at_walls(_of(pose, self._long), reach)
+        at_walls = self._long_contacts.wall_contacts(_select_bodies(pose, self._long), reach)
         found = [pairs, *(replace(each, body_a=self._long[each.body_a]) for each in at_walls)]
         return [select(each, each.gap <= reach) for each in found]
 
@@ -141,7 +129,7 @@ def is_known(shape: Surface) -> bool:
 
 
 class _Solid:
-    """A surface of facets in its own frame, and what of it can touch others."""
+    """A surface of facets in its own frame, and its features that can touch others."""
 
     def __init__(self, surface: FacetSurface) -> None:
         self.surface = surface
@@ -211,7 +199,7 @@ def _fixed(shape: Surface) -> _Wall:
     return _Facets(_Solid(shape), np.zeros(dimension), np.eye(dimension))
 
 
-def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
+def _pair_touches(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Touches:
     """All contacts of a pair, the nearest first."""
     if isinstance(a, _Facets):
         if isinstance(b, _Facets | _Round):
@@ -223,7 +211,7 @@ def _between(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -> Tou
         parts = [_smooth_touches(a, b, reach, spread)]
     found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
     least = found.gap.min(initial=np.inf)
-    found = found.at((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
+    found = found.select((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
     return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
 
 
@@ -246,12 +234,12 @@ def _facet_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float)
         return parts if ball is None else [*parts, _smooth_touches(ball, a, reach, spread).turned()]
     parts += [_corner_touches(b, a, reach, spread).turned(), _edge_touches(a, b, reach)]
     if all(part.gap.min(initial=np.inf) > 0 for part in parts):
-        parts.append(_pierced(a, b))
+        parts.append(_shallowest_piercing(a, b))
     return parts
 
 
 def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
-    """Of a vertex of a that is near b; the least gap is no larger [length]."""
+    """Gap of a vertex of a that is near b [length]; the least gap is no larger."""
     foot = b.nearby(a.position[None], np.inf, 0.0).foot[0]
     points = a.points
     nearest = np.argmin(np.linalg.norm(points - foot, axis=1))
@@ -261,16 +249,16 @@ def _some_gap(a: _Facets, b: _Facets | _Round) -> float:
 def _corner_touches(a: _Facets, b: _Facets | _Round, reach: float, spread: float) -> Touches:
     features = a.solid.features
     corners = a.points[features.corners]
-    close = np.flatnonzero(_beside(corners[:, None], b, reach))
+    close = np.flatnonzero(_near_boxes(corners[:, None], b, reach))
     corners = corners[close]
     near = b.nearby(corners, reach, spread)
     outwards = features.corner_normals[close[near.point]] @ a.rotation.T
     faces = np.sum(outwards * near.normal, axis=1) < 0
     nearest = near.distance <= near.distance.min(initial=np.inf)
-    return Touches(corners[near.point], near.foot, near.normal, near.distance).at(faces | nearest)
+    return Touches(corners[near.point], near.foot, near.normal, near.distance).select(faces | nearest)
 
 
-def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
+def _near_boxes(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolArray:
     """Which groups of points (m, k, d) have a box within ``reach`` of that around another surface, in its frame."""
     if isinstance(other, _Round):
         return np.ones(len(groups), dtype=bool)
@@ -282,12 +270,12 @@ def _beside(groups: FloatArray, other: _Facets | _Round, reach: float) -> BoolAr
 def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
     dimension = len(a.position)
     if dimension == 2:
-        return _none(dimension)
+        return _no_touches(dimension)
     from rigidfluid.detectors.edge_pairs import passing_edges
 
     points_a, points_b, both = a.points, b.points, (a.solid.features, b.solid.features)
-    close_a = _beside(points_a[both[0].edges], b, reach)
-    close_b = _beside(points_b[both[1].edges], a, reach)
+    close_a = _near_boxes(points_a[both[0].edges], b, reach)
+    close_b = _near_boxes(points_b[both[1].edges], a, reach)
     edges_a, edges_b = both[0].edges[close_a], both[1].edges[close_b]
     first, second, point_a, point_b = passing_edges(points_a, edges_a, points_b, edges_b, reach)
     away = point_a - point_b
@@ -295,24 +283,24 @@ def _edge_touches(a: _Facets, b: _Facets, reach: float) -> Touches:
     normal = away / gap[:, None]
     towards_b = np.sum(both[0].edge_normals[close_a][first] @ a.rotation.T * normal, axis=1) < 0
     towards_a = np.sum(both[1].edge_normals[close_b][second] @ b.rotation.T * normal, axis=1) > 0
-    return Touches(point_a, point_b, normal, gap).at(towards_a & towards_b)
+    return Touches(point_a, point_b, normal, gap).select(towards_a & towards_b)
 
 
-def _pierced(a: _Facets, b: _Facets) -> Touches:
+def _shallowest_piercing(a: _Facets, b: _Facets) -> Touches:
     """The shallowest edge that goes through a facet, if any does, by its deeper end."""
-    found = [_through(a, b), _through(b, a).turned()]
+    found = [_piercing_edges(a, b), _piercing_edges(b, a).turned()]
     both = Touches(*(np.concatenate(each) for each in zip(*found, strict=True)))
-    return both.at(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
+    return both.select(np.arange(len(both.gap)) == np.argmax(both.gap)) if len(both.gap) else both
 
 
-def _through(a: _Facets, b: _Facets) -> Touches:
+def _piercing_edges(a: _Facets, b: _Facets) -> Touches:
     """Edges of a through facets of b."""
     from rigidfluid.core.model.crossings import crossings
 
     facets, inside = b.solid.surface.facets, b.local(a.points)
     lower, upper = b.solid.surface.bounds
     if np.any(inside.max(axis=0) < lower) or np.any(inside.min(axis=0) > upper):
-        return _none(len(lower))
+        return _no_touches(len(lower))
     points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
     met = crossings(points, edges, facets.vertices, b.solid.surface.tree)
     normal = b.solid.surface.facet_normals[met[:, 1]]
@@ -324,11 +312,11 @@ def _through(a: _Facets, b: _Facets) -> Touches:
     return Touches(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
 
 
-def _of(pose: Pose, bodies: IntArray) -> Pose:
+def _select_bodies(pose: Pose, bodies: IntArray) -> Pose:
     return Pose(pose.position[bodies], pose.orientation[bodies])
 
 
-def _none(dimension: int) -> Touches:
+def _no_touches(dimension: int) -> Touches:
     vectors = np.empty((0, dimension))
     return Touches(vectors, vectors, vectors, np.empty(0))
 

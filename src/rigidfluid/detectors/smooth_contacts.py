@@ -20,18 +20,14 @@ from rigidfluid.errors import StepError
 _STARTS = 16
 
 _ON_THE_WALL = 1e-6
-"""Over the radius: a point of a round surface that is farther than this from a part of it is beyond its end."""
+"""Distance of a point of a round surface from a part of it, over the radius, above which it is beyond the part's
+end."""
 
 
 class SmoothContacts:
     """gap = max over unit n of n·(x_a - x_b) - h_a(n) - h_b(n), with h(n) = |diag(a) Rᵀn| the reach of an ellipsoid.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        Balls, ellipses and ellipsoids, which have semi-axes.
-    walls : sequence of Wall
-        Flat or round ones.
+    ``bodies`` have semi-axes, and ``walls`` are flat or round.
     """
 
     def __init__(self, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
@@ -41,20 +37,14 @@ class SmoothContacts:
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
 
-    def between(self, pose: Pose, reach: float) -> Contacts:
-        """Of the bodies with each other, up to a gap of ``reach`` [length].
-
-        Raises
-        ------
-        StepError
-            If the normal of a pair is not found; it is named.
-        """
+    def pair_contacts(self, pose: Pose, reach: float) -> Contacts:
+        """Contacts of bodies with each other, up to a gap of ``reach`` [length]; StepError if one has no normal."""
         return self._body_contacts(pose.position, self._half(pose), reach)
 
-    def at_walls(self, pose: Pose, reach: float) -> list[Contacts]:
-        """Of the bodies with each wall, some beyond ``reach`` [length]."""
+    def wall_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
+        """Contacts of the bodies with each wall, some beyond ``reach`` [length]."""
         half = self._half(pose)
-        found = [self._wall_contacts(pose.position, half, *wall) for wall in self._flat]
+        found = [self._flat_contacts(pose.position, half, *wall) for wall in self._flat]
         for wall, centre in self._round:
             touching = self._bump_contacts if radius_of(wall.shape) > 0 else self._hollow_contacts
             found.append(touching(pose.position, half, wall, centre, reach))
@@ -82,7 +72,7 @@ class SmoothContacts:
             at_wall=np.zeros(len(body_a), dtype=bool),
         )
 
-    def _wall_contacts(self, position: FloatArray, half: FloatArray, surface: int, plane: Plane) -> Contacts:
+    def _flat_contacts(self, position: FloatArray, half: FloatArray, surface: int, plane: Plane) -> Contacts:
         normal = np.broadcast_to(plane.unit_normal, position.shape)
         point_a = position - _farthest(half, normal)
         gap = plane.signed_distance(point_a)
@@ -101,7 +91,7 @@ class SmoothContacts:
     def _bump_contacts(
         self, position: FloatArray, half: FloatArray, wall: Wall, centre: FloatArray, reach: float
     ) -> Contacts:
-        """With a wall that is a ball's surface."""
+        """Contacts with a wall that is a ball's surface."""
         radius, count = radius_of(wall.shape), len(position)
         near = np.flatnonzero(np.linalg.norm(position - centre, axis=1) - self._bounds - radius <= reach)
         ball = radius * np.eye(len(centre))
@@ -109,12 +99,12 @@ class SmoothContacts:
         normal, found = _normals(*both, near, np.full(len(near), count), reach)
         body = near[found]
         point_a, point_b = position[body] - _farthest(half[body], normal), centre + radius * normal
-        return self._with_wall(body, wall, point_a, point_b, normal)
+        return self._round_wall_contacts(body, wall, point_a, point_b, normal)
 
     def _hollow_contacts(
         self, position: FloatArray, half: FloatArray, wall: Wall, centre: FloatArray, reach: float
     ) -> Contacts:
-        """With a wall that is a ball's surface seen from inside, as far as it goes."""
+        """Contacts with a wall that is a ball's surface seen from inside, as far as it goes."""
         radius = -radius_of(wall.shape)
         near = np.flatnonzero(np.linalg.norm(position - centre, axis=1) + self._bounds >= radius - reach)
         first, other, there = farthest_points(position[near] - centre, half[near])
@@ -122,10 +112,10 @@ class SmoothContacts:
         distance = np.linalg.norm(away, axis=1, keepdims=True)
         point_b = centre + radius * away / distance
         ends = np.linalg.norm(wall.shape.closest_point(point_b) - point_b, axis=1) <= _ON_THE_WALL * radius
-        found = self._with_wall(body, wall, centre + away, point_b, -away / distance)
+        found = self._round_wall_contacts(body, wall, centre + away, point_b, -away / distance)
         return select(found, np.flatnonzero(ends)[np.argsort(found.gap[ends], kind="stable")])
 
-    def _with_wall(
+    def _round_wall_contacts(
         self, body: IntArray, wall: Wall, point_a: FloatArray, point_b: FloatArray, normal: FloatArray
     ) -> Contacts:
         return Contacts(

@@ -16,7 +16,7 @@ from rigidfluid.core.model.wall import Wall, radius_of
 from rigidfluid.errors import SceneError
 
 SPREAD = 0.5
-"""Of the smallest radius: places of one wall that are farther than this behind the nearest are left out."""
+"""Greatest difference of distance between places of one wall, over the smallest radius [1]; others are left out."""
 
 
 class SphereDetector(Detector):
@@ -24,20 +24,7 @@ class SphereDetector(Detector):
 
     A wall acts as an imaginary ball of the same radius that touches it from outside: x_i' = x_i - (h + r) n with h the
     signed distance of x_i to the wall and n the wall's normal there, so that the gap is |x_i' - x_i| - 2r = h - r.
-
-    Parameters
-    ----------
-    options : PartOptions
-        None are read.
-    bodies : sequence of Body
-        Balls only.
-    walls : sequence of Wall
-        The walls that repel.
-
-    Raises
-    ------
-    SceneError
-        If a body is not a ball.
+    Bodies other than balls raise SceneError.
 
     Notes
     -----
@@ -71,7 +58,7 @@ class SphereDetector(Detector):
         return in_order([near, *(self._curved_contacts(pose.position, wall, reach) for wall in self._curved)])
 
     def _flat_contacts(self, position: FloatArray, reach: float) -> Contacts:
-        """Of balls with balls and flat walls."""
+        """Contacts of balls with balls and flat walls."""
         from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
 
         radii = self._radii
@@ -94,7 +81,7 @@ class SphereDetector(Detector):
         )
 
     def _curved_contacts(self, position: FloatArray, wall: Wall, reach: float) -> Contacts:
-        """Of balls with one wall, h by its signed distance; with facets at all places that are nearest around."""
+        """Contacts of balls with one wall, h by its signed distance; with facets at all places nearest around."""
         found = nearby(wall.shape, position, reach + float(self._radii.max()), SPREAD * float(self._radii.min()))
         gap = found.distance - self._radii[found.point]
         order = np.argsort(gap, kind="stable")

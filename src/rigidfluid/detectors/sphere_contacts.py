@@ -11,7 +11,7 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def _square(position, a, b):
-    """Of the distance of two centres; written out, since most pairs go no further."""
+    """Square of the distance of two centres; written out, since most pairs go no further."""
     x, y = position[a, 0] - position[b, 0], position[a, 1] - position[b, 1]
     if position.shape[1] == 2:
         return x * x + y * y
@@ -21,29 +21,10 @@ def _square(position, a, b):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def near_surfaces(position, radii, start, second, planes, surfaces, reach):
-    """Surfaces near each ball, with gap ≤ ``reach``.
+    """Balls a, surfaces b near them and gaps ≤ ``reach`` [length], (m,) each, sorted by (a, b).
 
-    Parameters
-    ----------
-    position : (n, d) array
-        Centres [length].
-    radii : (n,) array
-        Radii [length].
-    start : (n+1,) array
-        Where the pairs of each ball begin in ``second``.
-    second : (p,) array
-        The other ball of each pair, of a higher number.
-    planes : (w, 2, d) array
-        A point and the unit normal of each wall.
-    surfaces : (w,) array
-        Surface numbers of the walls, rising.
-    reach : float
-        Largest gap [length].
-
-    Returns
-    -------
-    (m,) array, (m,) array, (m,) array
-        The ball a, the surface b and the gap, sorted by (a, b).
+    Ball a is paired with the balls ``second[start[a]:start[a + 1]]``, of higher numbers. ``planes`` (w, 2, d) are a
+    point and the unit normal of each wall, ``surfaces`` (w,) their rising numbers.
     """
     count, dimension = position.shape
     most = len(second) + count * len(planes)
@@ -72,19 +53,10 @@ def near_surfaces(position, radii, start, second, planes, surfaces, reach):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def points_and_normals(position, radii, planes, surfaces, body, other):
-    """Where near surfaces face each other.
+    """Nearest points of a and of b [length], and normals, (m, d) each, of the balls a and surfaces b of
+    `near_surfaces`.
 
-    Parameters
-    ----------
-    position, radii, planes, surfaces : arrays
-        As for `near_surfaces`.
-    body, other : (m,) array
-        Its result.
-
-    Returns
-    -------
-    (m, d) array, (m, d) array, (m, d) array
-        Nearest point of a, of b, and the normal; the first axis for balls with a common centre.
+    The normal of balls with a common centre is the first axis.
     """
     dimension = position.shape[1]
     point_a, point_b = np.empty((len(body), dimension)), np.empty((len(body), dimension))

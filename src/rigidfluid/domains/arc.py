@@ -1,4 +1,4 @@
-"""A bump on a flat wall: what a disk shows of itself above the wall."""
+"""A bump on a flat wall: the part of a disk above the wall."""
 
 from __future__ import annotations
 
@@ -13,14 +13,7 @@ from rigidfluid.core.model.types import FloatArray
 class Arc(Surface):
     """{x : |x - c| = R, above the wall}, with the fluid outside the circle.
 
-    Parameters
-    ----------
-    centre : (2,) array
-        c, less than R from the wall, above or below it [length].
-    radius : float
-        R [length].
-    wall : Plane
-        The wall.
+    The ``centre`` c (2,) is less than the ``radius`` R from the ``wall``, above or below it [length].
     """
 
     def __init__(self, centre: FloatArray, radius: float, wall: Plane) -> None:
@@ -36,7 +29,7 @@ class Arc(Surface):
 
     @property
     def half_width(self) -> float:
-        """Of the bump, on the wall [length]."""
+        """Half width of the bump on the wall [length]."""
         return sqrt(self._radius**2 - self._above**2)
 
     @property
@@ -46,7 +39,7 @@ class Arc(Surface):
 
     @property
     def area(self) -> float:
-        """Of the circular segment between arc and wall, R²(α - sin α cos α) [length²]."""
+        """Area of the circular segment between arc and wall, R²(α - sin α cos α) [length²]."""
         return self._radius**2 * self._half_angle + self.half_width * self._above
 
     @property
@@ -57,7 +50,7 @@ class Arc(Surface):
         return corners.min(axis=0), corners.max(axis=0)
 
     def closest_point(self, points: FloatArray) -> FloatArray:
-        """Where the line to the centre meets the arc, else the nearer end of the arc, (N, 2) [length]."""
+        """Points where lines to the centre meet the arc, else the nearer end of the arc, (N, 2) [length]."""
         away = points - self.centre
         distance = np.linalg.norm(away, axis=1, keepdims=True)
         direction = np.where(distance > 0.0, away / np.maximum(distance, 1e-300), self._wall.unit_normal)

@@ -9,14 +9,14 @@ import numpy as np
 from rigidfluid.core.model.facets import Facets, place
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
-from rigidfluid.domains.naming import Part, listed
+from rigidfluid.domains.naming import Part, list_parts
 from rigidfluid.errors import SceneError
 
 SAME = 1e-9
-"""Over the size of the domain: points that are nearer to each other are one."""
+"""Distance over the size of the domain, below which two points are one [1]."""
 
 _FLAT = 1e-12
-"""Over the size of the domain: points that are less off the plane z = 0 lie in it."""
+"""Distance off the plane z = 0 over the size of the domain, below which points lie in it [1]."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Boundary:
 
     @property
     def parts(self) -> list[Part]:
-        """What the file knows of it, by ascending number."""
+        """Parts of the boundary as the file knows them, by ascending number."""
         numbers = np.unique(self.facets.markers).tolist()
         return [Part(number, self.names.get(number), self._look(number)) for number in numbers]
 
@@ -39,33 +39,16 @@ class Boundary:
 
 
 def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: float) -> Boundary:
-    """The boundary of what the fluid fills.
+    """Boundary of the region of a file that the fluid fills, in 2 or 3 dimensions.
 
-    Parameters
-    ----------
-    file : MeshFile
-        As it was read.
-    dimension : int
-        2 or 3.
-    fluid : int, str or None
-        Number or name of the cells that are fluid; may be None where all cells have one number.
-    scale : float
-        What lengths in the file are multiplied by [1].
-
-    Returns
-    -------
-    Boundary
-        Points that are less than SAME apart are joined, and facets without an area left out.
-
-    Raises
-    ------
-    SceneError
-        If there is nothing, the region is not there or not said, or a facet of its boundary has no number.
+    Points less than SAME apart are joined, and facets without an area left out. ``fluid`` is the number or name of the
+    cells that are fluid, None where all have one number; ``scale`` multiplies lengths [1]. Raises SceneError if there
+    is no such region, or a facet of its boundary has no number.
     """
     points = _in_space(file, dimension) * scale
     region = _region(file.cells, points, dimension, fluid)
     if len(region):
-        vertices, numbers = _around(region, file.facets, points)
+        vertices, numbers = _boundary_facets(region, file.facets, points)
     else:
         vertices, numbers = file.facets.vertices, file.facets.numbers
     if not len(vertices):
@@ -104,22 +87,24 @@ def _region(cells: Cells, points: FloatArray, dimension: int, fluid: int | str |
     if fluid is None:
         if len(regions) > 1:
             remedy = 'Say which is the fluid: `fluid = "…"`.'
-            raise SceneError("domain.fluid", f"nothing, and several regions: {listed(regions)}", "one of them", remedy)
+            raise SceneError(
+                "domain.fluid", f"nothing, and several regions: {list_parts(regions)}", "one of them", remedy
+            )
         return cells.vertices
     chosen = [part.number for part in regions if fluid in (part.number, part.name)]
     if not chosen:
-        known = listed(regions) or "none, as the file has no cells"
+        known = list_parts(regions) or "none, as the file has no cells"
         raise SceneError("domain.fluid", f"{fluid!r}, which is no region of the file", known, "Correct or remove it.")
     return cells.vertices[np.isin(cells.numbers, chosen)]
 
 
-def _around(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArray, IntArray]:
+def _boundary_facets(region: IntArray, facets: Cells, points: FloatArray) -> tuple[IntArray, IntArray]:
     """Facets (F, d) of only one cell of the region, and the numbers that the file's facets give them."""
     count = region.shape[1]
     sides = np.concatenate([np.delete(region, k, axis=1) for k in range(count)])
     unique, times = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     outer = unique[times == 1]
-    _refuse_baffles(facets, _among(facets.vertices, unique[times == 2]), points)
+    _refuse_baffles(facets, _are_among(facets.vertices, unique[times == 2]), points)
     keys = np.concatenate([outer, np.sort(facets.vertices, axis=1)])
     _, row = np.unique(keys, axis=0, return_inverse=True)
     number_of = dict(zip(row.ravel()[len(outer) :].tolist(), facets.numbers.tolist(), strict=True))
@@ -150,7 +135,7 @@ def _doubled(vertices: IntArray) -> BoolArray:
     return np.asarray(times[row.ravel()] > 1)
 
 
-def _among(facets: IntArray, others: IntArray) -> BoolArray:
+def _are_among(facets: IntArray, others: IntArray) -> BoolArray:
     """Which facets (F,) are among ``others`` (G, d)."""
     corners = np.sort(np.concatenate([facets, others]), axis=1)
     row = np.unique(corners, axis=0, return_inverse=True)[1].ravel()
@@ -158,7 +143,7 @@ def _among(facets: IntArray, others: IntArray) -> BoolArray:
 
 
 def _joined(points: FloatArray, vertices: IntArray) -> IntArray:
-    """For each point the number of the one that stands for it."""
+    """Number of the point that stands for each point, (N,)."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

@@ -18,7 +18,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.errors import SceneError
 
 NAMES = ("left", "right", "bottom", "top", "back", "front")
-"""Of the lower and the upper face along each axis."""
+"""Names of the lower and the upper face along each axis."""
 
 
 class BoxOptions(PartOptions):
@@ -33,7 +33,7 @@ class BoxOptions(PartOptions):
 
 @dataclass(frozen=True)
 class _FaceCoordinates:
-    """From points (N, d) to (x - lower)/(upper - lower) without the component across the face (N, d-1)."""
+    """Map points (N, d) to (x - lower)/(upper - lower) without the component across the face (N, d-1)."""
 
     lower: FloatArray
     upper: FloatArray

@@ -21,7 +21,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
-from rigidfluid.domains.naming import Labels, Part, in_order, surface_names
+from rigidfluid.domains.naming import Labels, Part, order_surfaces, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.errors import MeshError, SceneError
 
@@ -29,10 +29,10 @@ _FACETS = 30
 """Facets along the longest side of the domain, at least, by which faces are found."""
 
 _FACETS_PER_RADIUS = 8.0
-"""And along a radius of curvature."""
+"""Facets along a radius of curvature, at least."""
 
 _GROWTH = 0.3
-"""Of facets away from where they are small."""
+"""Growth of facets away from where they are small [1]."""
 
 _SAME = 1e-9
 """Areas and distances that differ by less, relatively, are equal."""
@@ -57,19 +57,9 @@ class CadOptions(PartOptions):
 
 
 class Cad(Domain):
-    """What a solid of a CAD file, or in 2D a face in the plane z = 0, is around.
+    """The inside of a solid of a CAD file, or in 2D of a face in the plane z = 0.
 
-    Parameters
-    ----------
-    options : CadOptions
-        ``file``, ``scale`` [1], ``faces``.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or has no such shape, or if faces have no name.
+    A file that cannot be read or has no such shape, and faces without a name, raise SceneError.
     """
 
     name: ClassVar[str] = "cad"
@@ -81,14 +71,14 @@ class Cad(Domain):
         self._shape, self._unit = _read(options, dimension)
         parts = [self._part(number) for number in range(1, len(self._sides) + 1)]
         self._names = surface_names(parts, options.faces)
-        self._order = in_order(self._names, options.faces)
+        self._order = order_surfaces(self._names, options.faces)
         facets = facing_the_fluid(_fine_facets(self._shape, dimension, self._unit), "domain.file")
         self._facets, self._whole = facets, FacetSurface(facets)
         self._forms = [self._form(side) for side in self._sides]
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """As `faces` lists them, else as the file does."""
+        """Pieces in the order of `faces`, else of the file."""
         return tuple(self._piece(name) for name in self._order)
 
     @property
@@ -98,7 +88,7 @@ class Cad(Domain):
 
     @property
     def volume(self) -> float:
-        """As Open CASCADE integrates it [length^d]."""
+        """Volume as Open CASCADE integrates it [length^d]."""
         return float(self._shape.mass) * self._unit**self.dimension
 
     def contains(self, points: FloatArray) -> BoolArray:

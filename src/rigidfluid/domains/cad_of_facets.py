@@ -11,20 +11,7 @@ from rigidfluid.core.model.types import IntArray
 
 
 def cad_of_facets(facets: Facets, unit: float) -> Any:
-    """A ``netgen.occ`` face (2D) or solid (3D) with straight sides and lengths over a unit.
-
-    Parameters
-    ----------
-    facets : Facets
-        Of one closed surface, normals outwards.
-    unit : float
-        What is 1 in the shape [length].
-
-    Returns
-    -------
-    netgen.occ.Face or netgen.occ.Solid
-        Its corners are those of the facets.
-    """
+    """A ``netgen.occ`` face (2D) or solid (3D) with the corners of one closed surface, lengths over ``unit``."""
     from netgen import occ
 
     points = [occ.Pnt(*in_space(point)) for point in in_unit(facets.points, unit)]

@@ -33,17 +33,7 @@ class ChannelOptions(BoxOptions):
 class Channel(Domain):
     """{x : lower < x < upper} \\ ∪ K_i with obstacles K_i, of volume ∏ (upper - lower) - Σ |K_i|.
 
-    Parameters
-    ----------
-    options : ChannelOptions
-        Corners of the box [length], and the obstacles.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If box or obstacles are not what they should be, have one name twice, or overlap.
+    Impossible boxes or obstacles, two of one name, and overlaps raise SceneError.
     """
 
     name: ClassVar[str] = "channel"
@@ -74,7 +64,7 @@ class Channel(Domain):
 
     @property
     def volume(self) -> float:
-        """That of the box without the obstacles [length^d]."""
+        """Volume of the box without the obstacles [length^d]."""
         return self._box.volume - sum(placed.shape.volume for placed in self._obstacles.values())
 
     def contains(self, points: FloatArray) -> BoolArray:

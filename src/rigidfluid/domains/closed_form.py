@@ -13,7 +13,7 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
 _EXACT = 1e-9
-"""Over the size of the form: a face has the form if samples of it are no farther off."""
+"""Distance of a face's samples from a form over the form's size, up to which the face has the form [1]."""
 
 _SAMPLES = ((0.0, 0.0), (0.7, 0.2), (-1.1, 0.6), (2.3, -0.4), (0.1, 1.3))
 """Parameters u and v at which a face is looked at."""

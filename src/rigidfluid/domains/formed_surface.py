@@ -50,14 +50,8 @@ class FormedSurface(Surface):
     Beside an edge of a face, where the nearest point of its form is beyond it, the nearest point is that of the facets,
     put onto the form: it is off by what the facets cut off.
 
-    Parameters
-    ----------
-    facets : Facets
-        Fine ones, vertices on the faces, marked by the number of their face.
-    forms : sequence of Form or None
-        Of all faces.
-    whole : FacetSurface, optional
-        The closed surface that they are a part of.
+    ``facets`` are fine ones with vertices on the faces, marked by the number of their face in ``forms``, None where a
+    form is not known; ``whole`` is the closed surface that they are a part of.
     """
 
     def __init__(self, facets: Facets, forms: Sequence[Form | None], whole: FacetSurface | None = None) -> None:
@@ -80,12 +74,12 @@ class FormedSurface(Surface):
 
     @property
     def slack(self) -> float:
-        """How far at most the faces may be beyond the facets [length]."""
+        """Greatest distance of the faces beyond the facets [length]."""
         return max((face.slack for face in self._faces.values()), default=0.0)
 
     @property
     def radius(self) -> float | None:
-        """Of a part of one ball, negative where the fluid is inside; else None [length]."""
+        """Radius of the ball that the surface is a part of, negative if the fluid is inside; else None [length]."""
         only = next(iter(self._faces.values())) if self._complete and len(self._faces) == 1 else None
         if only is None or not isinstance(only.form, Offset) or not only.form.round:
             return None
@@ -93,7 +87,7 @@ class FormedSurface(Surface):
 
     @property
     def least_radius(self) -> float | None:
-        """Of all faces; None where one has no known form [length]."""
+        """Least radius of curvature of all faces; None where one has no known form [length]."""
         return min(face.form.least_radius for face in self._faces.values()) if self._complete else None
 
     def closest_point(self, points: FloatArray) -> FloatArray:
@@ -111,8 +105,8 @@ class FormedSurface(Surface):
     def _measured(self, points: FloatArray) -> _Measured:
         facet, coarse_foot, coarse_distance, coarse_normal = self._coarse.nearest(points)
         face = self._coarse.facets.markers[facet]
-        found = self._on_forms(points, _Feet(coarse_foot, coarse_normal, face, np.zeros(len(points), dtype=bool)))
-        self._go_on(points, found, np.flatnonzero(found.face != face))
+        found = self._feet_on_forms(points, _Feet(coarse_foot, coarse_normal, face, np.zeros(len(points), dtype=bool)))
+        self._continue_feet(points, found, np.flatnonzero(found.face != face))
         away = np.linalg.norm(points - found.foot, axis=1)
         formed = np.isin(face, list(self._faces))
         above = np.sum((points - found.foot) * found.normal, axis=1)
@@ -122,15 +116,14 @@ class FormedSurface(Surface):
             inside[behind] = self._whole.signed_distance(points[behind]) > 0.0
         return _Measured(found.foot, np.where(inside, away, -away), found.normal)
 
-    def _go_on(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
-        """Where faces pass into one another, the form of the face that is near a point may end before its foot: then
-        the next face goes on."""
+    def _continue_feet(self, points: FloatArray, found: _Feet, rows: IntArray) -> None:
+        """Replace feet at ``rows`` that lie on the next face, as faces pass into one another, by those of its form."""
         there = _Feet(found.foot[rows], found.normal[rows], found.face[rows], found.bounded[rows])
-        following = self._on_forms(points[rows], there)
+        following = self._feet_on_forms(points[rows], there)
         taken = following.bounded
         found.foot[rows[taken]], found.normal[rows[taken]] = following.foot[taken], following.normal[taken]
 
-    def _on_forms(self, points: FloatArray, near: _Feet) -> _Feet:
+    def _feet_on_forms(self, points: FloatArray, near: _Feet) -> _Feet:
         """The nearest points of the forms of the faces that points are ``near`` to; those there, put onto the form,
         where the form's are not on the face."""
         foot, normal, slack = near.foot.copy(), near.normal.copy(), np.full(len(points), np.inf)

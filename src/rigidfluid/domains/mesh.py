@@ -17,12 +17,12 @@ from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
-from rigidfluid.domains.naming import Labels, in_order, surface_names
+from rigidfluid.domains.naming import Labels, order_surfaces, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
 from rigidfluid.errors import SceneError
 
 _LEAST_VOLUME = 1e-12
-"""Of the cube around the domain: what has less is flat."""
+"""Volume over that of the cube around the domain, below which facets are flat [1]."""
 
 
 class MeshOptions(PartOptions):
@@ -50,18 +50,8 @@ class MeshOptions(PartOptions):
 class MeshDomain(Domain):
     """The polyhedron, or in 2D the polygon, of the boundary facets of a mesh.
 
-    Parameters
-    ----------
-    options : MeshOptions
-        ``file``, ``scale`` [1], ``faces``, ``fluid``.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or the region is not there, if facets have no name, or if the surface is open,
-        crosses itself or has one side only.
+    A file that cannot be read, a region that is not there, facets without a name, and a surface that is open, crosses
+    itself or has one side only raise SceneError.
     """
 
     name: ClassVar[str] = "mesh"
@@ -75,7 +65,7 @@ class MeshDomain(Domain):
         self._doubled = boundary.doubled
         parts = boundary.parts
         names = surface_names(parts, options.faces)
-        self._names = in_order(names, options.faces)
+        self._names = order_surfaces(names, options.faces)
         _refuse_crossing(boundary.facets)
         facets = facing_the_fluid(boundary.facets, FIELD)
         piece_of = {part.number: self._names.index(name) for part, name in zip(parts, names, strict=True)}
@@ -93,7 +83,7 @@ class MeshDomain(Domain):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """As `faces` lists them, else as the file does."""
+        """Pieces in the order of `faces`, else of the file."""
         return tuple(self._piece(number, name) for number, name in enumerate(self._names))
 
     @property
@@ -103,12 +93,12 @@ class MeshDomain(Domain):
 
     @property
     def volume(self) -> float:
-        """Of the polyhedron, exactly [length^d]."""
+        """Exact volume of the polyhedron [length^d]."""
         return -enclosed_volume(self._facets.points, self._facets.vertices)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """How many points were joined, if any."""
+        """Remark on the number of points that were joined, if any were."""
         joined = f"{self._doubled} points of the file were joined with others less than {SAME:g} of the domain away"
         return (joined,) if self._doubled else ()
 

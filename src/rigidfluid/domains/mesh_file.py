@@ -20,7 +20,7 @@ _SIMPLICES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2,
 """Dimension of each kind of cell, of which the corners are taken."""
 
 _NUMBERS = ("gmsh:physical", "cell_tags", "medit:ref")
-"""What meshio calls the numbers that files give to cells; of other formats, the only data that are whole numbers."""
+"""Names in meshio of the numbers of cells; in other formats these are the only data of whole numbers."""
 
 _MESHIO = (".msh", ".med", ".vtu", ".mesh", ".meshb")
 _FORMATS = (*_MESHIO, ".stl", ".vol", ".vol.gz")
@@ -45,24 +45,10 @@ class MeshFile:
 
 
 def read_mesh(path: Path, dimension: int) -> MeshFile:
-    """Facets and cells of a file.
+    """Read facets and cells of a mesh in 2 or 3 dimensions from a file.
 
-    Parameters
-    ----------
-    path : Path
-        Gmsh .msh, MED, .vtu, Medit .mesh or .meshb, Netgen .vol or .vol.gz, or .stl.
-    dimension : int
-        Of its cells, 2 or 3.
-
-    Returns
-    -------
-    MeshFile
-        As the file has them.
-
-    Raises
-    ------
-    SceneError
-        If it cannot be read, has other cells than simplices, or needs a package that is not there.
+    Formats are Gmsh .msh, MED, .vtu, Medit .mesh or .meshb, Netgen .vol or .vol.gz, and .stl. Raises SceneError if the
+    file cannot be read, has other cells than simplices, or needs a package that is not there.
     """
     ending = next((ending for ending in _FORMATS if path.name.lower().endswith(ending)), None)
     if not path.is_file():
@@ -71,17 +57,17 @@ def read_mesh(path: Path, dimension: int) -> MeshFile:
         remedy = "Write it in one of those; drawn shapes are read by type = 'cad'."
         raise SceneError(FIELD, str(path), f"one of {', '.join(_FORMATS)}", remedy)
     if ending == ".stl":
-        return _of_stl(path)
-    return _by_netgen(path, dimension) if ending.startswith(".vol") else _by_meshio(path, dimension)
+        return _mesh_of_stl(path)
+    return _read_by_netgen(path, dimension) if ending.startswith(".vol") else _read_by_meshio(path, dimension)
 
 
-def _of_stl(path: Path) -> MeshFile:
+def _mesh_of_stl(path: Path) -> MeshFile:
     facets = read_stl(path, FIELD)
     numbers = np.ones(len(facets.vertices), dtype=np.int64)
     return MeshFile(facets.points, Cells(facets.vertices, numbers, {}), _no_cells(3))
 
 
-def _by_netgen(path: Path, dimension: int) -> MeshFile:
+def _read_by_netgen(path: Path, dimension: int) -> MeshFile:
     from netgen import meshing
 
     mesh, verbosity = meshing.Mesh(), meshing.SetMessageImportance(0)
@@ -105,7 +91,7 @@ def _by_netgen(path: Path, dimension: int) -> MeshFile:
     return MeshFile(np.array(mesh.Coordinates()), *cells)
 
 
-def _by_meshio(path: Path, dimension: int) -> MeshFile:
+def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
     try:
         import meshio
     except ImportError:
@@ -127,7 +113,7 @@ def _by_meshio(path: Path, dimension: int) -> MeshFile:
 
 
 def _numbers(mesh: Any, path: Path) -> list[IntArray]:
-    """Of each block of cells."""
+    """Numbers of the cells of each block."""
     whole = [key for key, data in mesh.cell_data.items() if all(_are_whole(block) for block in data)]
     chosen = [key for key in _NUMBERS if key in whole] or whole
     if len(chosen) > 1 and chosen[0] not in _NUMBERS:
@@ -143,7 +129,7 @@ def _are_whole(data: Any) -> bool:
 
 
 def _names(mesh: Any) -> dict[int | None, dict[int, str]]:
-    """By the dimension of the cells that they are for, None of any, and by number."""
+    """Names by the dimension of the cells that they are for, None of any, and by number."""
     names: dict[int | None, dict[int, str]] = {}
     for name, (number, dimension) in mesh.field_data.items():
         names.setdefault(int(dimension), {})[int(number)] = str(name)

@@ -1,4 +1,4 @@
-"""Which surface of a domain each part of a file's boundary belongs to."""
+"""Assignment of the parts of a file's boundary to the surfaces of a domain."""
 
 from __future__ import annotations
 
@@ -27,26 +27,11 @@ class Part:
 
 
 def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> list[str]:
-    """The name of the surface that each part belongs to.
+    """Name of the surface that each part belongs to, by ``faces``, or by the file's names if they are None.
 
-    Parameters
-    ----------
-    parts : sequence of Part
-        Of the file.
-    faces : mapping of str to Labels, or None
-        Names of surfaces, and the names or numbers in the file of what they consist of; None for the file's names.
-
-    Returns
-    -------
-    list of str
-        For each part.
-
-    Raises
-    ------
-    SceneError
-        If a label is not in the file, a part belongs to no surface or to two, or a name cannot be one.
+    Raises SceneError if a label is not in the file, a part belongs to no surface or to two, or a name cannot be one.
     """
-    found = _by_file(parts) if faces is None else _by_scene(parts, faces)
+    found = _names_by_file(parts) if faces is None else _names_by_scene(parts, faces)
     for name in found:
         if name == "all" or not name:
             raise SceneError(AT, f"a surface named {name!r}", "a name other than 'all'", "Rename it.")
@@ -55,27 +40,27 @@ def surface_names(parts: Sequence[Part], faces: Mapping[str, Labels] | None) -> 
     return found
 
 
-def in_order(names: Sequence[str], faces: Mapping[str, Labels] | None) -> list[str]:
+def order_surfaces(names: Sequence[str], faces: Mapping[str, Labels] | None) -> list[str]:
     """The surfaces, each once: as the scene lists them, else as the file does."""
     return list(dict.fromkeys(names if faces is None else faces))
 
 
-def _by_file(parts: Sequence[Part]) -> list[str]:
+def _names_by_file(parts: Sequence[Part]) -> list[str]:
     nameless = [part for part in parts if not part.name]
     if nameless:
         remedy = "Give all of them names: `faces = { wall = [1, 2], inflow = 3 }`."
-        raise SceneError(AT, f"nothing, and no names in the file for {listed(nameless)}", "a name for each", remedy)
+        raise SceneError(AT, f"nothing, and no names in the file for {list_parts(nameless)}", "a name for each", remedy)
     return [part.name or "" for part in parts]
 
 
-def _by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
+def _names_by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
     names: list[str] = [""] * len(parts)
     for name, label in _labels(faces):
         chosen = [i for i, part in enumerate(parts) if label in (part.number, part.name)]
         if not chosen:
             known = [part.name for part in parts if part.name] if isinstance(label, str) else []
             remedy = suggestion(str(label), known) or "Correct it."
-            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", listed(parts), remedy)
+            raise SceneError(f"{AT}.{name}", f"{label!r}, which is not in the file", list_parts(parts), remedy)
         for i in chosen:
             if names[i] not in ("", name):
                 found = f"{label!r}, which belongs to {names[i]!r} already"
@@ -83,7 +68,9 @@ def _by_scene(parts: Sequence[Part], faces: Mapping[str, Labels]) -> list[str]:
             names[i] = name
     missing = [part for part, name in zip(parts, names, strict=True) if not name]
     if missing:
-        raise SceneError(AT, f"no surface for {listed(missing)}", "all parts of the boundary", "Add them to a surface.")
+        raise SceneError(
+            AT, f"no surface for {list_parts(missing)}", "all parts of the boundary", "Add them to a surface."
+        )
     return names
 
 
@@ -93,7 +80,7 @@ def _labels(faces: Mapping[str, Labels]) -> Iterator[tuple[str, int | str]]:
             yield name, label
 
 
-def listed(parts: Sequence[Part]) -> str:
+def list_parts(parts: Sequence[Part]) -> str:
     """The parts as messages show them."""
     shown = "; ".join(f"{part.number}{f' {part.name!r}' if part.name else ''} ({part.look})" for part in parts[:_SHOWN])
     return shown + (f"; and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else "")

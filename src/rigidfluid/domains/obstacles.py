@@ -10,41 +10,25 @@ from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.setup.detector_choice import exact_detector
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, tables_by_name
 from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.domains.placed import PlacedBody
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import Registry
 
 AT = "domain.obstacle"
-"""Where obstacles stand in a scene."""
+"""Place of obstacles in a scene, for messages."""
 
 
 def placed_obstacles(tables: Sequence[NestedBodyTable], dimension: int) -> dict[str, PlacedBody]:
-    """The obstacles by their names.
+    """Obstacles by their names, in the scene's order.
 
-    Parameters
-    ----------
-    tables : sequence of NestedBodyTable
-        As they stand in the scene.
-    dimension : int
-        2 or 3.
-
-    Returns
-    -------
-    dict of str to PlacedBody
-        In the scene's order.
-
-    Raises
-    ------
-    SceneError
-        If a name comes twice, a key is unknown, a vector has a wrong length, or the shape cannot be.
-    PluginError
-        If there is no such body type.
+    Raises SceneError if a name comes twice, a key is unknown, a vector has a wrong length, or the shape cannot be, and
+    PluginError if there is no such body type.
     """
     return {
         name: PlacedBody(build_shape(table, f"{AT}.{number}", dimension), initial_pose([table], dimension))
-        for number, (name, table) in enumerate(by_name(tables, AT).items())
+        for number, (name, table) in enumerate(tables_by_name(tables, AT).items())
     }
 
 

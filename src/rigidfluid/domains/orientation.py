@@ -16,24 +16,10 @@ from rigidfluid.errors import SceneError
 def facing_the_fluid(facets: Facets, at: str) -> Facets:
     """The same facets, in such an order of their corners that all normals point into the fluid.
 
-    The fluid is what an odd number of closed surfaces is around: inside the outermost, outside those within it.
+    The fluid lies within an odd number of closed surfaces: inside the outermost, outside those within it.
 
-    Parameters
-    ----------
-    facets : Facets
-        Of one or several closed surfaces, in any order.
-    at : str
-        Where they come from, for messages.
-
-    Returns
-    -------
-    Facets
-        The same facets in the same order.
-
-    Raises
-    ------
-    SceneError
-        If a surface is open, branches, or has one side only, or if the fluid is in several regions, with the place.
+    Messages say that the facets come from ``at``. Raises SceneError, with the place, if a surface is open, branches or
+    has one side only, or if the fluid is in several regions.
     """
     _refuse_open(facets, at)
     flip, surface = _turned_alike(facets, at)
@@ -96,7 +82,7 @@ def _flipped(facets: Facets, flip: BoolArray) -> Facets:
 
 
 def _depth(facets: Facets, surface: IntArray, point: FloatArray, others: BoolArray) -> int:
-    """How many of the other surfaces are around a point."""
+    """Number of the other surfaces that are around a point."""
     around = 0
     for number in np.unique(surface[others]):
         one = facets.part(surface == number)

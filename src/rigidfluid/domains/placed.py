@@ -22,15 +22,7 @@ from rigidfluid.domains.cad_of_facets import cad_of_facets
 
 
 class PlacedBody(Surface):
-    """The surface {c + R ξ : ξ on the shape} of a body with its centre c and rotation R.
-
-    Parameters
-    ----------
-    shape : Body
-        The shape in its own frame.
-    pose : Pose
-        Where this one body is.
-    """
+    """The surface {c + R ξ : ξ on the shape} of a body with its centre c and rotation R by ``pose``."""
 
     def __init__(self, shape: Body, pose: Pose) -> None:
         self.shape, self.pose = shape, pose
@@ -42,7 +34,7 @@ class PlacedBody(Surface):
 
     @property
     def semi_axes(self) -> FloatArray | None:
-        """Those of the shape, along the axes of its own frame [length]."""
+        """Semi-axes of the shape, along the axes of its own frame; None if it has none [length]."""
         return self.shape.semi_axes
 
     @property

@@ -37,17 +37,7 @@ class StenosisOptions(PartOptions):
 class Stenosis(Domain):
     """A rectangle without two circular segments, which leave a throat of the given width.
 
-    Parameters
-    ----------
-    options : StenosisOptions
-        ``length``, ``width``, ``radius``, ``throat`` [length].
-    dimension : int
-        2.
-
-    Raises
-    ------
-    SceneError
-        In 3D, and where the bumps would not hold together, touch each other, or be longer than the channel.
+    Raises SceneError in 3D, and if the bumps would not hold together, touch each other, or be longer than the channel.
     """
 
     name: ClassVar[str] = "stenosis"
@@ -103,7 +93,7 @@ class Stenosis(Domain):
 
     @property
     def _height(self) -> float:
-        """Of the bumps above the walls [length]."""
+        """Height of the bumps above the walls [length]."""
         o = self.options
         return o.radius if o.throat is None else 0.5 * (o.width - o.throat)
 

@@ -22,21 +22,7 @@ class BarrierLaw(Repulsion):
     With w = range - gap and l = ln(range/gap), F = [2 w l + w²/gap]/ε along the normal and the stiffness is
     [2 l + 4 w/gap + w²/gap²]/ε: U has two continuous derivatives at range.
 
-    Parameters
-    ----------
-    options : BarrierOptions
-        ``epsilon`` and ``epsilon_wall`` [length/force].
-    range : float
-        The gap above which the law is zero [length].
-    loads : Loads, optional
-        What the contacts must hold; needed by ``auto``.
-
-    Raises
-    ------
-    SceneError
-        If ``auto`` cannot be computed.
-    StepRejected
-        By force and stiffness where the gap is not positive.
+    Force and stiffness raise StepRejected where the gap is not positive.
 
     Notes
     -----

@@ -23,19 +23,7 @@ class CentreLaw(Repulsion):
     U = [(R + range) w³/3 - w⁴/4]/ε, the stiffness [2 (R + gap) w - w²]/ε. All hold for overlap as well, up to a common
     centre.
 
-    Parameters
-    ----------
-    options : CentreOptions
-        ``epsilon`` and ``epsilon_wall`` [length³/force].
-    range : float
-        The gap above which the law is zero [length].
-    loads : Loads, optional
-        What the contacts must hold; needed by ``auto``.
-
-    Raises
-    ------
-    SceneError
-        If a surface is neither round nor flat, or ``auto`` cannot be computed.
+    A surface that is neither round nor flat raises SceneError.
 
     Notes
     -----

@@ -21,20 +21,6 @@ class ContactLaw(Repulsion):
     is range⁴/(12 ε): bodies with more energy than that overlap. There the formula is taken as it stands, so that force
     and energy have no kink: the vector turns round, and the force pulls the bodies together.
 
-    Parameters
-    ----------
-    options : ContactOptions
-        ``epsilon`` and ``epsilon_wall`` [length³/force].
-    range : float
-        The gap above which the law is zero [length].
-    loads : Loads, optional
-        What the contacts must hold; needed by ``auto``.
-
-    Raises
-    ------
-    SceneError
-        If ``auto`` cannot be computed.
-
     Notes
     -----
     Van Landeghem et al., arXiv 2402.19093, the short-range model for other shapes.

@@ -32,19 +32,7 @@ class LubricationLaw(ForceLaw):
     range is taken off, as the mesh resolves a film as thick as that: range is to be the gap where the mesh begins to
     fail. The force takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
-    Parameters
-    ----------
-    options : LubricationOptions
-        ``viscosity`` and ``cutoff``.
-    range : float
-        The gap above which the mesh resolves the film [length].
-    loads : Loads, optional
-        Not read.
-
-    Raises
-    ------
-    SceneError
-        If the cutoff is not below the range, or the curvature of a surface is not known.
+    A cutoff that is not below range, and surfaces without a known curvature, raise SceneError.
 
     Notes
     -----

@@ -18,20 +18,6 @@ class NormalLaw(Repulsion):
 
     With w = range - gap, U = w³/(3 ε) and the stiffness is 2 w/ε.
 
-    Parameters
-    ----------
-    options : NormalOptions
-        ``epsilon`` and ``epsilon_wall`` [length²/force].
-    range : float
-        The gap above which the law is zero [length].
-    loads : Loads, optional
-        What the contacts must hold; needed by ``auto``.
-
-    Raises
-    ------
-    SceneError
-        If ``auto`` cannot be computed.
-
     Notes
     -----
     The laws of Van Landeghem et al., arXiv 2402.19093, with a vector of length one in place of theirs.

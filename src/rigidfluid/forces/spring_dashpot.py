@@ -46,15 +46,6 @@ class SpringDashpotLaw(ForceLaw):
     ends with e times its speed. Contact begins at range: the bodies wear a shell of half that thickness. F_n is not cut
     where it pulls, at the end of an impact: e would not be exact.
 
-    Parameters
-    ----------
-    options : SpringDashpotOptions
-        ``stiffness``, ``restitution`` or ``damping``, ``friction``, ``tangential_damping``.
-    range : float
-        The gap where contact begins [length].
-    loads : Loads, optional
-        Not read.
-
     Notes
     -----
     Across the surfaces it is LAMMPS' ``pair_style granular`` with ``pair_coeff * * hooke k e damping coeff_restitution

@@ -25,14 +25,14 @@ from rigidfluid.marching.workers import Workers, same_topology
 from rigidfluid.marching.workspace import Workspace
 
 ROUNDED_UP = 1.0 + 1e-9
-"""Bounding balls are so much larger, as the vertices of a mesh are on the surface only to rounding."""
+"""Factor on radii of bounding balls, as the vertices of a mesh are on the surface only to rounding [1]."""
 
 TO_CORNER = {2: 0.5, 3: 1.0 / sqrt(3.0)}
 """Dimension → distance from a point of a facet to its nearest corner over the facet's longest edge, at most."""
 
 
 class _Scope(NamedTuple):
-    """What all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
+    """Data that all searches of one call share: the mesh as it lies, the bodies' centres, the largest gap wanted."""
 
     topology: Topology
     points: FloatArray
@@ -52,20 +52,9 @@ class ContactFinder:
     ``reach`` on an edge or a facet has a corner of it in the band. So the march meets the facets at the end of every
     straight line of that length through the fluid.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The shapes.
-    walls : sequence of Wall
-        The walls that repel.
-    accuracy : "exact" or "first-order"
-        Of the fields; the gaps are exact to the facets in both cases.
-    several : bool
-        Whether a pair has one contact for each separate place where it is near.
-    whole_domain : bool
-        Whether the fields go on to the end of the mesh.
-    threads : int
-        How many threads may march; 0 for as many as there are cores.
+    ``accuracy`` is that of the fields: gaps are exact to the facets in both cases. A pair that is near at ``several``
+    separate places has a contact at each. Fields go on to the end of the mesh for the ``whole_domain``. 0 ``threads``
+    are as many as there are cores.
     """
 
     def __init__(
@@ -91,37 +80,39 @@ class ContactFinder:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b, gap)."""
         if mesh.part is not None:
             self._refuse_first_order(mesh.ranks.size)
-        near = self._near(pose.position, reach)
+        near = self._near_surfaces(pose.position, reach)
         if not near:
             return self._contacts(mesh.points, mesh.facets.astype(np.int32), NO_GAPS)
-        search = self._in_the_whole if mesh.part is None else self._in_parts
+        search = self._search_whole if mesh.part is None else self._search_parts
         scope, gaps = search(pose.position, mesh, reach, near)
         return self._contacts(scope.points, scope.topology.surfaces.facets, gaps)
 
-    def _in_the_whole(
+    def _search_whole(
         self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
     ) -> tuple[_Scope, Gaps]:
         topology, points = self._workers.topology(mesh), np.ascontiguousarray(mesh.points)
         scope = _Scope(topology, points, position, reach)
         return scope, joined_gaps([NO_GAPS, *self._workers.map(partial(self._gaps_of, scope), near)])
 
-    def _in_parts(self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]) -> tuple[_Scope, Gaps]:
-        """As in the whole; each rank measures the facets of its part, and all judge what all have found."""
+    def _search_parts(
+        self, position: FloatArray, mesh: Mesh, reach: float, near: Sequence[_Near]
+    ) -> tuple[_Scope, Gaps]:
+        """Search a mesh in parts: each rank measures the facets of its part, and all judge the gaps of all."""
         if self._shared is None or not same_topology(mesh, self._shared.mesh):
             self._shared = SharedMesh(mesh)
         shared = self._shared
         points, work = shared.points(mesh), shared.part.workspace
         scope = _Scope(shared.part.topology, points, position, reach)
-        near = [(body, close) for body, others in near if (close := self._close(scope, body, others))]
+        near = [(body, close) for body, others in near if (close := self._close_surfaces(scope, body, others))]
         sources = [(body,) for body, _ in near]
         marches = shared.march(points, shared.neighbours(points), sources, *self._band(scope))
         gaps = [NO_GAPS]
         for (body, others), march in zip(near, marches, strict=True):
             if march is not None:
                 put_back(work, *march[:4])
-                gaps += [self._between(scope, work, march.tree, body, it, shared.facets_of(it)) for it in others]
+                gaps += [self._surface_gaps(scope, work, march.tree, body, it, shared.facets_of(it)) for it in others]
                 reset(work, len(march.vertices), len(march.beyond))
-        return scope, shared.together(joined_gaps(gaps))
+        return scope, shared.gather(joined_gaps(gaps))
 
     def _refuse_first_order(self, ranks: int) -> None:
         if self._accuracy != "exact":
@@ -132,7 +123,7 @@ class ContactFinder:
                 "Leave contact.accuracy out, or start one process.",
             )
 
-    def _near(self, position: FloatArray, reach: float) -> list[_Near]:
+    def _near_surfaces(self, position: FloatArray, reach: float) -> list[_Near]:
         """Bodies, each with the surfaces whose bounding volumes are in reach; a pair stands with its first body."""
         surfaces: dict[int, list[int]] = defaultdict(list)
         for a, b in zip(*near_pairs(position, self._bounds, reach), strict=True):
@@ -141,26 +132,26 @@ class ContactFinder:
             surfaces[body].append(wall.surface)
         return sorted(surfaces.items())
 
-    def _close(self, scope: _Scope, body: int, others: Sequence[int]) -> list[int]:
-        """Of the other surfaces those that have a facet whose bounding box is in reach of the body's ball."""
+    def _close_surfaces(self, scope: _Scope, body: int, others: Sequence[int]) -> list[int]:
+        """The ``others``, surfaces, that have a facet whose bounding box is in reach of the body's ball."""
         points, facets, (centre, radius) = scope.points, scope.topology.surfaces.facets, self._ball(scope, body)
         near, facets_of = radius + scope.reach, scope.topology.facets_of
         return [other for other in others if any_near(points, facets, facets_of(other), centre, near)]
 
     def _gaps_of(self, scope: _Scope, work: Workspace, near: _Near) -> list[Gaps]:
-        body, others = near[0], self._close(scope, *near)
+        body, others = near[0], self._close_surfaces(scope, *near)
         if not others:
             return []
         topology, points = scope.topology, scope.points
         wave = march_from(topology, points, [body], *self._band(scope), self._accuracy, work)
         if self._accuracy != "exact":
             measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
-        gaps = [self._between(scope, work, wave.tree, body, other, topology.facets_of(other)) for other in others]
+        gaps = [self._surface_gaps(scope, work, wave.tree, body, other, topology.facets_of(other)) for other in others]
         reset(work, wave.touched, wave.beyond)
         return gaps
 
-    def _between(self, scope: _Scope, work: Workspace, tree: Tree, body: int, other: int, chosen: Numbers) -> Gaps:
-        """Of the facets ``chosen`` of the other surface to the body whose field is in ``work``."""
+    def _surface_gaps(self, scope: _Scope, work: Workspace, tree: Tree, body: int, other: int, chosen: Numbers) -> Gaps:
+        """Gaps of the facets ``chosen`` of the other surface to the body whose field is in ``work``."""
         topology, points, reach, several = scope.topology, scope.points, scope.reach, self._several
         ball, wanted = self._ball(scope, body), topology.seeds([body]).wanted
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
@@ -173,22 +164,22 @@ class ContactFinder:
         return scope.position[body], self._bounds[body] * ROUNDED_UP
 
     def _band(self, scope: _Scope) -> tuple[float, float]:
-        """Width and slack."""
+        """Width [length] and slack [1] of the band."""
         return inf if self._whole_domain else scope.reach, TO_CORNER[scope.points.shape[1]]
 
-    def _best(self, facets: Numbers, gaps: Gaps) -> Gaps:
-        """Where the gap is least, of equal ones at the first facet: of each pair, or of each separate place."""
-        gaps = gaps.at(np.lexsort((gaps.facet, gaps.pair)))
+    def _least_gaps(self, facets: Numbers, gaps: Gaps) -> Gaps:
+        """Least gap of each pair, or of each separate place; of equal ones that at the first facet."""
+        gaps = gaps.select(np.lexsort((gaps.facet, gaps.pair)))
         pair, first, place = np.unique(gaps.pair, return_index=True, return_inverse=True)
         if self._several:
             patches = [places(facets, part) for part in np.split(gaps.facet, first[1:])] if len(pair) else []
             place = place * len(gaps.pair) + np.concatenate([np.empty(0, np.int64), *patches])
         order = np.lexsort((gaps.gap, place))
-        best = gaps.at(order[np.unique(place[order], return_index=True)[1]])
-        return best.at(np.lexsort((best.gap, best.pair)))
+        best = gaps.select(order[np.unique(place[order], return_index=True)[1]])
+        return best.select(np.lexsort((best.gap, best.pair)))
 
     def _contacts(self, points: FloatArray, facets: Numbers, gaps: Gaps) -> Contacts:
-        best = self._best(facets, gaps)
+        best = self._least_gaps(facets, gaps)
         (a, b), gap = np.divmod(best.pair, self._surfaces), best.gap
         point_a, point_b = nearest_points(points, facets, best.partner, best.facet)
         at_wall, radius_b = b >= len(self._radii), np.empty(len(b))

@@ -1,4 +1,4 @@
-"""What the detectors that march over the mesh have in common."""
+"""Common base of the detectors that march over the mesh."""
 
 from __future__ import annotations
 
@@ -16,15 +16,6 @@ class MarchingDetector(Detector):
     """gap = min |x - y| over the facets x and y of two surfaces of the mesh, from a distance field of each body.
 
     The gap is exact to the facets, whose distance to a smooth surface of curvature radius R is at most h²/(8R).
-
-    Parameters
-    ----------
-    options : MarchingOptions
-        ``accuracy``, ``multiple``, ``threads``.
-    bodies : sequence of Body
-        Shapes of any kind.
-    walls : sequence of Wall
-        The walls that repel.
 
     Notes
     -----

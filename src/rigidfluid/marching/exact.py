@@ -23,7 +23,7 @@ from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 
 @njit(cache=True, nogil=True)
 def seed(points, surfaces, seeds, whole, work):
-    """Give the vertices of the facets ``seeds`` distance zero; how many there are, and the tree if one is needed.
+    """Give the vertices of the facets ``seeds`` distance zero; return their number, and the tree if one is needed.
 
     ``whole`` says whether the facets are a closed surface in one piece.
     """
@@ -40,7 +40,7 @@ def seed(points, surfaces, seeds, whole, work):
 
 @njit(cache=True, nogil=True)
 def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond):
-    """Spread the nearest facet from ``work.touched[first:touched]``; how many vertices are touched, how many beyond.
+    """Spread the nearest facet from ``work.touched[first:touched]``; return numbers of vertices touched and beyond.
 
     Vertices outside the band are marked BEYOND, so that each is measured once, and listed at the end of
     ``work.touched``.
@@ -71,7 +71,7 @@ def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first,
 
 @njit(cache=True, nogil=True)
 def accept(vertices, key, facet, work, touched):
-    """Take in the vertices that others have reached; how many are touched now."""
+    """Take in the vertices that others have reached; return the number of vertices touched now."""
     for k in range(len(vertices)):
         vertex = vertices[k]
         if work.state[vertex] == FAR and facet[k] >= 0:
@@ -103,7 +103,7 @@ def reset(work, touched, beyond):
 def march_on(
     points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond, vertices, key, facet
 ):
-    """Take in the ``vertices`` that others have reached, `march` and `put_aside`; also where the march began."""
+    """Take in the ``vertices`` that others have reached, `march` and `put_aside`; return also the march's start."""
     taken = accept(vertices, key, facet, work, touched)
     touched, beyond = march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, taken, beyond)
     return taken, put_aside(work, touched, beyond)
@@ -111,7 +111,7 @@ def march_on(
 
 @njit(cache=True, nogil=True)
 def put_aside(work, touched, beyond):
-    """What a march has left, vertices, keys, facets and vertices beyond, and make the workspace free for another."""
+    """Return the vertices, keys, facets and vertices beyond of a march, and free the workspace for another one."""
     vertices, outside = work.touched[:touched].copy(), work.touched[len(work.touched) - beyond :].copy()
     key, facet = work.key[vertices], work.facet[vertices]
     reset(work, touched, beyond)

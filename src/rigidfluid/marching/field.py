@@ -19,7 +19,7 @@ Accuracy = Literal["exact", "first-order"]
 
 
 class Wave(NamedTuple):
-    """How many vertices a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
+    """Numbers of vertices that a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
 
     touched: int
     beyond: int
@@ -58,27 +58,11 @@ def distance_field(
     accuracy: Accuracy = "exact",
     workspace: Workspace | None = None,
 ) -> DistanceField:
-    """Distance D(x) = min |x - y| over the facets y of some surfaces, at the vertices with D ≤ ``band_width``.
+    """Distance D(x) = min |x - y| over the facets y of some surfaces, at the vertices with D ≤ ``band_width`` [length].
 
-    Parameters
-    ----------
-    topology : Topology
-        Of the mesh.
-    points : (N, d) array
-        Its vertices [length].
-    surfaces : iterable of int
-        Markers of the surfaces to measure from.
-    band_width : float
-        Where the march stops [length].
-    accuracy : "exact" or "first-order"
-        The distance to the facets to round-off, or the paper's planar waves.
-    workspace : Workspace, optional
-        To write on, from an earlier march over as many vertices; without it each call makes one.
-
-    Returns
-    -------
-    DistanceField
-        Of the vertices that paths through the band reach.
+    Only vertices that paths through the band reach are in the field, for vertices at ``points`` (N, d) [length]. It is
+    exact to round-off, or to first order by the paper's planar waves. A ``workspace`` may come from an earlier march
+    over as many vertices; without it each call makes one.
 
     Notes
     -----

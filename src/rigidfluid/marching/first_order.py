@@ -118,7 +118,7 @@ def from_triangle(points, x, a, b, c, value):
 
 @njit(cache=True, nogil=True)
 def _larger_root(a, b, c):
-    """Of a t² - 2 b t + c = 0; -1 where there is none."""
+    """Larger root t of a t² - 2 b t + c = 0; -1 where there is none."""
     discriminant = b * b - a * c
     return -1.0 if discriminant < 0.0 else (b + sqrt(discriminant)) / a
 

@@ -1,4 +1,4 @@
-"""What all detectors that march over the mesh let a scene choose."""
+"""Options of a scene that all detectors which march over the mesh share."""
 
 from __future__ import annotations
 

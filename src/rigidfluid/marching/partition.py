@@ -2,8 +2,8 @@
 
 Each part holds its own cells, and all facets of the boundary, which are few. Vertices on the border of two parts are in
 both. A part marches as far as it can, then the parts exchange how far they came on their borders and march on from
-there, until nothing is new. As a vertex gets its distance at its first visit, wherever that comes from, the field is
-that of the whole mesh. Several fields take their turns on one workspace, so that an exchange serves all of them.
+there, until nothing is new. A vertex gets its distance at its first visit, wherever that comes from, so that the field
+is that of the whole mesh. Several fields take their turns on one workspace, so that an exchange serves all of them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from rigidfluid.marching.topology import Neighbours, Numbers, Topology
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 NOT_REACHED = np.int32(-1)
-"""In place of a facet, where no part has come to a vertex of a border."""
+"""Number in place of a facet, at a vertex of a border that no part has come to."""
 
 
 class Reached(NamedTuple):
@@ -40,13 +40,13 @@ class Reached(NamedTuple):
     key: FloatArray
     facet: Numbers
 
-    def at(self, chosen: IntArray) -> Reached:
-        """Some of them."""
+    def select(self, chosen: IntArray) -> Reached:
+        """The ``chosen`` vertices."""
         return Reached(self.march[chosen], self.row[chosen], self.key[chosen], self.facet[chosen])
 
 
 Exchange = Callable[[Reached], Reached | None]
-"""From what a part has reached since the last exchange to what others have, at its border; None if nobody has."""
+"""Exchange of border vertices reached since the last one: a part's own for the others'; None if no part has any."""
 
 
 class Halted(NamedTuple):
@@ -77,49 +77,20 @@ class Part:
 
 
 def split(mesh: Mesh, owner: IntArray) -> list[Part]:
-    """Cut a mesh into parts along its facets.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The whole.
-    owner : (M,) array
-        Number of the part that each cell goes to, from 0.
-
-    Returns
-    -------
-    list of Part
-        In the order of their numbers.
-    """
+    """Cut a whole mesh into parts along its facets; ``owner`` (M,) is the number of each cell's part, from 0."""
     groups = [mesh.cells[owner == number] for number in range(int(owner.max()) + 1)]
     holders = np.zeros(len(mesh.points), dtype=np.int64)
     for cells in groups:
         holders[np.unique(cells)] += 1
-    boundary = mesh.facets, mesh.markers, Topology.of(mesh).surfaces.across.astype(np.int64)
+    boundary = mesh.facets, mesh.markers, Topology.from_mesh(mesh).surfaces.across.astype(np.int64)
     return [part_of(cells, *boundary, np.flatnonzero(holders > 1)) for cells in groups]
 
 
 def part_of(cells: IntArray, facets: IntArray, markers: IntArray, across: IntArray, shared: IntArray) -> Part:
-    """A part with some cells and the whole boundary; all is given in numbers of the whole mesh.
+    """Part with ``cells`` (M, d+1) and all boundary ``facets`` (F, d), given in numbers of the whole mesh.
 
-    Parameters
-    ----------
-    cells : (M, d+1) array
-        The part's own.
-    facets : (F, d) array
-        All of the boundary.
-    markers : (F,) array
-        Their surfaces.
-    across : (F,) array
-        The vertex of each facet's cell that is not on the facet.
-    shared : (s,) array
-        Vertices that several parts have; those of other parts may be among them.
-
-    Returns
-    -------
-    Part
-        The vertices of its cells first, in ascending order. A vertex of the boundary that is in no cell of the part is
-        just a point.
+    ``across`` (F,) are the vertices of the facets' cells off the facets, ``shared`` (s,) all that several parts have.
+    The vertices of the part's cells come first, ascending; a boundary vertex in none of its cells is just a point.
     """
     inside = np.unique(cells)
     vertices = np.concatenate([inside, np.setdiff1d(np.append(facets, across), inside)])
@@ -140,23 +111,8 @@ def march_part(
 ) -> DistanceField:
     """This part of the distance field of the whole mesh, D(x) = min |x - y| over the facets y of some surfaces.
 
-    Parameters
-    ----------
-    part : Part
-        From `split`.
-    points : (n, d) array
-        The part's own vertices, in the order of ``part.vertices`` [length].
-    surfaces : iterable of int
-        Markers of the surfaces to measure from.
-    band_width : float
-        Where the march stops [length].
-    exchange : callable
-        Called by all parts together, as often as needed.
-
-    Returns
-    -------
-    DistanceField
-        In the numbers of the whole mesh, for the vertices of this part.
+    ``points`` (n, d) are in the order of ``part.vertices`` [length], and the field is in numbers of the whole mesh. All
+    parts call ``exchange`` together, as often as needed.
 
     Notes
     -----
@@ -178,27 +134,11 @@ def march_side_by_side(
     band: tuple[float, float],
     exchange: Exchange,
 ) -> list[Halted | None]:
-    """This part of several fields of the whole mesh, each from its own surfaces.
+    """This part of several fields of the whole mesh, each from its own ``sources``; None if a field does not reach it.
 
-    Parameters
-    ----------
-    part : Part
-        From `split`.
-    points : (n, d) array
-        The part's own vertices, in the order of ``part.vertices`` [length].
-    neighbours : Neighbours
-        Of the vertices; with a slack they must know the longest edges elsewhere, at the border.
-    sources : sequence of sequences of int
-        Markers of the surfaces to measure from, for each field.
-    band : (float, float)
-        Width and slack of the band, as of `march_from` [length, 1].
-    exchange : callable
-        Called by all parts together, once a round for all fields.
-
-    Returns
-    -------
-    list of Halted or None
-        One for each field; None where it does not come into this part.
+    ``points`` (n, d) are in the order of ``part.vertices`` [length]; ``band`` is width and slack as in `march_from`
+    [length, 1], and with a slack ``neighbours`` must know the longest edges elsewhere, at the border. All parts call
+    ``exchange`` together, once a round for all fields.
     """
     marches: list[Halted | None] = [None] * len(sources)
     due = [(number, _NOTHING) for number, surfaces in enumerate(sources) if _starts_in(part, surfaces)]
@@ -211,7 +151,7 @@ def march_side_by_side(
         found = exchange(Reached(*map(np.concatenate, zip(*fresh, strict=True))))
         if found is None:
             return marches
-        due = _by_march(found)
+        due = _news_of_marches(found)
 
 
 _NOTHING = Reached(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0), np.empty(0, np.int32))
@@ -232,7 +172,7 @@ def _go_on(
     before: Halted | None,
     news: Reached,
 ) -> tuple[Halted, IntArray, IntArray]:
-    """March on from ``news``; also the rows of the border that it has come to, and which of its vertices they are."""
+    """March on from ``news``; return also the border rows newly reached and their places among the march's vertices."""
     topology, work, seeds = part.topology, part.workspace, part.topology.seeds(surfaces)
     if before is None:
         (size, tree), first, beyond = seed(points, topology.surfaces, seeds.facets, seeds.whole, work), 0, 0
@@ -248,12 +188,12 @@ def _go_on(
     return Halted(vertices, key, facet, outside, tree), rows[at_border].astype(np.int64), taken + at_border
 
 
-def _by_march(found: Reached) -> list[tuple[int, Reached]]:
-    """March by march, along the border; of equally near facets the last is first, whoever sent it."""
+def _news_of_marches(found: Reached) -> list[tuple[int, Reached]]:
+    """Group news by the number of their march, along the border; of equally near facets the last is first."""
     order = np.lexsort((-found.facet, found.row, found.march))
     numbers, starts = np.unique(found.march[order], return_index=True)
     pieces = [order[first:end] for first, end in pairwise((*starts, len(order)))]
-    return [(int(number), found.at(piece)) for number, piece in zip(numbers, pieces, strict=True)]
+    return [(int(number), found.select(piece)) for number, piece in zip(numbers, pieces, strict=True)]
 
 
 def field_in_threads(
@@ -284,7 +224,7 @@ def _march_or_give_up(
 
 
 class _Board:
-    """Where parts in one process leave what they know of their borders; all wait for all before they read."""
+    """Notice board on which parts in one process post their borders; all wait for all before they read."""
 
     def __init__(self, parts: Sequence[Part], count: int) -> None:
         self._key, self._facet = np.zeros(count), np.full(count, NOT_REACHED)
@@ -292,7 +232,7 @@ class _Board:
         self._new = False
 
     def exchange_of(self, part: Part) -> Exchange:
-        """The callback of one part."""
+        """Callback by which one part exchanges its border."""
         border = part.vertices[part.border]
 
         def exchange(reached: Reached) -> Reached | None:

@@ -24,13 +24,13 @@ class Gaps(NamedTuple):
     gap: FloatArray
     partner: Numbers
 
-    def at(self, rows: IntArray) -> Gaps:
-        """Some of them, in the order wanted."""
+    def select(self, rows: IntArray) -> Gaps:
+        """Gaps of these ``rows``, in their order."""
         return Gaps(self.pair[rows], self.facet[rows], self.gap[rows], self.partner[rows])
 
 
 def joined_gaps(parts: Sequence[Gaps]) -> Gaps:
-    """Those of several parts, at least one."""
+    """Gaps of several parts, at least one, joined."""
     return Gaps(*map(np.concatenate, zip(*parts, strict=True)))
 
 
@@ -41,11 +41,6 @@ class SharedMesh:
     """One rank's part of a mesh with the whole boundary; made and used by all ranks together.
 
     Facets have their numbers in the whole mesh; no cell of another rank is known.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The rank's part.
     """
 
     def __init__(self, mesh: Mesh) -> None:
@@ -71,14 +66,14 @@ class SharedMesh:
         return facets[self._own_facets[facets]]
 
     def points(self, mesh: Mesh) -> FloatArray:
-        """Where the vertices of the part and of the boundary are now, (n, d) [length]."""
+        """Present coordinates of the vertices of the part and of the boundary, (n, d) [length]."""
         points = np.empty((len(self.part.vertices), mesh.points.shape[1]))
         points[: len(mesh.points)] = mesh.points
         points[self._post] = np.concatenate(self._ranks.allgather(mesh.points[self._posted]))
         return points
 
     def neighbours(self, points: FloatArray) -> Neighbours:
-        """The part's, with the longest edges elsewhere, when its vertices are at ``points`` (n, d)."""
+        """Neighbours in the part, with the longest edges elsewhere, for vertices at ``points`` (n, d) [length]."""
         own, border = self.part.topology.neighbours, self.part.border
         elsewhere, rows = np.zeros(len(points)), np.arange(len(border))
         for row, square in self._ranks.alltoall(self._addressed(rows, longest_edges(points, own, border))):
@@ -96,8 +91,8 @@ class SharedMesh:
         """This part of several fields, as `march_side_by_side` has it."""
         return march_side_by_side(self.part, points, neighbours, sources, (width, slack), self._exchange)
 
-    def together(self, gaps: Gaps) -> Gaps:
-        """What all ranks have found."""
+    def gather(self, gaps: Gaps) -> Gaps:
+        """Gaps that all ranks have found."""
         return joined_gaps(self._ranks.allgather(gaps))
 
     def _boundary(self, mesh: Mesh) -> tuple[IntArray, IntArray, IntArray]:
@@ -111,7 +106,7 @@ class SharedMesh:
         return corners[order], markers[order], seen_from[order]
 
     def _exchange(self, reached: Reached) -> Reached | None:
-        """What ranks have reached goes to those who have it on their border as well."""
+        """Send border vertices that ranks have reached to those that have them on their border as well."""
         march, row, key, facet = reached
         news = len(row) > 0
         everyones = self._ranks.alltoall([(news, piece) for piece in self._addressed(row, march, key, facet)])
@@ -122,12 +117,12 @@ class SharedMesh:
         return Reached(march, row, key, facet)
 
     def _addressed(self, rows: IntArray, *columns: NDArray[Any]) -> list[tuple[NDArray[Any], ...]]:
-        """For each rank its own rows of those border vertices that it has as well, and what ``columns`` say of them."""
+        """Rows in each other rank's border of the vertices ``rows`` that it has as well, with their ``columns``."""
         there = [self._rows_there[rank][rows] for rank in range(self._ranks.size)]
         return [(row[row >= 0], *(column[row >= 0] for column in columns)) for row in there]
 
 
 def _rows_in(border: IntArray, wanted: IntArray) -> IntArray:
-    """Where the vertices ``wanted`` stand on an ascending ``border``, or -1, (w,)."""
+    """Places (w,) of the vertices ``wanted`` on an ascending ``border``, or -1."""
     rows = np.minimum(np.searchsorted(border, wanted), max(len(border) - 1, 0))
     return np.where(np.append(border, -1)[rows] == wanted, rows, -1)

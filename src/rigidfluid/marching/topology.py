@@ -1,4 +1,4 @@
-"""What a march needs to know of a mesh and what stays the same while its vertices only move."""
+"""Adjacency of a mesh for marches, which stays the same while its vertices only move."""
 
 from __future__ import annotations
 
@@ -60,18 +60,7 @@ class Seeds(NamedTuple):
 class Topology:
     """Neighbours of vertices and facets, built once from cells and facets and good until those change.
 
-    Parameters
-    ----------
-    cells : (M, d+1) array
-        Vertex numbers of each simplex.
-    facets : (F, d) array
-        Vertex numbers of each boundary facet.
-    markers : (F,) array
-        The surface that each facet lies on.
-    vertices : int
-        How many vertices there are.
-    across : (F,) array, optional
-        The vertex across from each facet, for a part of a mesh that does not have all the facets' cells.
+    A part of a mesh that does not have all cells of its ``facets`` (F, d) gives the vertices ``across`` from them (F,).
     """
 
     def __init__(
@@ -89,7 +78,7 @@ class Topology:
         self.surfaces = Surfaces(corners, marker, across, facets_beside(corners, marker, *rows), *rows)
 
     @classmethod
-    def of(cls, mesh: Mesh) -> Topology:
+    def from_mesh(cls, mesh: Mesh) -> Topology:
         """The topology of a mesh."""
         return cls(mesh.cells, mesh.facets, mesh.markers, len(mesh.points))
 
@@ -103,7 +92,7 @@ class Topology:
         return members[start[surface] : start[surface + 1]] if 0 <= surface < len(start) - 1 else members[:0]
 
     def seeds(self, surfaces: Iterable[int]) -> Seeds:
-        """What a march from several surfaces starts from."""
+        """Facets that a march from several surfaces starts from."""
         chosen = tuple(sorted(set(surfaces)))
         if chosen not in self._seeds:
             self._seeds[chosen] = self._seeds_of(chosen)

@@ -16,16 +16,13 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 FEWEST = 4
-"""Marches for which a further thread is worth its start."""
+"""Number of marches for which a further thread is worth its start."""
 
 
 class Workers:
     """The topology of the latest mesh, and a workspace for each thread; made anew only when the cells change.
 
-    Parameters
-    ----------
-    threads : int
-        How many threads may work; 0 for as many as there are cores for this process.
+    0 ``threads`` are as many as there are cores for this process.
     """
 
     def __init__(self, threads: int) -> None:
@@ -36,7 +33,7 @@ class Workers:
     def topology(self, mesh: Mesh) -> Topology:
         """The topology of ``mesh``; kept while its cells, facets and markers are the same arrays."""
         if self._mesh is None or not same_topology(mesh, self._mesh):
-            self._mesh, self._topology = mesh, Topology.of(mesh)
+            self._mesh, self._topology = mesh, Topology.from_mesh(mesh)
             self._workspaces.clear()
         return self._topology
 

@@ -1,4 +1,4 @@
-"""What one march writes on: arrays as long as the mesh has vertices, kept from march to march.
+"""Workspace of one march: arrays as long as the mesh has vertices, kept from march to march.
 
 A march leaves ``state`` as it found it, except for the vertices that it lists in ``touched``; `reset` puts those back.
 """
@@ -17,7 +17,8 @@ FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
 
 
 class Workspace(NamedTuple):
-    """Per vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet`` nearest so far.
+    """Arrays with a value for each vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet``
+    nearest so far.
 
     ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band and from its end
     those that are BEYOND.
@@ -33,7 +34,7 @@ class Workspace(NamedTuple):
 
 
 def new_workspace(vertices: int) -> Workspace:
-    """Space for marches over a mesh of so many ``vertices``."""
+    """Workspace for marches over a mesh of this number of ``vertices``."""
     numbers = [np.empty(vertices, np.int32) for _ in range(4)]
     facet, place, heap, touched = numbers
     return Workspace(

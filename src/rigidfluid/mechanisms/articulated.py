@@ -11,7 +11,7 @@ from pydantic import Field
 from rigidfluid.core.model.interfaces import Component, PartOptions
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Positive, StrokeTable, Vector
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, by_name, check_length
+from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, check_length, tables_by_name
 from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
@@ -59,17 +59,7 @@ class ArticulatedOptions(PartOptions):
 class Articulated(StrokedMechanism):
     """Components that a scene lists, and strokes that translate or rotate some of them.
 
-    Parameters
-    ----------
-    options : ArticulatedOptions
-        Components and strokes.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If there are no components, two have one name, or a shape or a stroke cannot be.
+    No components, two of one name, and impossible shapes or strokes raise SceneError.
     """
 
     name: ClassVar[str] = "articulated"
@@ -81,7 +71,7 @@ class Articulated(StrokedMechanism):
         if not options.component:
             remedy = "Add tables [[mechanism.component]]."
             raise SceneError(f"{_AT}.component", "none", "one component or more", remedy)
-        tables = by_name(options.component, f"{_AT}.component")
+        tables = tables_by_name(options.component, f"{_AT}.component")
         self.parts = _components(tables, dimension)
         self.rest = initial_pose(options.component, dimension)
         self.strokes = [

@@ -22,10 +22,10 @@ class Displacement(Protocol):
     """A rigid displacement by a value s(t)."""
 
     def moved(self, pose: Pose, value: float) -> Pose:
-        """Where what is at ``pose`` goes."""
+        """Displaced poses of components at ``pose``."""
 
     def rate(self, moved: Pose, twist: Twist, value: float, rate: float) -> Twist:
-        """How it goes there, if it had a ``twist`` before; ``moved``: where it is then."""
+        """Twists at the displaced poses ``moved``, of components whose ``twist`` was that before the displacement."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,8 @@ class StrokedMechanism(Mechanism):
     """Components at T₁(s₁(t)) T₂(s₂(t)) … x of their places x, with a rigid displacement T of each stroke.
 
     A component takes part in the strokes that move it. Points, axes and directions are those where all values are
-    zero: a stroke carries along those of the strokes after it, as the joints of a chain do. ``rest``: of the m
-    components, where all values are zero.
+    zero: a stroke carries along those of the strokes after it, as the joints of a chain do. ``rest``: poses of
+    the m components where all values are zero.
     """
 
     parts: Sequence[Component]
@@ -86,12 +86,12 @@ class StrokedMechanism(Mechanism):
 
     @property
     def components(self) -> Sequence[Component]:
-        """In the order of their places."""
+        """The components, in the order of their places."""
         return self.parts
 
     @cached_property
     def period(self) -> float | None:
-        """The longest of the strokes', if it is a whole multiple of all; None of others [time]."""
+        """Longest period of the strokes, if it is a whole multiple of all; else None [time]."""
         periods = [math.inf if one.stroke.period is None else one.stroke.period for one in self.strokes]
         longest = max(periods, default=math.inf)
         if math.isinf(longest):
@@ -100,15 +100,15 @@ class StrokedMechanism(Mechanism):
         return longest if np.abs(counts - np.round(counts)).max() < _ROUNDING else None
 
     def placement(self, time: float) -> Pose:
-        """Where the strokes have the components."""
+        """Poses of the components by the strokes at this ``time``."""
         return self._moved(time)[0]
 
     def rate(self, time: float) -> Twist:
-        """How the strokes move them."""
+        """Twists of the components by the strokes at this ``time``."""
         return self._moved(time)[1]
 
     def next_corner(self, time: float) -> float:
-        """The first of all strokes' [time]."""
+        """First of the next corners of all strokes [time]."""
         return min((one.stroke.next_corner(time) for one in self.strokes), default=math.inf)
 
     def _moved(self, time: float) -> tuple[Pose, Twist]:

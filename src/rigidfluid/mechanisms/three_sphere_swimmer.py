@@ -41,17 +41,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
     """Balls at -L₁ + s₁(t), 0 and L₂ - s₂(t) on the first axis; in each phase one s goes at constant speed from 0
     to the amplitude or back, so that a cycle takes 4 amplitude/speed.
 
-    Parameters
-    ----------
-    options : ThreeSphereSwimmerOptions
-        Radius, arms, amplitude [length], speed [length/time], density [mass/length^d] and order.
-    dimension : int
-        2 or 3.
-
-    Raises
-    ------
-    SceneError
-        If a phase comes twice, or balls would touch.
+    A phase that comes twice, and balls that would touch, raise SceneError.
 
     References
     ----------
@@ -80,7 +70,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         ball = Registry.load().get(BODY, "sphere")
         shape = ball(ball.Options.model_validate({"radius": options.radius}), dimension)
         self.parts = [Component(name, shape, options.density) for name in ("left", "middle", "right")]
-        self.rest = _in_a_row((-left, 0.0, right), dimension)
+        self.rest = _row_pose((-left, 0.0, right), dimension)
         axis = np.eye(dimension)[0]
         self.strokes = [
             MovingComponents(np.array([True, False, False]), Translation(axis), self._stroke("left")),
@@ -88,7 +78,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         ]
 
     def _stroke(self, arm: str) -> Stroke:
-        """By how much this arm is shortened: at first by all, if it lengthens before it shortens."""
+        """Shortening of this arm over time [length]: at first the whole, if it lengthens before it shortens."""
         order: Sequence[str] = self.options.order
         goes_in, goes_out = order.index(f"{arm} in"), order.index(f"{arm} out")
         amplitude = self.options.amplitude
@@ -98,7 +88,7 @@ class ThreeSphereSwimmer(StrokedMechanism):
         return Stroke([(number * phase, value) for number, value in enumerate(values)], period=4.0 * phase)
 
 
-def _in_a_row(places: Sequence[float], dimension: int) -> Pose:
+def _row_pose(places: Sequence[float], dimension: int) -> Pose:
     position = np.zeros((len(places), dimension))
     position[:, 0] = places
     orientation = np.zeros((1, 1)) if dimension == 2 else np.eye(1, 4)

@@ -1,4 +1,4 @@
-"""From a run's folder to a movie."""
+"""A movie made from a run's folder."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from rigidfluid.reports.style import STYLE, new_figure
 from rigidfluid.reports.view_plane import PlaneName
 
 _SAMPLED = 12
-"""Pictures from which the scale of the colours is taken."""
+"""Number of pictures that fix the range of the colours."""
 
 Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class Look:
-    """How a movie looks.
+    """Appearance of a movie.
 
-    ``show``: which quantity of the fluid. ``follow``: a body that the picture goes with. ``window``: left, lower, right
-    and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's longer
-    side. ``rate``: pictures a second. ``plane``: which plane of a 3D run, as `view_plane` takes it.
+    ``show``: quantity of the fluid. ``follow``: name of a body that the picture goes with. ``window``: left, lower,
+    right and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's
+    longer side. ``rate``: pictures a second. ``plane``: plane of a 3D run, as `view_plane` takes it.
     """
 
     show: Quantity = "speed"
@@ -58,33 +58,13 @@ class _Frame:
 
 
 def movie(folder: Path, out: Path | None = None, look: Look | None = None, progress: Progress | None = None) -> Path:
-    """Make a movie from the results in a folder: a picture for each output time.
+    """Make a movie from the results in a folder, of a complete run or not: a picture for each output time.
 
-    Of a 3D flow it shows a slice through the first body or the one followed; without a fluid all bodies as seen along
-    the normal of that plane.
-
-    Parameters
-    ----------
-    folder : Path
-        Which a run has written, complete or not.
-    out : Path, optional
-        An .mp4 or .gif file; movie.mp4 in the folder if not given, movie.gif where nothing encodes MP4.
-    look : Look, optional
-        How it looks.
-    progress : callable, optional
-        Told how many pictures are done, of how many.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    OutputError
-        Where results are missing or cannot be read, the file cannot be of this kind, or the disk refuses.
-    SceneError, PluginError
-        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    A 3D flow is shown in a slice through the first body or the one followed; without a fluid all bodies are seen along
+    the normal of that plane. The file ``out`` is .mp4 or .gif; without it movie.mp4 in the folder, movie.gif if nothing
+    encodes MP4. ``progress`` is told how many pictures are done, of how many. Raises OutputError for missing or
+    unreadable results, another kind of file, or a disk that refuses; SceneError or PluginError if the run's scene
+    cannot be built here, as without one of its plug-ins.
     """
     look, results = look or Look(), read_results(Path(folder), motion_only=True)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
@@ -119,14 +99,14 @@ def _frames(results: Results) -> list[_Frame]:
 
 
 def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
-    """One for the whole movie."""
+    """Scale of the colours, one for the whole movie."""
     chosen = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).round().astype(int))
     images = [
         flow_image(frame.path, look.show, shot.grid(frame.state, look.longer // 2))
         for frame in (frames[i] for i in chosen)
         if frame.path is not None
     ]
-    return Scale.of(look.show, images)
+    return Scale.fit(look.show, images)
 
 
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
@@ -160,13 +140,13 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
 
 
 def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:
-    """The time, and where the picture is."""
+    """Set the title to the time, and the axes to the place of the picture."""
     axes.images[0].set_extent(shot.extent(state))
     axes.set_title(f"time {time:.4g}")
 
 
 def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMovieWriter]:
-    """Where to, and what writes it."""
+    """Path of the movie, and the writer of its format."""
     encoder = _encoder_path()
     path = out or folder / ("movie.mp4" if encoder else "movie.gif")
     if path.suffix == ".gif":
@@ -181,7 +161,7 @@ def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMo
 
 
 def _encoder() -> dict[str, str]:
-    """Matplotlib's settings for it."""
+    """Matplotlib's settings for the encoder."""
     found = _encoder_path()
     return {} if found is None else {"animation.ffmpeg_path": found}
 

@@ -24,20 +24,20 @@ SIGNED: tuple[Quantity, ...] = ("vorticity", "pressure")
 
 _OUTSIDE, _NOTHING, _MARK, _EDGE = to_rgb("#d9d9d9"), to_rgb("white"), to_rgb("black"), to_rgb("#404040")
 _HAND = 0.12
-"""Half the width of the mark over the body's radius."""
+"""Half the width of the mark over the body's bounding radius."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Of a ``quantity`` between ``lowest`` and ``highest``."""
+    """Range of colours of a ``quantity``, between ``lowest`` and ``highest``."""
 
     quantity: Quantity
     lowest: float
     highest: float
 
     @classmethod
-    def of(cls, quantity: Quantity, images: list[FloatArray]) -> Scale:
-        """From what most points of some images have; about zero where the sign counts."""
+    def fit(cls, quantity: Quantity, images: list[FloatArray]) -> Scale:
+        """Fit the range to 99.5 per cent of the points of some images; symmetric about zero for signed quantities."""
         known = np.concatenate([image[np.isfinite(image)] for image in images] or [np.zeros(1)])
         highest = float(np.percentile(np.abs(known), 99.5)) if known.size else 0.0
         return cls(quantity, -highest if quantity in SIGNED else 0.0, highest or 1.0)
@@ -56,12 +56,12 @@ class Scale:
 
 def flow_image(path: Path, quantity: Quantity, grid: Grid) -> FloatArray:
     """A quantity of the fields in a file at the points of a grid, (rows, columns), nan outside the fluid."""
-    section = Section.of(read_vtu(path), grid.plane, grid.origin)
-    return Sampling.of(section.fields, grid).image(_at_nodes(section, quantity))
+    section = Section.cut(read_vtu(path), grid.plane, grid.origin)
+    return Sampling.locate(section.fields, grid).image(_nodal_values(section, quantity))
 
 
-def _at_nodes(section: Section, quantity: Quantity) -> FloatArray:
-    """At the nodes of each cell, (M, b)."""
+def _nodal_values(section: Section, quantity: Quantity) -> FloatArray:
+    """Values of a quantity at the nodes of each cell, (M, b)."""
     if quantity == "vorticity":
         return section.vorticity
     values = section.speed if quantity == "speed" else section.fields.pressure
@@ -83,7 +83,7 @@ def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -
 
 
 def _draw(picture: FloatArray, grid: Grid, body: Body, centre: FloatArray, turn: FloatArray) -> None:
-    """Only the points in the square about it are asked for."""
+    """Paint one body; only points in the square about it are evaluated."""
     part = grid.about(centre, body.bounding_radius)
     if part is None:
         return

@@ -13,17 +13,18 @@ from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import SKY, VERMILLION
 
 _STEPS = 40
-"""Of the way to a body, each as long as the distance to it (sphere tracing: Hart 1996, doi:10.1007/s003710050084)."""
+"""Most steps along a ray, each as long as the distance to the body (sphere tracing: Hart 1996,
+doi:10.1007/s003710050084)."""
 _NEAR = 5e-3
-"""Of the bounding radius: a ray that has come so near has met the body."""
+"""Distance at which a ray has met the body, over its bounding radius."""
 _DIFFERENCE = 1e-3
-"""Of the bounding radius: the step of differences for the slope of the surface."""
+"""Step of the central differences for the surface's normal, over the bounding radius."""
 _BAND = 0.07
-"""Half the width over the bounding radius of the stripe that shows how a body turns."""
+"""Half the width of the stripe that shows how a body turns, over the bounding radius."""
 _LIGHT = np.array([-0.4, 0.5, 0.77])
-"""To the light: to the right, up and to the observer."""
+"""Direction of the light: to the right, up, and to the observer."""
 _AMBIENT = 0.35
-"""The light on what is turned away from it."""
+"""Brightness of surfaces that are turned away from the light."""
 
 
 def draw_projected(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
@@ -35,7 +36,7 @@ def draw_projected(picture: FloatArray, grid: Grid, results: Results, state: int
 
 
 def _draw(picture: FloatArray, depth: FloatArray, grid: Grid, body: Body, centre: FloatArray, turn: FloatArray) -> None:
-    """Only where nothing is in front of it."""
+    """Paint one body at the points where nothing is in front of it."""
     part = grid.about(centre, body.bounding_radius)
     if part is None:
         return
@@ -54,7 +55,7 @@ def _draw(picture: FloatArray, depth: FloatArray, grid: Grid, body: Body, centre
 
 
 def _met(body: Body, start: FloatArray, back: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Which rays from ``start`` (P, 3) against ``back`` (3,) meet the body, (P,), and where they end, (P, 3)."""
+    """Rays (P,) from ``start`` (P, 3) against ``back`` (3,) that meet the body, and their ends (P, 3)."""
     points = start.copy()
     on_the_way, met = np.ones(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
     for _ in range(_STEPS):
@@ -70,7 +71,7 @@ def _met(body: Body, start: FloatArray, back: FloatArray) -> tuple[BoolArray, Fl
 
 
 def _brightness(body: Body, points: FloatArray, axes: FloatArray) -> FloatArray:
-    """Of points (P, 3) of the surface, from 0 to 1."""
+    """Brightness of surface points (P, 3), from 0 to 1."""
     step = _DIFFERENCE * body.bounding_radius
     slopes = [body.signed_distance(points + step * axis) - body.signed_distance(points - step * axis) for axis in axes]
     normal = np.stack(slopes, axis=1)

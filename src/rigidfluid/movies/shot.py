@@ -1,4 +1,4 @@
-"""Where a movie looks: a window of the plane, in 3D of a plane through a body; it may go with a body."""
+"""A movie's section of the plane, in 3D of a plane through a body; it may go with a body."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rigidfluid.reports.results import Results
 from rigidfluid.reports.view_plane import PlaneName, ViewPlane, view_plane
 
 _MARGIN = 2.0
-"""Widths of a body that are seen about one that is followed, to each side."""
+"""Half the width of the picture of a body that is followed, over the body's."""
 
 Window = tuple[float, float, float, float]
 
@@ -41,23 +41,10 @@ class Shot:
 
 
 def shot_of(results: Results, follow: str | None, window: Window | None, plane: PlaneName = "motion") -> Shot:
-    """The whole domain, a window of it, or what is about a body.
+    """Shot of the whole domain, of a ``window`` (left, lower, right, upper end [length]), or about a body.
 
-    Parameters
-    ----------
-    results : Results
-        A run.
-    follow : str or None
-        The body that the picture goes with.
-    window : tuple of float or None
-        Left, lower, right and upper end [length]; with ``follow`` from the body's centre on.
-    plane : str
-        Which plane of a 3D run, as `view_plane` takes it; through the body that is followed, or the first one.
-
-    Raises
-    ------
-    OutputError
-        If there is no such body or plane, or nothing in the window.
+    With a body to ``follow`` the window is relative to its centre. The plane of a 3D run, as `view_plane` takes it,
+    goes through that body, else the first. Raises OutputError for an unknown body or plane, or an empty window.
     """
     seen = view_plane(results, plane)
     body = 0 if follow is None else results.number_of(follow)

@@ -28,7 +28,7 @@ def coefficient_plot(results: Results, by: Reference) -> Figure:
 
 
 def coefficient_caption(by: Reference, dimension: int) -> str:
-    """What the coefficients are referred to."""
+    """Caption with the reference velocity, area and direction of the coefficients."""
     area = "D" if dimension == 2 else "πD²/4"
     direction = ", ".join(f"{part:.3g}" for part in by.axes[0] + 0.0)
     return (

@@ -15,9 +15,9 @@ from rigidfluid.reports.stream import prescribed_stream
 from rigidfluid.reports.view_plane import plane_of_motion
 
 _LEAST_LIFT = 1e-3
-"""Of the mean drag: a swing of the lift by less is rounding or what a mesh makes of symmetry."""
+"""Least amplitude of the lift over the mean drag: smaller swings are rounding, or asymmetry of the mesh."""
 _LEAST_WAY = 1e-2
-"""Of the diameter: a swing of a path by less is none."""
+"""Least amplitude of a path over the diameter: smaller swings count as none."""
 _LEAST_LEFT = 0.1
 """The sine of the angle between the flow and the normal of the plane of motion below which lift is along its ``up``."""
 
@@ -34,7 +34,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Figures:
-    """Of a body in the second half of the time, over whole periods if there are any.
+    """Coefficients of a body in the second half of the time, over whole periods if there are any.
 
     Mean ``drag``, mean ``lift``, half of the lift's range (``swing``), and the ``strouhal`` number f D/U, None where
     there is no period; ``by`` what it is measured, lift or path.
@@ -66,7 +66,7 @@ def reference(results: Results) -> Reference | None:
 
 
 def diameters(results: Results) -> FloatArray:
-    """Of the balls of equal volume (n,) [length]."""
+    """Diameters of the balls of equal volume (n,) [length]."""
     return np.array([2.0 * equal_volume_radius(body) for body in results.system.bodies])
 
 
@@ -82,7 +82,7 @@ def coefficients(results: Results, by: Reference) -> FloatArray:
 
 
 def figures(results: Results, by: Reference) -> Iterator[Figures]:
-    """Of each body."""
+    """Coefficients of each body."""
     found, time = coefficients(results, by)[1:], results.time[1:]
     across = results.vectors("")[1:] @ by.axes[1]
     scale = np.abs(found[late(time), :, 0]).mean(axis=0)

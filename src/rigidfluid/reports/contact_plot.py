@@ -29,7 +29,7 @@ def contact_plot(results: Results) -> Figure:
 
 
 def _largest_force(results: Results) -> tuple[FloatArray, str]:
-    """Of any body at each time (s,), and what it is."""
+    """Largest contact force on a body at each time (s,), over its weight if all have one, and its label."""
     force = np.linalg.norm(results.vectors("cf"), axis=2)
     weight = np.linalg.norm(results.system.weight, axis=1)
     if not weight.all():

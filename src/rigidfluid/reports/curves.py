@@ -23,7 +23,7 @@ def draw_bodies(axes: Axes, time: FloatArray, values: FloatArray, names: Sequenc
         _draw_spread(axes, time, finite, len(names))
         return
     for curve, name, colour in zip(finite.T, names, PALETTE, strict=False):
-        axes.plot(time, curve, color=colour, label=as_it_is(name))
+        axes.plot(time, curve, color=colour, label=escape_dollars(name))
 
 
 def add_legend(figure: Figure | SubFigure) -> None:
@@ -57,6 +57,6 @@ def _draw_spread(axes: Axes, time: FloatArray, values: FloatArray, count: int) -
     axes.plot(time, half, color=BLUE, label="median")
 
 
-def as_it_is(name: str) -> str:
-    """Dollars in a name enclose no formula."""
+def escape_dollars(name: str) -> str:
+    """Escape dollars in a name, which enclose no formula."""
     return name.replace("$", r"\$")

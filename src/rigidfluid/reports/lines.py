@@ -1,4 +1,4 @@
-"""The plots over time: where the bodies are, how fast, how near, what pushes them, and where the energy goes."""
+"""The plots over time: positions, speeds, gaps, forces, and the energy balance."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.reports.curves import add_legend, draw_bodies, widen
 from rigidfluid.reports.paths import draw_paths
 from rigidfluid.reports.results import Results
@@ -115,11 +115,11 @@ def joint_plot(results: Results) -> Figure:
 
 
 def energy_plot(results: Results) -> Figure:
-    """What was supplied against where it went, stacked, and what the balance does not account for."""
+    """Plot the energy supplied against its shares, dissipated, stored or lost, and the residual of the balance."""
     figure, (axes, below) = time_panels(2, height=2.8)
     energy = results.energy
     initial = energy["kinetic"][0] + energy["contact"][0]
-    supplied = initial + energy["gravity"] + energy["boundary"] + energy["control"]
+    supplied = initial + sum(energy[name] for name in ("gravity", "boundary", "control", "body_force"))
     shares = {
         "dissipated": (energy["dissipation"], ORANGE),
         "taken by stabilisation": (energy["grad_div_loss"], SKY),
@@ -156,7 +156,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
     if not results.system.backend.needs_mesh or fluid.viscosity is None or fluid.density is None:
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
-    solid = np.array([body.density for body in with_components(results.scene)[0].body])
+    solid = np.array([body.density for body in append_components(results.scene)[0].body])
     per_density = 2.0 * radius * speed / fluid.viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 

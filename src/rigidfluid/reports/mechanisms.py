@@ -1,4 +1,4 @@
-"""The ways of mechanisms: of the whole, and of each component."""
+"""The plot of displacements of mechanisms, of the whole and of each component."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rigidfluid.reports.curves import add_legend, as_it_is, widen
+from rigidfluid.reports.curves import add_legend, escape_dollars, widen
 from rigidfluid.reports.results import Results
 from rigidfluid.reports.style import BLACK, PALETTE, new_figure
 
 
 def mechanism_plot(results: Results) -> Figure:
-    """Of each mechanism the way from the start along each axis over time: whole in black, components in colours."""
+    """Plot each mechanism's displacement along each axis over time: the whole in black, components in colours."""
     mechanisms = results.system.mechanisms
     assert mechanisms is not None
     names, axes_names = mechanisms.names, results.axes
@@ -23,7 +23,7 @@ def mechanism_plot(results: Results) -> Figure:
         mine = np.flatnonzero(mechanisms.carrier == single + column)
         for row, axis in enumerate(axes_names):
             _draw(panels[row][column], results, axis, column, mine.tolist())
-        panels[0][column].set_title(as_it_is(name))
+        panels[0][column].set_title(escape_dollars(name))
         panels[-1][column].set_xlabel("time [time]")
     span = max(np.ptp(axes.get_ylim()) for axes in panels.flat)
     for axes in panels.flat:
@@ -40,6 +40,6 @@ def _draw(axes: Axes, results: Results, axis: str, whole: int, components: list[
     for number, component in enumerate(components):
         colour = PALETTE[number % len(PALETTE)]
         way = values[:, component] - values[0, component]
-        axes.plot(results.time, way, color=colour, linewidth=1.0, label=as_it_is(names[component]))
+        axes.plot(results.time, way, color=colour, linewidth=1.0, label=escape_dollars(names[component]))
     way = results.wholes[axis][:, whole] - results.wholes[axis][0, whole]
     axes.plot(results.time, way, color=BLACK, linewidth=1.6, label="whole")

@@ -1,4 +1,4 @@
-"""Output times that are shown, and what is seen at each."""
+"""Output times that a report shows, and the plane section at each."""
 
 from __future__ import annotations
 
@@ -61,13 +61,13 @@ def shown_outputs(results: Results) -> list[int]:
 
 
 def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment:
-    """What is seen at an output time in the plane, in 3D through the centre of a body; both by their numbers."""
+    """Section, gap and outlines at an output time in the plane, in 3D through the centre of a body; both by number."""
     time, path = results.series[output]
     state = results.state_at(time)
     centre = results.vectors("")[state, body]
     return Moment(
         time=time,
-        section=Section.of(read_vtu(path), plane, centre),
+        section=Section.cut(read_vtu(path), plane, centre),
         centre=plane.flat(centre),
         width=2.0 * results.system.bodies[body].bounding_radius,
         gap=float(results.bodies["gap"][state, body]),

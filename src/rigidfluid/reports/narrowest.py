@@ -1,4 +1,4 @@
-"""Where the narrowest gap of a body is."""
+"""Location of the narrowest gap of a body."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from rigidfluid.reports.results import Results
 from rigidfluid.reports.view_plane import ViewPlane
 
 _ZOOMS, _POINTS = 6, 41
-"""How often an outline is looked at more closely about its nearest point, and by how many points."""
+"""Number of refinements of an outline about its nearest point, and of points in each."""
 _OFF = 0.1
-"""Of the gap: by so much its middle may be off the plane."""
+"""Largest distance of the gap's middle from the plane, over the gap."""
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ _ENERGIES = {
     "gravity": "supplied by gravity",
     "boundary": "supplied through the faces",
     "control": "supplied by what drives controlled bodies",
+    "body_force": "supplied by the force on the fluid",
     "dissipation": "dissipated by viscosity",
     "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
     "transfer_loss": "lost in transfers between meshes",
@@ -45,24 +46,7 @@ def page(
     notes: Iterable[str],
     coefficients: Sequence[tuple[str, Figures]],
 ) -> str:
-    """The page.
-
-    Parameters
-    ----------
-    summary : mapping
-        As in summary.json.
-    pictures : sequence of (Path, str)
-        PNG files and their captions.
-    notes : iterable of str
-        What the page leaves out, and why.
-    coefficients : sequence of (str, Figures)
-        Bodies' names, and drag and lift of each.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Compose the HTML page from summary.json, pictures (PNG files) with captions, notes, and coefficients by body."""
     scene = escape(scene_text(summary["scene"]))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
@@ -127,7 +111,7 @@ def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:
 
 
 def _warnings(summary: Mapping[str, Any]) -> Iterator[str]:
-    """As the command line tells them."""
+    """Warnings and remarks of the run, in the words of the command line."""
     for warning in summary["energy"]["warnings"]:
         grade = "Serious warning" if warning["serious"] else "Warning"
         yield f"{grade}: {warning['text']}. {warning['remedy']}"

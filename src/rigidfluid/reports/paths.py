@@ -14,7 +14,7 @@ from rigidfluid.reports.style import BLACK, BLUE, PALETTE
 from rigidfluid.reports.view_plane import ViewPlane
 
 _PLACES = 5
-"""At how many times, start and end among them, bodies are drawn on their paths."""
+"""Number of times, start and end among them, at which bodies are drawn on their paths."""
 
 
 def draw_paths(axes: Axes, results: Results, plane: ViewPlane) -> None:

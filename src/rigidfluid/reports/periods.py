@@ -1,4 +1,4 @@
-"""How often a quantity swings, where it does so steadily."""
+"""Frequency of a quantity that oscillates steadily."""
 
 from __future__ import annotations
 
@@ -25,21 +25,10 @@ def late_periods(time: FloatArray, frequency: float) -> FloatArray:
 
 
 def frequency(time: FloatArray, values: FloatArray, least: float) -> float | None:
-    """Of a steady swing in the second half of the time, from when the values rise through their mean [1/time].
+    """Frequency of a steady swing (s,) in the second half of the rising ``time`` (s,), by upward crossings [1/time].
 
-    Parameters
-    ----------
-    time : (s,) array
-        Rising [time].
-    values : (s,) array
-        What may swing.
-    least : float
-        A swing by less than this to either side is none, in the units of the values.
-
-    Returns
-    -------
-    float or None
-        None where there are less than three periods, they differ by a tenth, or the amplitude changes by half.
+    None with fewer than three periods, if they scatter by a tenth, if the amplitude changes by half, or is below
+    ``least``, in the units of ``values``.
     """
     chosen = late(time)
     when, swing = time[chosen], values[chosen]

@@ -29,18 +29,18 @@ _OUT_OF_PLANE = 45.0  # degrees between velocity and slice from which on a line 
 
 @dataclass(frozen=True)
 class Colours:
-    """What colours show: a ``label``, a ``map``, the range ``lowest`` to ``highest``, and the values ``of`` a moment at
-    its nodes (N,), or at those of each cell (M, b)."""
+    """Colours of a picture: a ``label``, a ``map``, the range ``lowest`` to ``highest``, and the ``values`` of a moment
+    at its nodes (N,), or at those of each cell (M, b)."""
 
     label: str
     map: str
     lowest: float
     highest: float
-    of: Callable[[Moment], FloatArray]
+    values: Callable[[Moment], FloatArray]
 
 
 Over = Callable[[Axes, Moment, View], object]
-"""What is drawn over the colours."""
+"""Function that draws over the colours."""
 
 
 def speed_picture(shown: Sequence[Moment]) -> Figure:
@@ -94,7 +94,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], colours: Colours, ov
     figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
         drawn = axes.tripcolor(
-            *moment.section.triangles(colours.of(moment)),
+            *moment.section.triangles(colours.values(moment)),
             shading="gouraud",
             cmap=colours.map,
             vmin=colours.lowest,
@@ -163,7 +163,7 @@ def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:
 def _draw_streamlines(axes: Axes, moment: Moment, view: View) -> None:
     """Lines along the velocity, none where the fluid rests to rounding, or goes through the slice rather than along."""
     section, grid = moment.section, Grid.between(view.lower, view.upper, _GRID)
-    sampling = Sampling.of(section.fields, grid.lifted(section.plane, section.through))
+    sampling = Sampling.locate(section.fields, grid.lifted(section.plane, section.through))
     velocity = section.fields.velocity[section.fields.cells]
     u, v = (sampling.image(velocity @ direction) for direction in (section.plane.right, section.plane.up))
     speed = np.linalg.norm([sampling.image(component) for component in np.moveaxis(velocity, 2, 0)], axis=0)

@@ -1,4 +1,4 @@
-"""What a picture in a plane asks of a 2D field's mesh, and of the domain: finer triangles, and its outline."""
+"""Triangles of a 2D field's mesh for pictures in a plane, and the domain's distance on a grid in it."""
 
 from __future__ import annotations
 

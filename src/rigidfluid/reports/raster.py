@@ -13,7 +13,7 @@ from rigidfluid.reports.slice import EIGHTHS
 from rigidfluid.reports.view_plane import ViewPlane
 
 _ROUNDING = 1e-9
-"""By which barycentric coordinates may be negative of a point on a side."""
+"""Least barycentric coordinate, taken negative, of a point inside: rounding on a side."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class Sampling:
-    """Which points of a grid lie in a mesh: their ``place`` (P,) in the grid row by row, ``cell`` (P,), and
+    """Points of a grid that lie in a mesh: their ``place`` (P,) in the grid row by row, ``cell`` (P,), and
     ``weights`` (P, b) of its nodes; ``shape`` of the grid."""
 
     shape: tuple[int, int]
@@ -80,7 +80,7 @@ class Sampling:
     weights: FloatArray
 
     @classmethod
-    def of(cls, fields: Fields, grid: Grid) -> Sampling:
+    def locate(cls, fields: Fields, grid: Grid) -> Sampling:
         """Find the points in the cells, each cut into four triangles or eight tetrahedra between its nodes."""
         parts, inner = _parts(fields)
         corners = fields.points[parts]

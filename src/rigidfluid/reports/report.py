@@ -1,4 +1,4 @@
-"""From a run's folder to pictures and a page beside its results."""
+"""Pictures and a page made from a run's folder, beside its results."""
 
 from __future__ import annotations
 
@@ -37,29 +37,11 @@ FOLDER, PAGE = "report", "report.html"
 
 
 def report(out: Path, plane: PlaneName = "motion", follow: str | None = None) -> list[Path]:
-    """Make plots and one page from the results in a folder.
+    """Make plots and one page from the results in a folder; return the files written, last ``report.html``.
 
-    Parameters
-    ----------
-    out : Path
-        Folder that a run has written.
-    plane : str
-        Which plane pictures of a 3D run show, as `view_plane` takes it.
-    follow : str, optional
-        The body that pictures of the flow look at, and in 3D go through; the one that came nearest to anything if not
-        given.
-
-    Returns
-    -------
-    list of Path
-        What was written: PNG files, SVG files for the plots over time, and last ``report.html``, which holds them all.
-
-    Raises
-    ------
-    OutputError
-        Where a result is missing or cannot be read, there is no such body or plane, or the disk refuses.
-    SceneError, PluginError
-        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    Pictures of a 3D run show the ``plane`` that `view_plane` takes; they ``follow`` a body by name, else that with the
+    least gap. Raises OutputError for missing or unreadable results, an unknown body or plane, or a disk that refuses;
+    SceneError or PluginError if the run's scene cannot be built here, as without one of its plug-ins.
     """
     out = Path(out)
     results = read_results(out)
@@ -84,7 +66,7 @@ _Picture = tuple[str, str, Figure, tuple[str, ...]]
 def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
     """Pictures of the fluid; each is made when it is asked for."""
     raster, watched = ("png",), nearest_body(results) if body is None else body
-    where = _where(results, plane, watched)
+    where = _slice_location(results, plane, watched)
     shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
     yield "speed_field", f"Speed of the fluid. Solids are grey.{where}", speed_picture(shown), raster
     caption = f"Streamlines, seen by an observer at rest, over the speed.{where}"
@@ -107,12 +89,12 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     output, nearest = narrowest(results, body)
     middle = gap_middle(results, results.state_at(results.series[output][0]), nearest, plane)
     if middle is not None:
-        caption = f"The smallest gap among the output times.{_where(results, plane, nearest)}"
+        caption = f"The smallest gap among the output times.{_slice_location(results, plane, nearest)}"
         yield "smallest_gap", caption, gap_picture(moment(results, output, plane, nearest), middle), raster
 
 
-def _where(results: Results, plane: ViewPlane, body: int) -> str:
-    """Where the slice of a 3D run is."""
+def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
+    """Sentence that locates the slice of a 3D run; empty in 2D."""
     return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
 
 

@@ -31,7 +31,7 @@ NEEDED = (
     *("wall_time", "wall_time_per_stage", "reynolds_solid_density", "reynolds", "smallest_gap"),
     *("rest_position", "energy"),
 )
-"""What the page takes from summary.json."""
+"""Keys that the page takes from summary.json."""
 
 REMEDY = "Run the scene again, or go on with --resume; then make the report."
 
@@ -85,7 +85,7 @@ class Results:
         return int(np.argmin(np.abs(self.time - time)))
 
     def number_of(self, name: str) -> int:
-        """Of the body of that name; raises OutputError if there is none."""
+        """Number of the body of that name; raises OutputError if there is none."""
         if name not in self.names:
             raise OutputError("--follow", name, f"a body: {', '.join(self.names[:20])}", "Name one of them.")
         return self.names.index(name)
@@ -96,27 +96,11 @@ class Results:
 
 
 def read_results(folder: Path, *, motion_only: bool = False) -> Results:
-    """Read a run's folder.
+    """Read a run's folder, all but the fields themselves, which are read one by one.
 
-    Parameters
-    ----------
-    folder : Path
-        Where a run has written.
-    motion_only : bool
-        Whether to leave the tables of energies, joints and contacts alone; then a run that was killed, or is going
-        on, can be read too, which has no summary.
-
-    Returns
-    -------
-    Results
-        All but the fields themselves, which are read one by one.
-
-    Raises
-    ------
-    OutputError
-        Where a file is missing or cannot be read, naming it.
-    SceneError, PluginError
-        Where the run's scene cannot be built here, as when one of its plug-ins is not installed.
+    With ``motion_only`` energies, joints and contacts are left out, and a run that was killed or goes on, which has no
+    summary, can be read. Raises OutputError that names a missing or unreadable file; SceneError or PluginError if the
+    run's scene cannot be built here, as without one of its plug-ins.
     """
     complete = not motion_only or (folder / SUMMARY).exists()
     summary = _summary(folder / SUMMARY) if complete else {}
@@ -126,7 +110,7 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     if not complete:
         bodies = {name: values[: len(values) - len(values) % len(moving(system))] for name, values in bodies.items()}
     energy = {} if motion_only else _table(folder, "energy", scene.dimension)
-    by_state = {name: _by_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
+    by_state = {name: _per_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
     count = len(system.bodies)
     links = len(_joint_names(system))
     joints = _table(folder, "joints", scene.dimension) if links and not motion_only else {}
@@ -137,7 +121,7 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
         system=system,
         time=by_state["time"][:, 0],
         bodies={name: values[:, :count] for name, values in by_state.items()},
-        joints={name: _by_state(folder / "joints.csv", values, links) for name, values in joints.items()},
+        joints={name: _per_state(folder / "joints.csv", values, links) for name, values in joints.items()},
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
         wholes={name: values[:, count:] for name, values in by_state.items()},
@@ -202,7 +186,7 @@ def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, compl
     return rows
 
 
-def _by_state(path: Path, values: FloatArray, count: int) -> FloatArray:
+def _per_state(path: Path, values: FloatArray, count: int) -> FloatArray:
     if len(values) % count:
         raise _unreadable(path, f"{len(values)} rows, no multiple of the {count} that a state has")
     return values.reshape(-1, count)

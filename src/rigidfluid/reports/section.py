@@ -1,4 +1,4 @@
-"""What a picture shows of a field: in 2D all of it, in 3D a slice."""
+"""Part of a field that a picture shows: in 2D all of it, in 3D a slice."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Section:
     through: FloatArray
 
     @classmethod
-    def of(cls, fields: Fields, plane: ViewPlane, through: FloatArray) -> Section:
-        """Leave out the cells that are not cut."""
+    def cut(cls, fields: Fields, plane: ViewPlane, through: FloatArray) -> Section:
+        """Cut the fields by a plane: in 3D cells off the plane are left out."""
         if fields.points.shape[1] == 3:
             fields = cut_cells(fields, plane.normal, through)
         return cls(fields, plane, through)
@@ -75,7 +75,7 @@ class Section:
     @cached_property
     def _slice(self) -> Slice:
         height = (self.fields.points - self.through) @ self.plane.normal
-        return Slice.of(height[self.fields.cells])
+        return Slice.cut(height[self.fields.cells])
 
     @cached_property
     def _triangulation(self) -> Triangulation:

@@ -37,7 +37,7 @@ class Slice:
     share: FloatArray
 
     @classmethod
-    def of(cls, height: FloatArray) -> Slice:
+    def cut(cls, height: FloatArray) -> Slice:
         """Cut cells whose nodes have ``height`` (M, 10) over the plane, each in eight linear parts."""
         parts = height[:, EIGHTHS].reshape(-1, 4)
         number, corners, share = [], [], []

@@ -1,4 +1,4 @@
-"""What a view of a 3D run shows: bodies, their paths, the box around the domain, and a slice of the flow."""
+"""Contents of a view of a 3D run: bodies, their paths, the box around the domain, and a slice of the flow."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from rigidfluid.reports.view_plane import ViewPlane
 
 _AZIMUTH, _ELEVATION = np.radians(30.0), np.radians(20.0)
 _ROOM = 0.3
-"""Around the box, over the smaller of its width and height."""
+"""Margin around the box, over the smaller of its width and height."""
 _POINTS = 20_000
-"""On all smooth bodies together."""
+"""Number of points on all smooth bodies together."""
 _FEWEST, _MOST = 60, 1000
-"""Points on one."""
+"""Bounds of the number of points on one body."""
 
 
 @dataclass(frozen=True)
@@ -41,22 +41,22 @@ class Space:
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the observer is: far away ``to`` (3,), who sees ``right`` and ``up`` (3,) so; unit vectors."""
+    """Direction ``to`` (3,) of the distant observer, whose picture has ``right`` and ``up`` (3,); unit vectors."""
 
     to: FloatArray
     right: FloatArray
     up: FloatArray
 
     @classmethod
-    def of(cls, plane: ViewPlane) -> Camera:
-        """To the right of the plane's normal, and above it."""
+    def place(cls, plane: ViewPlane) -> Camera:
+        """Place the observer to the right of the plane's normal, and above it."""
         level = np.cos(_AZIMUTH) * plane.normal + np.sin(_AZIMUTH) * plane.right
         to = np.cos(_ELEVATION) * level + np.sin(_ELEVATION) * plane.up
         right = np.cos(_AZIMUTH) * plane.right - np.sin(_AZIMUTH) * plane.normal
         return cls(to, right, np.cross(to, right))
 
     def seen(self, points: FloatArray, box: FloatArray) -> FloatArray:
-        """Where ``points`` (…, 3) are in the picture, (…, 2), from the middle of a box (2, 3)."""
+        """Projection (…, 2) of ``points`` (…, 3) on the picture, from the middle of a box (2, 3)."""
         return ViewPlane(self.right, self.up).flat(points - box.mean(axis=0))
 
     def size(self, box: FloatArray) -> FloatArray:

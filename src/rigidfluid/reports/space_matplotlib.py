@@ -14,16 +14,16 @@ from rigidfluid.reports.style import BLACK, SOLID, VERMILLION
 from rigidfluid.reports.view_plane import ViewPlane
 
 _LIGHT = np.array([-0.4, 0.5, 0.77])
-"""To the light: to the observer's right, up and to the observer."""
+"""Direction of the light: to the observer's right, up, and to the observer."""
 _LONG = 0.3
-"""Of the larger half of a picture: an edge that has room for more than its name."""
+"""Length of an edge with room for more than its name, over the larger half side of the picture."""
 _AMBIENT = 0.4
-"""The light on what is turned away from it."""
+"""Brightness of surfaces that are turned away from the light."""
 
 
 def draw_space(axes: Axes, shown: Space, plane: ViewPlane) -> None:
     """Draw triangles from behind to the front, then the edges of the box and the paths."""
-    camera = Camera.of(plane)
+    camera = Camera.place(plane)
     colours = np.concatenate([_lit(shown.bodies, plane), shown.slice_colours.mean(axis=1)])
     triangles = np.concatenate([shown.bodies, shown.slice_points])
     order = np.argsort(triangles.mean(axis=1) @ camera.to)
@@ -39,7 +39,7 @@ def draw_space(axes: Axes, shown: Space, plane: ViewPlane) -> None:
 
 def draw_image(axes: Axes, image: NDArray[np.uint8], box: FloatArray, plane: ViewPlane) -> None:
     """Show an image of the box (2, 3)."""
-    camera = Camera.of(plane)
+    camera = Camera.place(plane)
     width, height = 0.5 * camera.size(box)
     axes.imshow(image, extent=(-width, width, -height, height))
     _frame(axes, box, camera)
@@ -69,7 +69,7 @@ def _frame(axes: Axes, box: FloatArray, camera: Camera) -> None:
 
 def _lit(triangles: FloatArray, plane: ViewPlane) -> FloatArray:
     """The colours (T, 3) of flat triangles."""
-    camera = Camera.of(plane)
+    camera = Camera.place(plane)
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.linalg.norm(normal, axis=1)
     light = _LIGHT @ np.stack([camera.right, camera.up, camera.to])

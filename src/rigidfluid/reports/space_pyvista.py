@@ -1,6 +1,6 @@
 """A view of a 3D run drawn by PyVista, in a process of its own: without a screen or drivers it may crash.
 
-As a program it reads a file of arrays and writes one image for each moment in it.
+The module run as a program reads a file of arrays and writes one image for each moment in it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def main(path: Path) -> None:
 def _image(shown: Space, plane: ViewPlane, longer: int) -> NDArray[np.uint8]:
     import pyvista
 
-    camera = Camera.of(plane)
+    camera = Camera.place(plane)
     size = camera.size(shown.box)
     plotter = pyvista.Plotter(off_screen=True, window_size=[int(n) for n in longer * size / size.max()])
     plotter.set_background("white")

@@ -20,11 +20,11 @@ from rigidfluid.reports.style import COLOURMAP, new_figure
 from rigidfluid.reports.view_plane import ViewPlane
 
 _PIXELS = 900
-"""Of PyVista's images, along the longer side."""
+"""Number of pixels of PyVista's images along the longer side."""
 
 
 def flow_space_picture(results: Results, shown: Sequence[Moment], plane: ViewPlane) -> Figure:
-    """With slices of the speed."""
+    """Draw the run with slices of the speed."""
     fastest = max(float(moment.section.speed.max()) for moment in shown) or 1.0
     scale = ScalarMappable(Normalize(0.0, fastest), COLOURMAP)
     spaces = []
@@ -37,16 +37,16 @@ def flow_space_picture(results: Results, shown: Sequence[Moment], plane: ViewPla
 
 
 def dry_space_picture(results: Results, times: Sequence[float], plane: ViewPlane) -> Figure:
-    """Without a fluid."""
+    """Draw a run without a fluid."""
     nothing = np.zeros((0, 3, 3))
     spaces = [space(results, results.state_at(time), nothing, nothing) for time in times]
     return _panels(spaces, times, plane, None)
 
 
 def _panels(spaces: list[Space], times: Sequence[float], plane: ViewPlane, scale: ScalarMappable | None) -> Figure:
-    """Drawn by PyVista where it can, else by Matplotlib."""
+    """Draw a panel for each time, by PyVista if it works here, else by Matplotlib."""
     images = pyvista_images(spaces, plane, _PIXELS)
-    width, height = Camera.of(plane).size(spaces[0].box)
+    width, height = Camera.place(plane).size(spaces[0].box)
     columns = min(len(spaces), 4 if height > 1.5 * width else 2)
     rows = -(-len(spaces) // columns)
     across = min(3.6, 5.5 * width / height + 0.8)

@@ -15,9 +15,9 @@ from rigidfluid.reports.stream import prescribed_stream
 PlaneName = Literal["motion", "xy", "xz", "yz"]
 
 _STILL = 1e-2
-"""Of the largest bounding radius: bodies that keep within so much of a line across do not move across it."""
+"""Least spread of positions across a line, over the largest bounding radius, that counts as motion across it."""
 _FLAT = 0.1
-"""Positions lie in a plane if they spread across it by less than this part of how they spread along it."""
+"""Largest spread of positions across a plane, over that along it, with which they lie in the plane."""
 _ALONG_AN_AXIS = 0.02
 """The sine of the angle below which a direction is taken to be that of an axis."""
 
@@ -30,18 +30,18 @@ class ViewPlane:
     up: FloatArray
 
     @classmethod
-    def of_axes(cls, right: int, up: int, dimension: int) -> ViewPlane:
-        """Two coordinate axes, by their numbers."""
+    def coordinate_plane(cls, right: int, up: int, dimension: int) -> ViewPlane:
+        """Plane of two coordinate axes, by their numbers."""
         return cls(np.eye(dimension)[right], np.eye(dimension)[up])
 
     @property
     def normal(self) -> FloatArray:
-        """To the observer (3,), in 3D."""
+        """Unit normal (3,) to the observer, in 3D."""
         return np.asarray(np.cross(self.right, self.up))
 
     @property
     def labels(self) -> tuple[str, str]:
-        """What to write at the picture's axes."""
+        """Labels of the picture's axes."""
         return direction_label(self.right), direction_label(self.up)
 
     @property
@@ -69,20 +69,14 @@ class ViewPlane:
 
 
 def view_plane(results: Results, name: PlaneName = "motion") -> ViewPlane:
-    """The plane of that name; ``motion`` is `plane_of_motion`.
-
-    Raises
-    ------
-    OutputError
-        If another is asked for of a 2D run.
-    """
+    """Plane of that name, ``motion`` that of `plane_of_motion`; raises OutputError for another than xy in 2D."""
     if results.system.dimension == 2:
         if name not in ("motion", "xy"):
             raise OutputError("--plane", name, "xy, since the run is in 2D", "Leave it out.")
-        return ViewPlane.of_axes(0, 1, 2)
+        return ViewPlane.coordinate_plane(0, 1, 2)
     if name == "motion":
         return plane_of_motion(results)
-    return ViewPlane.of_axes("xyz".index(name[0]), "xyz".index(name[1]), 3)
+    return ViewPlane.coordinate_plane("xyz".index(name[0]), "xyz".index(name[1]), 3)
 
 
 def plane_of_motion(results: Results) -> ViewPlane:
@@ -94,7 +88,7 @@ def plane_of_motion(results: Results) -> ViewPlane:
     are chosen so that gravity's goes up, and a stream to the right.
     """
     if results.system.dimension == 2:
-        return ViewPlane.of_axes(0, 1, 2)
+        return ViewPlane.coordinate_plane(0, 1, 2)
     gravity = np.asarray(results.scene.fluid.gravity or np.zeros(3), dtype=float)
     stream = prescribed_stream(results) if results.system.backend.needs_mesh else None
     if gravity.any():
@@ -152,7 +146,7 @@ def _oriented(right: FloatArray, up: FloatArray, *, rises: bool) -> ViewPlane:
         axes = [axis for axis in range(3) if normal[axis] == 0.0]
         upper = max(axes, key=lambda axis: second[axis] - first[axis])
         axes.remove(upper)
-        return ViewPlane.of_axes(axes[0], upper, 3)
+        return ViewPlane.coordinate_plane(axes[0], upper, 3)
     right = right if right[np.argmax(np.abs(right))] > 0.0 else -right
     up = up if rises or up[np.argmax(np.abs(up))] > 0.0 else -up
     return ViewPlane(right, up)
@@ -168,7 +162,7 @@ def _snapped(direction: FloatArray) -> FloatArray:
 
 
 def direction_label(direction: FloatArray) -> str:
-    """What to write at an axis in that direction (d,)."""
+    """Label of an axis in that direction (d,)."""
     name = _axis_name(direction)
     return f"{name} [length]" if name else f"along ({_numbers(direction)}) [length]"
 

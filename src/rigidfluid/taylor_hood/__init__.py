@@ -1,1 +1,1 @@
-"""What backends of Taylor–Hood elements P2–P1 share: numbering, constraint, solver, step and transfer."""
+"""Parts shared by backends of Taylor–Hood elements P2–P1: numbering, constraint, solver, step and transfer."""

@@ -18,7 +18,7 @@ from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
-"""Of the velocity by which what convects follows the bodies."""
+"""Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
 
 
 def advance(
@@ -32,7 +32,7 @@ def advance(
 ) -> Advance:
     """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``.
 
-    Where an earlier ``attempt`` has led is the first guess, and else what is extrapolated.
+    The solution of an earlier ``attempt`` at the step is the first guess; without one, the extrapolation in time.
     """
     problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
     before = mesh.geometry
@@ -50,7 +50,7 @@ def advance(
     state = {
         "velocity": velocity,
         "velocity_previous": fluid["velocity"],
-        "pressure": centred(discretisation, points, solution.pressure),
+        "pressure": centre_pressure(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": before,
         "twist": flat(component_twist(step.kinematics, twist)),
@@ -80,7 +80,17 @@ def advance(
         link_force=link_force,
         leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
+        source_power=_source_power(discretisation, matrix, velocity, step.time),
     )
+
+
+def _source_power(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, time: float) -> float:
+    """∫ f·u of the source f [energy/time]."""
+    source, ranks = discretisation.problem.source, discretisation.surfaces.ranks
+    if source is None:
+        return 0.0
+    load = discretisation.mass_times(matrix.points, source(time, matrix.node_points))
+    return float(ranks.sum(np.sum(velocity * load)))
 
 
 def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
@@ -115,7 +125,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     matrix = with_masses(matrix, d0)
     if matrix.at_once is None or not step.turning.any():
         return matrix
-    turned = density * discretisation.velocity_by(matrix.at_once, step.turning, _TURNING_TOLERANCE)
+    turned = density * discretisation.velocity_response(matrix.at_once, step.turning, _TURNING_TOLERANCE)
     return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned)
 
 
@@ -151,8 +161,8 @@ def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
     return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
 
 
-def centred(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
-    """In an enclosed flow the pressure's constant is free: take the one with zero mean."""
+def centre_pressure(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Pressure (vertices,) with zero mean in an enclosed flow, whose constant is free; unchanged in others."""
     surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
     if not surfaces.enclosed:
         return pressure

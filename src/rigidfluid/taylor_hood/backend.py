@@ -94,7 +94,11 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.transfer import initial
 
         start = self.problem.initial
-        target = self._for_steady(_given(mesh)) if start == "steady" else self._for_projection(_given(mesh))
+        target = (
+            self._steady_discretisation(_given(mesh))
+            if start == "steady"
+            else self._projecting_discretisation(_given(mesh))
+        )
         given = target, self.options.tolerance, _given(mesh), pose, twist
         if start == "rest":
             made = initial(*given)
@@ -111,9 +115,11 @@ class TaylorHoodBackend(FluidBackend):
         given = self.options.tolerance, mesh, pose
         motions = Twist(*np.split(step.controlled_twist, [self.problem.dimension], axis=1))
         if not step.controlled.all():
-            fluid, _ = initial(self._for_projection(mesh), *given, twist)
+            fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
             motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
-        fluid, kinetic = struck(self._for_projection(mesh), *given, component_twist(step.kinematics, motions))
+        fluid, kinetic = struck(
+            self._projecting_discretisation(mesh), *given, component_twist(step.kinematics, motions)
+        )
         self.drop_factors()
         return fluid, kinetic, motions
 
@@ -126,7 +132,7 @@ class TaylorHoodBackend(FluidBackend):
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
         from rigidfluid.taylor_hood.response import response
 
-        discretisation = self._on(mesh, step.controlled)
+        discretisation = self._discretisation(mesh, step.controlled)
         return response(discretisation, self._matrix(discretisation, fluid, mesh, step), step, impulses)
 
     @final
@@ -134,10 +140,10 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
         from rigidfluid.taylor_hood.transfer import transfer
 
-        source, present = self.numbering_of(old), self._any(old)
+        source, present = self.numbering_of(old), self._any_discretisation(old)
         before = kinetic_energy(present, old.geometry, fluid["velocity"])
         earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
-        target = self._for_projection(new)
+        target = self._projecting_discretisation(new)
         moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new, (before, earlier))
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
@@ -149,12 +155,12 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
 
         missed = after["velocity"] - extrapolated(before, extrapolation)
-        return kinetic_energy(self._any(_given(mesh)), _given(mesh).geometry, missed)
+        return kinetic_energy(self._any_discretisation(_given(mesh)), _given(mesh).geometry, missed)
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         numbering = self.numbering_of(mesh)
-        pressure = numbering.at_nodes(fluid["pressure"])
+        pressure = numbering.interpolate_to_nodes(fluid["pressure"])
         return Fields(numbering.node_points(mesh.geometry), numbering.cell_nodes, fluid["velocity"], pressure)
 
     @final
@@ -168,7 +174,7 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        return self._on(_given(mesh), controlled).unknowns
+        return self._discretisation(_given(mesh), controlled).unknowns
 
     @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
@@ -190,11 +196,11 @@ class TaylorHoodBackend(FluidBackend):
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
         if self._numbering is None or self._numbering.cells is not mesh.cells:
-            self._numbering = Numbering.of(mesh)
+            self._numbering = Numbering.from_mesh(mesh)
             self._latest = None
         return self._numbering
 
-    def _on(self, mesh: Mesh, controlled: BoolArray) -> Dimensionless:
+    def _discretisation(self, mesh: Mesh, controlled: BoolArray) -> Dimensionless:
         from rigidfluid.taylor_hood.dimensionless import Dimensionless
 
         numbering = self.numbering_of(mesh)
@@ -207,7 +213,7 @@ class TaylorHoodBackend(FluidBackend):
         """One step to a ``tolerance``, from where the latest attempt at it has led."""
         from rigidfluid.taylor_hood.advance import advance
 
-        discretisation = self._on(mesh, step.controlled)
+        discretisation = self._discretisation(mesh, step.controlled)
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
@@ -224,19 +230,19 @@ class TaylorHoodBackend(FluidBackend):
             self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, step)
         return self._latest_matrix[1]
 
-    def _for_projection(self, mesh: Mesh) -> Discretisation:
-        return self._on(mesh, np.ones(self.problem.motions, dtype=bool))
+    def _projecting_discretisation(self, mesh: Mesh) -> Discretisation:
+        return self._discretisation(mesh, np.ones(self.problem.motions, dtype=bool))
 
-    def _for_steady(self, mesh: Mesh) -> Discretisation:
+    def _steady_discretisation(self, mesh: Mesh) -> Discretisation:
         from rigidfluid.taylor_hood.dimensionless import Dimensionless
 
         controlled = np.ones(self.problem.motions, dtype=bool)
         return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, controlled), mesh)
 
-    def _any(self, mesh: Mesh) -> Discretisation:
-        """On this topology, whichever bodies are controlled."""
+    def _any_discretisation(self, mesh: Mesh) -> Discretisation:
+        """A discretisation on this topology, whichever bodies are controlled."""
         self.numbering_of(mesh)
-        return self._for_projection(mesh) if self._latest is None else self._latest[1]
+        return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
 
 
 def _given(mesh: Mesh | None) -> Mesh:

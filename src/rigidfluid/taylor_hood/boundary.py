@@ -1,4 +1,4 @@
-"""What crosses the boundary of the domain: pressure loads, mechanical power, and what leaks."""
+"""Exchange through the boundary of the domain: pressure loads, mechanical power, and spurious flux of energy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
     """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d); on a periodic face p
-    is what the pressure is higher there."""
+    is the excess of the pressure there."""
     load = np.zeros_like(node_points)
     with surfaces.ranks.raise_on_all():
         for face in surfaces.faces:

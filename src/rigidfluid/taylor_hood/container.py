@@ -8,22 +8,23 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 _ROUND_OFF = 1e-9
-"""Of the fastest prescribed velocity: a container that is slower rests. Walls may slide and turn in themselves."""
+"""Relative rounding error: a container slower than this times the fastest prescribed velocity rests, since walls may
+slide and turn in themselves."""
 
 
 def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray) -> FloatArray:
     r"""Velocity V (d,) of the walls as one rigid container: Σ ∫ (n·(u - V))² over them is least [length/time].
 
-    Of several such V it is the slowest: zero of walls at rest, and where there is no wall.
+    The slowest V is taken where several are least: zero for walls at rest, and without walls.
 
     Parameters
     ----------
     surfaces : Surfaces
-        The faces and what is prescribed there.
+        The faces and the velocities prescribed there.
     time : float
         The time [time].
     node_points : (nodes, d) array
-        Where the nodes are [length].
+        Coordinates of the nodes [length].
     """
     d = node_points.shape[1]
     faces = [face for face in surfaces.faces if face.condition.type == "wall"]

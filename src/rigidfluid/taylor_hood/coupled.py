@@ -11,7 +11,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class CoupledMatrix:
-    """Of u and p on the nodes and vertices of one process' part, and of the twists of the bodies that are free:
+    """Matrix of u and p on the nodes and vertices of one process' part, and of the twists of the bodies that are free:
 
     inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q)
 
@@ -22,7 +22,7 @@ class CoupledMatrix:
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
     ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
-    the masses alone of a step's matrix, 𝓜, which answers to impulses at once; None where nobody asks.
+    the masses alone of a step's matrix, 𝓜, the matrix of inviscid impulse responses; None where it is not wanted.
     """
 
     points: FloatArray
@@ -59,8 +59,8 @@ class CoupledSystem:
 
     ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``body_load`` is of
     all bodies. ``given`` (nodes, d): velocities where they are prescribed, zero elsewhere. ``velocity``, ``pressure``,
-    ``twist`` are the guess. ``pressure_jump`` (vertices,): what the pressure is higher there than at images on periodic
-    faces. ``scale``: the size of the largest parts that the right side is a sum of; where they
+    ``twist`` are the guess. ``pressure_jump`` (vertices,): the excess of the pressure there over that at images on
+    periodic faces. ``scale``: the size of the largest parts that the right side is a sum of; where they
     cancel, the residual is held against it. ``again``: the guess is a solution of nearly the same system.
     """
 
@@ -78,10 +78,10 @@ class CoupledSystem:
 
 @dataclass(frozen=True)
 class Solution:
-    """What solves it: ``velocity`` (nodes, d), ``pressure`` (vertices,), ``twist`` (n, d+k), the guess where it is
-    given.
+    """Solution of a `CoupledSystem`: ``velocity`` (nodes, d), ``pressure`` (vertices,), ``twist`` (n, d+k), the guess
+    where it is prescribed.
 
-    ``reaction`` (nodes, d), by which the fluid's own equations are not met: the force on the fluid where its velocity
+    ``reaction`` (nodes, d), the residual of the fluid's own equations: the force on the fluid where its velocity
     is not free; with several processes a node's is the sum of what they have there. ``jump_load`` (nodes, d): (Δp, ∇·v)
     of the pressure's jumps at periodic faces, whose power is not zero, since ∇·u = 0 is meant for pressures without
     jumps; None without any.

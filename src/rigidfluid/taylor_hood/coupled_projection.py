@@ -19,7 +19,7 @@ class CoupledProjection:
     points : (vertices + K, d) array
         The geometry.
     position : (N, d) array
-        Of the motions.
+        Centres of the motions [length].
     """
 
     def __init__(self, target: Discretisation, points: FloatArray, position: FloatArray) -> None:

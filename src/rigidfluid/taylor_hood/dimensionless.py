@@ -28,7 +28,7 @@ class Dimensionless:
     inner : Discretisation
         The equations, in whatever units they are given.
     mesh : Mesh
-        Of its topology, from which h is (total volume / cells)^(1/d).
+        A mesh of its topology, from which h is (total volume / cells)^(1/d).
     """
 
     def __init__(self, inner: Discretisation, mesh: Mesh) -> None:
@@ -70,14 +70,14 @@ class Dimensionless:
             jump_load=None if found.jump_load is None else found.jump_load * scaled.force,
         )
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         scaled = self._scaled(matrix)
         each = scaled.twists[:, None]
-        return self.inner.twists_by(scaled.matrix, wrenches * each / scaled.force, tolerance) * each
+        return self.inner.twist_response(scaled.matrix, wrenches * each / scaled.force, tolerance) * each
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         scaled = self._scaled(matrix)
-        return self.inner.velocity_by(scaled.matrix, wrench * scaled.twists / scaled.force, tolerance)
+        return self.inner.velocity_response(scaled.matrix, wrench * scaled.twists / scaled.force, tolerance)
 
     def _scaled(self, matrix: CoupledMatrix) -> _Scaled:
         """The latest of a step and the latest of its masses are kept: who solves knows a matrix by its identity."""

@@ -1,4 +1,4 @@
-"""What a backend of Taylor–Hood elements supplies: the equations on one topology, assembled and solved."""
+"""Contract of a backend of Taylor–Hood elements: the equations on one topology, assembled and solved."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 class Projection(Protocol):
-    """Onto velocities without divergence on one geometry, with values held on bodies and prescribed faces."""
+    """Projection onto velocities without divergence on one geometry, with values held on bodies and prescribed
+    faces."""
 
     def nearest(
         self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
     ) -> FloatArray:
-        """That nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards, (nodes, d).
+        """Velocity (nodes, d) without divergence nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards.
 
-        On bodies and prescribed faces it is that of ``held`` (nodes, d), by default ``velocity`` too. To a relative
-        residual of ``tolerance``; raises StepRejected.
+        It equals ``held`` (nodes, d), by default ``velocity`` too, on bodies and prescribed faces. Its relative
+        residual is ``tolerance``; raises StepRejected.
         """
 
     def product(self, first: FloatArray, second: FloatArray) -> float:
@@ -37,13 +38,13 @@ class Discretisation(Protocol):
 
     @property
     def unknowns(self) -> int:
-        """How many unknowns a step solves for."""
+        """Number of unknowns that a step solves for."""
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
 
     def projection(self, points: FloatArray, position: FloatArray) -> Projection:
-        """On the geometry ``points`` with motions at ``position`` (N, d), all of them controlled."""
+        """Projection on the geometry ``points`` with motions at ``position`` (N, d), all of them controlled."""
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
@@ -52,15 +53,15 @@ class Discretisation(Protocol):
         """∫ w (∇·u)² over this process' cells, ``weight`` w (M,) of each."""
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
-        """To a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
+        """Solve to a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """Twists (n, d+k, c) that each of c ``wrenches`` (n, d+k, c) on the bodies gives by itself.
 
-        To residuals of ``tolerance`` times each column's norm; raises StepRejected.
+        Residuals are ``tolerance`` times each column's norm; raises StepRejected.
         """
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         """The velocity (nodes, d) that a ``wrench`` (n, d+k) on the bodies gives by itself."""
 
 

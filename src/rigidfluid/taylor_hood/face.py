@@ -21,8 +21,8 @@ from rigidfluid.taylor_hood.numbering import Numbering
 
 @dataclass(frozen=True)
 class Face:
-    """Its ``condition``, ``facets`` (F, d) with their ``facet_nodes`` (F, 3 | 6), and all ``nodes`` on it, also those
-    of facets that other processes hold."""
+    """Piece with one ``condition``: ``facets`` (F, d) with their ``facet_nodes`` (F, 3 | 6), and all ``nodes`` on it,
+    also those of facets that other processes hold."""
 
     condition: BoundaryCondition
     facets: IntArray
@@ -30,11 +30,11 @@ class Face:
     nodes: IntArray
 
     @classmethod
-    def of(
+    def from_facets(
         cls, condition: BoundaryCondition, facets: IntArray, nodes: IntArray, mesh: Mesh, numbering: Numbering
     ) -> Face:
-        """The face of these ``facets``; of one that is not flat they are turned so that their normals are known, which
-        nobody asks of a wall."""
+        """Face of these ``facets``; unless it is flat or a wall they are turned so that their normals point into the
+        fluid."""
         if condition.normal is None and condition.type != "wall":
             facets = into_fluid(facets, mesh.cells, mesh.points)
         return cls(condition, facets, numbering.facet_nodes(facets), nodes)
@@ -79,7 +79,7 @@ class Face:
         return 0.5 * float(np.sum(np.sum(u * u, axis=2) * np.sum(c * area, axis=2)))
 
     def in_and_out(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
-        """What flows in, and what flows out (negative), (2,) [length^d/time]; the sum of both, and 0, if it is curved.
+        """Inflow and outflow (negative), (2,) [length^d/time]; the sum of both, and 0, of a curved face.
 
         ``node_points``, ``velocity`` (nodes, d) [length, length/time].
         """

@@ -17,7 +17,8 @@ from rigidfluid.taylor_hood.numbering import facet_edges
 _WEIGHTS = {2: np.array([1.0, 1.0, 4.0]) / 6.0, 3: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) / 3.0}
 
 _POINTS = 4
-"""Of Gauss' rule in each direction: exact for ∫ φᵢ n of a curved triangle, and for three velocities on a flat one."""
+"""Points of Gauss' rule in each direction: exact for ∫ φᵢ n of a curved triangle, and for three velocities on a flat
+one."""
 
 
 def facet_weights(points: FloatArray, facets: IntArray) -> FloatArray:
@@ -34,12 +35,13 @@ def area_vectors(facet_points: FloatArray) -> FloatArray:
     Parameters
     ----------
     facet_points : (F, 3 | 6, d) array
-        Where the nodes of each facet are [length].
+        Coordinates of the nodes of each facet [length].
 
     Returns
     -------
     (F, 3 | 6, d) array
-        With n of an edge from a to b towards (y_b - y_a, x_a - x_b), and of a triangle towards (b - a) × (c - a).
+        The normal n of an edge from a to b points towards (y_b - y_a, x_a - x_b), and of a triangle towards (b - a) ×
+        (c - a).
     """
     if facet_points.shape[2] == 2:
         return np.asarray(np.einsum("ij,fjd->fid", _edge_integrals(), _turned(facet_points)))
@@ -61,7 +63,7 @@ def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     facet_points : (F, 3 | 6, d) array
-        Where the nodes of each facet are [length].
+        Coordinates of the nodes of each facet [length].
     """
     shapes, slopes, weight = _tabulated(facet_points.shape[2])
     tangents = [slope @ facet_points for slope in slopes]

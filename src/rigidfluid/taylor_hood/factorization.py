@@ -28,7 +28,7 @@ class Factors(Protocol):
 
     @property
     def rebuild_cost(self) -> int | None:
-        """What others for a matrix of the same pattern cost, in iterations; None where nothing is known of it."""
+        """Cost of factors for another matrix of the same pattern, in iterations; None where it is not known."""
 
     def solve(self, right_side: FloatArray) -> FloatArray: ...
 
@@ -72,11 +72,11 @@ def factorise(matrix: sparse.csr_array, before: Factors | None = None, orderings
             analysed = before
         else:
             before.free()
-    return _by_pardiso(matrix, analysed, orderings or Orderings())
+    return _pardiso_factors(matrix, analysed, orderings or Orderings())
 
 
-def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: Orderings) -> Pardiso:
-    """By the first of its settings that serves; the last one need not be tried, since there is no other."""
+def _pardiso_factors(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: Orderings) -> Pardiso:
+    """Factors by the first of PARDISO's settings that serves; those of the last are not tested: there is no other."""
     for settings in (FAST, EXACT, SAFE):
         try:
             factors, analysed = analysed or Pardiso(matrix, settings, orderings), None
@@ -90,7 +90,7 @@ def _by_pardiso(matrix: sparse.csr_array, analysed: Pardiso | None, orderings: O
 
 
 def _residual(factors: Factors, matrix: sparse.csr_array) -> float:
-    """What is left of the right side of a known solution."""
+    """Relative residual of the factors' solution, for a right side whose solution is all ones [1]."""
     right_side = matrix @ np.ones(matrix.shape[0])
     left = right_side - matrix @ factors.solve(right_side)
     return float(np.linalg.norm(left) / np.linalg.norm(right_side))

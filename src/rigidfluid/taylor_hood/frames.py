@@ -1,7 +1,7 @@
 """Axes of its own for each node where a velocity is free along some directions that lie along no axis.
 
-On slip faces the velocity across the face is held, on pressure faces the velocity along it. Where a face is oblique or
-curved, these are no components, and the unknowns of its nodes are taken along axes Q of the node's own: u = Q û.
+On slip faces the velocity across the face is held, on pressure faces the velocity along it. On an oblique or curved
+face these are no components, and the unknowns of its nodes are taken along axes Q of the node's own: u = Q û.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _EDGE = 0.08
 33° between two facets, and one mean normal else."""
 
 _ROUNDING = 1e-12
-"""Relative size of what flows through a face by rounding alone."""
+"""Relative size of a flux through a face by rounding alone."""
 
 _SQUARE = 0.94
 """Fluid passes a node of both slip and pressure faces where these meet at a right angle, give or take 20°."""
@@ -39,12 +39,12 @@ class Frames:
     taken: tuple[IntArray, IntArray, FloatArray]
 
     @classmethod
-    def none(cls, dimension: int) -> Frames:
-        """Where no face is oblique or curved."""
+    def empty(cls, dimension: int) -> Frames:
+        """No frames: no face is oblique or curved."""
         d, nothing = dimension, np.empty(0, np.int64)
         return cls(nothing, np.empty((0, d, d)), np.empty((0, d), bool), (nothing, nothing, np.empty(0)))
 
-    def into(self, velocity: FloatArray) -> FloatArray:
+    def local_components(self, velocity: FloatArray) -> FloatArray:
         """û of a ``velocity`` u (nodes, d): its components along each node's own axes."""
         if not len(self.nodes):
             return velocity
@@ -80,16 +80,16 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     faces : sequence of Face
         All faces.
     node_points : (nodes, d) array
-        Where the nodes are, the ``vertices`` first [length].
+        Coordinates of the nodes, the ``vertices`` first [length].
     vertices : int
-        How many of them are vertices.
+        Number of vertices.
     held : (nodes,) bool
         Nodes whose velocity is given, which need none.
 
     Returns
     -------
     Frames
-        Nodes ascending. Where faces meet, each holds what it does; but normals that are nearly equal count as one.
+        Nodes ascending. Each of several faces that meet holds its own directions; nearly equal normals count as one.
     """
     d = node_points.shape[1]
     slip, pressure = ([face for face in faces if face.condition.type == kind] for kind in ("slip", "pressure"))
@@ -97,7 +97,7 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     nodes = np.unique(np.concatenate([*oblique, np.empty(0, np.int64)]))
     nodes = nodes[~held[nodes]]
     if not len(nodes):
-        return Frames.none(d)
+        return Frames.empty(d)
     across = _normal_spaces(slip, node_points, vertices)[nodes]
     through = _normal_spaces(pressure, node_points, vertices)[nodes]
     values, axes = np.linalg.eigh(through)
@@ -110,15 +110,15 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     across[passes] -= np.einsum("ti,tj->tij", way[passes], way[passes])
     values, axes = np.linalg.eigh(across)
     free = values < 0.5
-    return Frames(nodes, axes, free, _taken(slip, node_points, vertices, nodes, axes, free))
+    return Frames(nodes, axes, free, _flux_corrections(slip, node_points, vertices, nodes, axes, free))
 
 
 def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int) -> FloatArray:
     """Projectors (nodes, d, d) onto the normals of all ``faces`` together at each node; zero away from them.
 
-    Where the facets at a node are nearly one surface, this is Σ ∫ φᵢ n: a velocity across it takes no fluid through the
-    faces (consistent normals: Engelman, Sani and Gresho 1982, doi:10.1002/fld.1650020302). Next to nothing passes a
-    triangle by its vertices; their normals are means of the facets'.
+    The normal is along Σ ∫ φᵢ n where the facets at a node are nearly one surface: a velocity orthogonal to it takes no
+    fluid through the faces (consistent normals: Engelman, Sani and Gresho 1982, doi:10.1002/fld.1650020302). Triangles
+    have next to no flux by their vertices, whose normals are means of the facets'.
     """
     count, d = node_points.shape
     total, squares, facets = np.zeros((count, d)), np.zeros((count, d, d)), np.zeros(count)
@@ -140,12 +140,13 @@ def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int
     return found
 
 
-def _taken(
+def _flux_corrections(
     slip: Sequence[Face], node_points: FloatArray, vertices: int, nodes: IntArray, axes: FloatArray, free: BoolArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """What nodes let through ``slip`` faces although they move along them, taken back by midpoints of edges nearby.
+    """Rows, unknowns and values (e,) by which midpoints of edges cancel the flux through ``slip`` faces of nodes that
+    move along them.
 
-    At a vertex of curved triangles the vector ∫ φᵢ n is small, and has another direction than the normal. Each edge's
+    The vector ∫ φᵢ n at a vertex of curved triangles is small, and has another direction than the normal. Each edge's
     midpoint in the same triangles takes an equal part by a velocity along its own normal: so no free velocity takes
     fluid through the faces, and an even pressure moves nothing.
     """

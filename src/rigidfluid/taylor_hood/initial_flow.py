@@ -9,12 +9,12 @@ import numpy as np
 
 from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twist
 from rigidfluid.errors import SceneError, StepRejected
-from rigidfluid.taylor_hood.advance import centred
+from rigidfluid.taylor_hood.advance import centre_pressure
 from rigidfluid.taylor_hood.boundary import pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation
-from rigidfluid.taylor_hood.state import at_rest
+from rigidfluid.taylor_hood.state import resting_state
 from rigidfluid.taylor_hood.transfer import project
 
 STEADY, MOST_ITERATIONS = 1e-8, 200
@@ -31,11 +31,11 @@ def formula_flow(
 ) -> FluidState:
     """The flow without divergence that is nearest to ``velocity`` (time, points) at time 0, as bodies and boundary have
     it there."""
-    surfaces, state = target.surfaces, dict(at_rest(target.surfaces, mesh, pose, twist))
+    surfaces, state = target.surfaces, dict(resting_state(target.surfaces, mesh, pose, twist))
     node_points = target.numbering.node_points(mesh.geometry)
     with surfaces.ranks.raise_on_all():
         wanted = velocity(0.0, node_points)
-    wanted += surfaces.held_part(_given(target, node_points, state) - wanted)
+    wanted += surfaces.held_part(_prescribed_velocity(target, node_points, state) - wanted)
     state["velocity"] = state["velocity_previous"] = project(target, tolerance, wanted, mesh.geometry, pose.position)
     return state
 
@@ -49,10 +49,10 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
     Raises
     ------
     SceneError
-        Where that does not converge, with the Reynolds number.
+        If the iteration does not converge; with the Reynolds number.
     """
     problem, numbering = target.problem, target.numbering
-    state = dict(at_rest(target.surfaces, mesh, pose, twist))
+    state = dict(resting_state(target.surfaces, mesh, pose, twist))
     node_points = numbering.node_points(mesh.geometry)
     load, bodies = pressure_load(target.surfaces, node_points, 0.0), np.zeros_like(state["twist"])
     if problem.source is not None:
@@ -71,7 +71,7 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
         frame=np.zeros(problem.dimension),
     )
     frame = container_velocity(target.surfaces, 0.0, node_points)
-    given = _given(target, node_points, state)
+    given = _prescribed_velocity(target, node_points, state)
     jump = target.surfaces.pressure_jump(0.0, mesh.points)
     system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies, jump)
     change = np.inf
@@ -80,7 +80,7 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
             solution = target.solve(system, tolerance)
         except StepRejected as error:
             raise _not_steady(target, node_points, system.velocity, str(error)) from None
-        change = _relative(target, mesh.geometry, solution.velocity - system.velocity, solution.velocity)
+        change = _relative_norm(target, mesh.geometry, solution.velocity - system.velocity, solution.velocity)
         flow = problem.inert_density * solution.velocity
         matrix = replace(matrix, advection=flow, flow=flow - problem.inert_density * frame, frame=frame)
         system = replace(system, matrix=matrix, velocity=solution.velocity, pressure=solution.pressure, again=True)
@@ -89,18 +89,18 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
     else:
         raise _not_steady(target, node_points, system.velocity, f"changes of {change:.1g} in the last iteration")
     state["velocity"] = state["velocity_previous"] = system.velocity
-    state["pressure"] = state["pressure_previous"] = centred(target, mesh.geometry, system.pressure)
+    state["pressure"] = state["pressure_previous"] = centre_pressure(target, mesh.geometry, system.pressure)
     return state
 
 
-def _given(target: Discretisation, node_points: FloatArray, state: FluidState) -> FloatArray:
-    """What is prescribed at time 0, with all bodies as they move then, (nodes, d)."""
+def _prescribed_velocity(target: Discretisation, node_points: FloatArray, state: FluidState) -> FloatArray:
+    """Velocities (nodes, d) prescribed at time 0, with all bodies moving as they do then; zero elsewhere."""
     twist = state["twist"]
     every = np.ones(len(twist), dtype=bool)
     return target.surfaces.prescribed(0.0, node_points, state["position"], twist, every)
 
 
-def _relative(target: Discretisation, points: FloatArray, change: FloatArray, velocity: FloatArray) -> float:
+def _relative_norm(target: Discretisation, points: FloatArray, change: FloatArray, velocity: FloatArray) -> float:
     squares = [np.sum(field * target.mass_times(points, field)) for field in (change, velocity)]
     of_change, of_all = target.surfaces.ranks.sum(np.array(squares))
     return float(np.sqrt(of_change / of_all)) if of_all > 0.0 else 0.0

@@ -16,12 +16,12 @@ from rigidfluid.taylor_hood.pardiso import Orderings
 from rigidfluid.taylor_hood.parts import Parts
 
 _LEAST = float(np.finfo(float).tiny)
-"""In place of no tolerance at all, that of a right side of zero."""
+"""Tolerance in place of zero, that of a right side of zero."""
 
 
 @final
 class LaggedFactors(LaggedSolver[Parts]):
-    """LU by `factorise`.
+    """Solver preconditioned by LU factors of `factorise`.
 
     PARDISO's factors know their rebuild_cost; that of others is what SuperLU, which analyses each time, took.
     """
@@ -31,7 +31,7 @@ class LaggedFactors(LaggedSolver[Parts]):
     most: ClassVar[int] = 40
 
     most_sweeps: ClassVar[int] = 6
-    """Of all columns together; factors that need more are worth renewing."""
+    """Greatest number of sweeps over all columns together; factors that need more are worth renewing."""
 
     def __init__(self, dimension: int, orderings: Orderings | None = None) -> None:
         super().__init__(ALONE, dimension)

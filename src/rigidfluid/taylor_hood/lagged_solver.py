@@ -15,8 +15,9 @@ from rigidfluid.errors import StepRejected
 Matrix = TypeVar("Matrix")
 
 _RECYCLED = 2
-"""Corrections of so many steps are kept. What a linear extrapolation in time misses changes little from step to step: a
-combination of them leaves a hundredth of it, as an extrapolation of two orders more would, whatever the steps are."""
+"""Number of steps whose corrections are kept. The error of a linear extrapolation in time changes little from step to
+step: a combination of them leaves a hundredth of it, as an extrapolation of two orders more would, whatever the steps
+are."""
 
 _PARALLEL = 1e-10
 """Relative size of what is new in a vector, below which it is rounding."""
@@ -34,7 +35,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     rebuild_cost: ClassVar[Mapping[int, int]]
     sharper: ClassVar[float] = 1.0
-    """What answers to impulses have for a residual, over what is asked of those by factors."""
+    """Factor on the tolerance of impulse responses [1]: the ratio of their residual to the one asked of LU factors."""
     fresh_iterations: ClassVar[int]
     most: ClassVar[int]
 
@@ -52,14 +53,14 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     @final
     def forget(self) -> None:
-        """Drop the preconditioner and what earlier solutions have left."""
+        """Drop the preconditioner and the corrections of earlier solutions."""
         self._is_made = False
         self._corrections = ()
         self.drop()
 
     @final
     def memory(self) -> dict[str, FloatArray]:
-        """What the next solution depends on, beside the matrix that the preconditioner was made from."""
+        """State of the solver that the next solution depends on, beside the matrix of the preconditioner."""
         return {"wasted": np.array(float(self._wasted)), "corrections": np.array(self._corrections)}
 
     @final
@@ -155,7 +156,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
     ) -> FloatArray:
         """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm; raises StepRejected.
 
-        What old factors waste counts like that of a step.
+        Iterations wasted by an old preconditioner count like those of a step.
         """
         fresh = not self._is_made
         if fresh:
@@ -177,7 +178,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     @final
     def norm(self, vector: FloatArray) -> float:
-        """Its Euclidean norm, over all processes."""
+        """Euclidean norm of a distributed vector, over all processes."""
         return float(np.sqrt(self._ranks.sum(vector @ vector)))
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""Joints of bodies in the linear system of a step: their forces follow from the answers of its own matrix."""
+"""Joints of bodies in the linear system of a step: their forces follow from the impulse responses of its own matrix."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
-_ANSWER_TOLERANCE = 1e-6
-"""Of the answers: so much of what is missing is left after each round."""
+_RESPONSE_TOLERANCE = 1e-6
+"""Relative residual of the impulse responses [1]: each round leaves this share of the velocities' misfit."""
 
 _FIT = 1e-9
-"""Of the velocities, what they may miss in links: by the power that would mend them, which all units share."""
+"""Relative misfit of velocities allowed in links [1]; its square is one of power, which all units share."""
 
 _MOST_ROUNDS = 4
 _TOO_WRONG = 1e-4
@@ -35,7 +35,7 @@ def solve_linked(
     discretisation : Discretisation
         Solves without links.
     system : CoupledSystem
-        Of the step.
+        The step's equations.
     links : Links or None
         C, r and κ.
     tolerance : float
@@ -57,11 +57,11 @@ def solve_linked(
         return discretisation.solve(system, tolerance), None
     if len(links.rate) == 0:  # springs alone
         return discretisation.solve(system, tolerance), np.zeros(0)
-    answers = discretisation.twists_by(system.matrix, np.moveaxis(links.rows, 0, -1), _ANSWER_TOLERANCE)
-    compliance: FloatArray = np.tensordot(links.rows, answers, axes=2) + np.diag(links.compliance)
+    responses = discretisation.twist_response(system.matrix, np.moveaxis(links.rows, 0, -1), _RESPONSE_TOLERANCE)
+    compliance: FloatArray = np.tensordot(links.rows, responses, axes=2) + np.diag(links.compliance)
     force = joint_forces(compliance, links.rate)  # what a drive needs from rest, when there is no other load
-    solution = discretisation.solve(_pulled(system, links, force), tolerance)
-    missing = _missing(links, solution, force)
+    solution = discretisation.solve(_add_link_forces(system, links, force), tolerance)
+    missing = _misfit(links, solution, force)
     scale = sum(_power(compliance, each) for each in (links.rate, missing)) + _power_of_motions(system, solution)
     for _ in range(_MOST_ROUNDS):
         if _power(compliance, missing) <= max(_FIT, tolerance) ** 2 * scale:
@@ -69,8 +69,8 @@ def solve_linked(
         force = force + joint_forces(compliance, missing)
         velocity, pressure, twist = solution.velocity, solution.pressure, solution.twist
         nearer = replace(system, velocity=velocity, pressure=pressure, twist=twist, again=True)
-        solution = discretisation.solve(_pulled(nearer, links, force), tolerance)
-        missing = _missing(links, solution, force)
+        solution = discretisation.solve(_add_link_forces(nearer, links, force), tolerance)
+        missing = _misfit(links, solution, force)
     if _power(compliance, missing) > _TOO_WRONG**2 * scale:
         raise StepRejected(
             "joints",
@@ -81,21 +81,21 @@ def solve_linked(
     return solution, force
 
 
-def _pulled(system: CoupledSystem, links: Links, force: FloatArray) -> CoupledSystem:
+def _add_link_forces(system: CoupledSystem, links: Links, force: FloatArray) -> CoupledSystem:
     return replace(system, body_load=system.body_load + np.tensordot(force, links.rows, axes=1))
 
 
-def _missing(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
+def _misfit(links: Links, solution: Solution, force: FloatArray) -> FloatArray:
     return np.asarray(links.rate - np.tensordot(links.rows, solution.twist, axes=2) - links.compliance * force)
 
 
 def _power(compliance: FloatArray, missing: FloatArray) -> float:
-    """Of the forces that would mend it [energy/time]."""
+    """Power of the forces that would mend a ``missing`` rate (c,) of the links [energy/time]."""
     return float(missing @ joint_forces(compliance, missing))
 
 
 def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
-    """Of inertia and load [energy/time]."""
+    """Power of inertia and load on the free motions [energy/time]."""
     free = ~system.matrix.controlled
     twist, load = solution.twist[free], system.body_load[free]
     inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))

@@ -39,7 +39,7 @@ def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[In
         missing = missing[coordinates[missing].min(axis=1) < _INSIDE]
         if len(missing) == 0:
             break
-    return cell, _moved_inside(coordinates)
+    return cell, _move_inside(coordinates)
 
 
 def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -48,26 +48,25 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
     ``nodes`` (C, b, d) of all curved cells; ``guess`` (N,): the one whose straight cell holds the target. In 3D the
     faces between two curved cells are curved too, so that a target near one may be the neighbour's.
     """
-    cell, found = guess.copy(), _by_newton(nodes[guess], targets)
+    cell, found = guess.copy(), _invert_maps(nodes[guess], targets)
     astray = np.flatnonzero(found.min(axis=1) < _INSIDE)
     if len(astray):
         corners = targets.shape[1] + 1
         count = min(_NEIGHBOURS, len(nodes))
         _, near = cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
         near = near.reshape(len(astray), count)
-        tried = _by_newton(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0)).reshape(*near.shape, corners)
+        tried = _invert_maps(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0))
+        tried = tried.reshape(*near.shape, corners)
         best = np.argmax(tried.min(axis=2), axis=1)
         rows = np.arange(len(astray))
         better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
         cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
-    return cell, _moved_inside(found)
+    return cell, _move_inside(found)
 
 
-def _by_newton(nodes: FloatArray, targets: FloatArray) -> FloatArray:
-    """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d).
-
-    By Newton's method with the straight cells' matrices.
-    """
+def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
+    """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d), by
+    Newton's method with the straight cells' matrices."""
     d = targets.shape[1]
     inverse = np.linalg.inv(np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2))
     coordinates = np.full((len(targets), d + 1), 1.0 / (d + 1))
@@ -81,7 +80,7 @@ def _by_newton(nodes: FloatArray, targets: FloatArray) -> FloatArray:
     return coordinates
 
 
-def _moved_inside(coordinates: FloatArray) -> FloatArray:
+def _move_inside(coordinates: FloatArray) -> FloatArray:
     inside = np.maximum(coordinates, 0.0)
     return np.asarray(inside / inside.sum(axis=1, keepdims=True))
 

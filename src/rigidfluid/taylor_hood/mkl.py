@@ -1,4 +1,4 @@
-"""Where MKL's library lies, so that nobody has to search the disk for it."""
+"""Path of MKL's library, so that nobody has to search the disk for it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from importlib import metadata
 from pathlib import Path
 
 _LIBRARY = "mkl_rt"
-"""What the names of the file have in common: libmkl_rt.so.3, mkl_rt.2.dll."""
+"""Part that the names of the file have in common: libmkl_rt.so.3, mkl_rt.2.dll."""
 
 
 def installed_mkl() -> Path | None:

@@ -40,8 +40,8 @@ class Numbering:
         self._curve_of_edge = curve_of_edge[self.curved_cells]
 
     @classmethod
-    def of(cls, mesh: Mesh) -> Numbering:
-        """The nodes of a mesh."""
+    def from_mesh(cls, mesh: Mesh) -> Numbering:
+        """Numbering of the nodes of a mesh."""
         return cls(mesh.cells, len(mesh.points), None if mesh.curved is None else mesh.curved.vertices)
 
     @property
@@ -51,7 +51,7 @@ class Numbering:
 
     def node_points(self, points: FloatArray) -> FloatArray:
         """Coordinates of all nodes, (nodes, d), for a mesh's geometry ``points`` (vertices + K, d)."""
-        found = self.at_nodes(points[: self.vertices])
+        found = self.interpolate_to_nodes(points[: self.vertices])
         found[self.on_curves] = points[self.vertices :]
         return found
 
@@ -68,8 +68,8 @@ class Numbering:
         middles[bent] = points[self.vertices + self._curve_of_edge[bent]]
         return np.concatenate([corners, middles], axis=1)
 
-    def at_nodes(self, field: FloatArray) -> FloatArray:
-        """A P1 field (vertices, …) at all nodes."""
+    def interpolate_to_nodes(self, field: FloatArray) -> FloatArray:
+        """Values (nodes, …) of a P1 field (vertices, …) at all nodes."""
         return np.concatenate([field, 0.5 * (field[self.edges[:, 0]] + field[self.edges[:, 1]])])
 
     def facet_nodes(self, facets: IntArray) -> IntArray:

@@ -40,8 +40,8 @@ class PardisoError(Exception):
 
 @dataclass(frozen=True)
 class Settings:
-    """How factors are made: their ``precision``; whether unknowns are ``matched`` by the matrix' numbers first; pivots
-    below 10^-``pivots`` are replaced."""
+    """Settings of a factorisation: its ``precision``; whether unknowns are ``matched`` by the matrix' numbers first;
+    pivots below 10^-``pivots`` are replaced."""
 
     precision: type[np.floating[Any]]
     matched: bool
@@ -53,7 +53,7 @@ FAST = Settings(np.float32, matched=False, pivots=6)
 serves all matrices that have it."""
 
 EXACT, SAFE = Settings(np.float64, matched=True, pivots=13), Settings(np.float64, matched=False, pivots=8)
-"""Where the fast ones are worthless: matched first; and with greater numbers in the place of small pivots."""
+"""Settings for matrices on which `FAST` fails: unknowns matched first; and small pivots replaced by greater numbers."""
 
 
 class Orderings:
@@ -62,8 +62,8 @@ class Orderings:
     def __init__(self) -> None:
         self._latest: tuple[_Numbers, _Numbers, _Numbers] | None = None
 
-    def of(self, rows: _Numbers, columns: _Numbers) -> _Numbers | None:
-        """That of a pattern, if it is the latest; `keep` gives it."""
+    def find(self, rows: _Numbers, columns: _Numbers) -> _Numbers | None:
+        """Order of elimination (N,) of a pattern; None unless it is the latest that `keep` was given."""
         if self._latest is None or not (
             np.array_equal(self._latest[0], rows) and np.array_equal(self._latest[1], columns)
         ):
@@ -71,7 +71,7 @@ class Orderings:
         return self._latest[2]
 
     def keep(self, rows: _Numbers, columns: _Numbers, order: _Numbers) -> None:
-        """The order that was found for a pattern."""
+        """Keep the order of elimination that was found for a pattern."""
         self._latest = rows, columns, order
 
 
@@ -86,16 +86,16 @@ class Pardiso:
     matrix : csr_array
         The pattern, with sorted indices; and the numbers that unknowns are matched by.
     settings : Settings
-        How.
+        Precision, matching and pivots.
     orderings : Orderings
-        Where its order of elimination may be known from, unless that depends on the numbers.
+        Known orders of elimination, used unless the order depends on the numbers.
 
     Raises
     ------
     PardisoError
-        Where it cannot be analysed.
+        If the matrix cannot be analysed.
     StepError
-        Where analysis or factors do not fit into the memory that is available; nothing is tried then.
+        If analysis or factors do not fit into the memory that is available; nothing is tried then.
     """
 
     def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
@@ -119,7 +119,7 @@ class Pardiso:
 
     @property
     def rebuild_cost(self) -> int:
-        """What factors for other numbers cost, in iterations: 9 with 45,000 unknowns in 2D, 20 with 20,000 in 3D.
+        """Cost of factors for other numbers, in iterations: 9 with 45,000 unknowns in 2D, 20 with 20,000 in 3D.
 
         The times of an operation and of an entry are measured once for all, since a rule by clock time would make
         no two runs alike.
@@ -151,7 +151,7 @@ class Pardiso:
         return solution
 
     def _analyse(self, orderings: Orderings) -> None:
-        known = None if self.settings.matched else orderings.of(self._rows, self._columns)
+        known = None if self.settings.matched else orderings.find(self._rows, self._columns)
         self._order = np.zeros(len(self._scale), dtype=np.int32) if known is None else known
         if not self.settings.matched:
             self._iparm[_PERMUTATION] = _RETURNED if known is None else _TAKEN
@@ -181,13 +181,13 @@ class Pardiso:
 def _library() -> Any:
     """The loaded MKL, told to answer the same question with the same bits (conditional numerical reproducibility)."""
     path = installed_mkl()
-    library = _found_by_pypardiso() if path is None else ctypes.CDLL(str(path))
+    library = _search_by_pypardiso() if path is None else ctypes.CDLL(str(path))
     library.MKL_CBWR_Set(ctypes.c_int(_SAME_BITS))
     return library
 
 
-def _found_by_pypardiso() -> Any:
-    """By searching the disk, which may take a second."""
+def _search_by_pypardiso() -> Any:
+    """The library as pypardiso finds it, by searching the disk, which may take a second."""
     from pypardiso.pardiso_wrapper import PyPardisoSolver
 
     return PyPardisoSolver().libmkl

@@ -1,4 +1,4 @@
-"""What a preconditioner of the coupled matrix is made from."""
+"""Ingredients of a preconditioner of the coupled matrix."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from rigidfluid.taylor_hood.constraint import Constraint
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Of Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the free motions.
+    """Parts of the matrix Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the
+    free motions.
 
     ``points`` (vertices, d) of the mesh; weights ``inertia`` of (u, v), ``viscosity`` of (∇u + ∇uᵀ, ∇v) and
     ``grad_div`` (M,) of (∇·u, ∇·v) in K; ``reduced()``: the matrix itself.

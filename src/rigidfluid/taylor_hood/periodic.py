@@ -16,14 +16,14 @@ _APART = 1e-9
 
 
 def originals(faces: Sequence[Face], node_points: FloatArray) -> IntArray:
-    """For each node the one that it is an image of, (nodes,), itself where it is none.
+    """Node that each node is an image of, (nodes,); itself if it is none.
 
     Parameters
     ----------
     faces : sequence of Face
         All faces; of a periodic pair the first has the other as its ``image``.
     node_points : (nodes, d) array
-        Where the nodes are [length].
+        Coordinates of the nodes [length].
 
     Raises
     ------

@@ -13,13 +13,13 @@ from rigidfluid.taylor_hood.numbering import Numbering
 _AT_NODES = ("velocity", "velocity_previous")
 _AT_VERTICES = ("pressure", "pressure_previous")
 _GEOMETRY = "points_previous"
-"""Of the state's arrays; the others are of bodies, and the same on all ranks."""
+"""Names of the state's arrays on the mesh; the others are of bodies, and the same on all ranks."""
 
 
 def joined(states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
     """The state on ``mesh``, the whole, from those on all its ``parts``."""
-    whole, found = Numbering.of(mesh), dict(states[0])
-    pieces = [_Piece.of(part, whole) for part in parts]
+    whole, found = Numbering.from_mesh(mesh), dict(states[0])
+    pieces = [_Piece.from_part(part, whole) for part in parts]
     nodes, vertices = [piece.nodes for piece in pieces], [piece.vertices for piece in pieces]
     for name in _AT_NODES:
         found[name] = _put(whole.nodes, nodes, [state[name] for state in states])
@@ -32,11 +32,11 @@ def joined(states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> F
 
 def cut(fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
     """The states on all ``parts`` of ``mesh``, the whole, from the one there."""
-    whole = Numbering.of(mesh)
+    whole = Numbering.from_mesh(mesh)
     points = whole.node_points(fluid[_GEOMETRY])
     found: list[FluidState] = []
     for part in parts:
-        piece = _Piece.of(part, whole)
+        piece = _Piece.from_part(part, whole)
         at_nodes = {name: fluid[name][piece.nodes] for name in _AT_NODES}
         at_vertices = {name: fluid[name][piece.vertices] for name in _AT_VERTICES}
         geometry = {_GEOMETRY: piece.own.geometry_of(points[piece.nodes])}
@@ -53,8 +53,8 @@ class _Piece:
     vertices: IntArray
 
     @classmethod
-    def of(cls, part: Mesh, whole: Numbering) -> _Piece:
-        own = Numbering.of(part)
+    def from_part(cls, part: Mesh, whole: Numbering) -> _Piece:
+        own = Numbering.from_mesh(part)
         vertices = np.arange(own.vertices) if part.part is None else part.part.vertices
         return cls(own, np.concatenate([vertices, whole.edge_nodes(vertices[own.edges])]), vertices)
 

@@ -8,21 +8,21 @@ from rigidfluid.core.model.types import SolverCost
 
 
 class Cost(NamedTuple):
-    """What a preconditioner takes: memory in ``bytes`` and CPU ``seconds`` of one core."""
+    """Predicted cost of a preconditioner: memory in ``bytes`` and CPU ``seconds`` of one core."""
 
     bytes: float
     seconds: float
 
 
 _UNKNOWNS = {2: (4.5, -1.5), 3: (4.19, -2.9)}
-"""Of each cell and each facet of the boundary."""
+"""Unknowns for each cell and each facet of the boundary."""
 
 _BYTES = {2: (950.0, 1.062), 3: (563.0, 1.269)}
 _SECONDS = {2: (2.35e-6, 1.1), 3: (9.75e-9, 1.84)}
 """Factor and exponent of the number of unknowns."""
 
 _BLOCKS = {2: Cost(1.0e3, 2.2e-6), 3: Cost(1.8e3, 6.0e-6)}
-"""For each unknown."""
+"""Cost of a block triangle for each unknown."""
 
 _PROCESS = {2: 3.4e8, 3: 6.4e8}
 _BESIDE = {"lu": {2: 1.8e3, 3: 3.7e3}, "schur": {2: 1.1e3, 3: 1.0e3}}
@@ -62,9 +62,9 @@ def predicted_factors(unknowns: float, dimension: int) -> Cost:
     Parameters
     ----------
     unknowns : float
-        Of a step.
+        Unknowns of a step.
     dimension : int
-        Of space.
+        2 or 3.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def predicted_blocks(unknowns: float, dimension: int) -> Cost:
 
 
 def predicted_run(method: Literal["lu", "schur"], unknowns: float, dimension: int, inertia: bool) -> SolverCost:
-    """What the steps of a run take in one process, by LU factors of the whole matrix or by blocks.
+    """Predicted cost of the steps of a run in one process, by LU factors of the whole matrix or by blocks.
 
     With ``inertia`` of the fluid the matrix of the masses has factors too while bodies are near contacts. A falling
     sphere took 5.5 GB by LU and 1.3 GB by blocks with 248,705 unknowns, far from contacts.

@@ -15,10 +15,10 @@ from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.pardiso import Orderings
 
 _MOST = 200
-"""Iterations. On straight cells they do not depend on the mesh: 6 a digit in 3D, 3 in 2D."""
+"""Greatest number of iterations, which do not depend on the mesh on straight cells: 6 a digit in 3D, 3 in 2D."""
 
 _REFINED = 2
-"""How often what factors in single precision give is refined, where the iteration starts and ends."""
+"""Number of refinements of a solution by factors in single precision, where the iteration starts and ends."""
 
 
 class Masses(NamedTuple):
@@ -39,11 +39,11 @@ class SparseProjection:
     Parameters
     ----------
     masses : Masses
-        On one geometry.
+        Masses on one geometry.
     constraint : Constraint
         P, placed there; all bodies are held.
     orderings : Orderings
-        Of matrices on the same topology.
+        Orders of elimination of matrices on the same topology.
     """
 
     def __init__(self, masses: Masses, constraint: Constraint, orderings: Orderings) -> None:
@@ -69,11 +69,11 @@ class SparseProjection:
     ) -> FloatArray:
         """The velocity (nodes, d) without divergence nearest to ``velocity``, and equal to ``held`` where it is held.
 
-        To a residual of ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
+        Its residual is ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
         held = surfaces.held_part(velocity if held is None else held)
-        x = surfaces.frames.into(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
+        x = surfaces.frames.local_components(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
         x = self._without_divergence(held, x)
         enough = tolerance * float(np.linalg.norm(self._load(self._whole(held, x))))
         iterations = 0
@@ -93,7 +93,8 @@ class SparseProjection:
             x, iterations = self._without_divergence(held, x + correction), iterations + spent
 
     def _correction(self, residual: FloatArray, enough: float, most: int) -> tuple[FloatArray, int]:
-        """What x lacks where a ``residual`` is left, until its norm is ``enough``, and the iterations, at ``most``."""
+        """Correction of x for a ``residual``, iterated until its norm is ``enough``, and the iterations, at
+        ``most``."""
         found, still = np.zeros_like(residual), np.zeros((self._mass.shape[0], self._axes))
         step = direction = residual / self._diagonal
         product = residual @ step

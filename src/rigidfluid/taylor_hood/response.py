@@ -1,4 +1,4 @@
-"""How bodies in the fluid answer to impulses: with mass and incompressibility alone, and by a step's own matrix."""
+"""Impulse response of bodies in the fluid: by mass and incompressibility alone, and by a step's own matrix."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 
 _TOLERANCE = 1e-4
-"""Of the step's matrix: the answers are up to thirty times as wrong, and a contact's energy is as wrong as they are."""
+"""Relative residual of the response by a step's matrix [1]: the response is up to thirty times as wrong, and a
+contact's energy is as wrong as that."""
 
 _INVISCID_TOLERANCE = 1e-3
-"""Without viscosity they are five times better than that."""
+"""Relative residual of the inviscid response [1], which is five times less wrong than that."""
 
 
 def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, impulses: FloatArray) -> Response:
@@ -23,15 +24,15 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
     it. Without inertia of the fluid it is the bodies' own.
     """
     d0, loads = step.derivative[0], np.moveaxis(impulses, 0, -1)
-    by_step = d0 * discretisation.twists_by(matrix, loads, _TOLERANCE)
+    viscous = d0 * discretisation.twist_response(matrix, loads, _TOLERANCE)
     if matrix.at_once is None:
-        by_mass = _of_bodies_alone(matrix, d0 * loads)
+        inviscid = _body_response(matrix, d0 * loads)
     else:
-        by_mass = discretisation.twists_by(matrix.at_once, loads, _INVISCID_TOLERANCE)
-    return Response(np.moveaxis(by_mass, -1, 0), np.moveaxis(by_step, -1, 0))
+        inviscid = discretisation.twist_response(matrix.at_once, loads, _INVISCID_TOLERANCE)
+    return Response(np.moveaxis(inviscid, -1, 0), np.moveaxis(viscous, -1, 0))
 
 
-def _of_bodies_alone(matrix: CoupledMatrix, loads: FloatArray) -> FloatArray:
+def _body_response(matrix: CoupledMatrix, loads: FloatArray) -> FloatArray:
     free, twists = ~matrix.controlled, np.zeros_like(loads)
     twists[free] = np.linalg.solve(matrix.mass_matrix[free], loads[free])
     return twists

@@ -72,7 +72,7 @@ def _located(mesh: Mesh, numbering: Numbering, points: FloatArray) -> tuple[_Ser
 
 
 def _candidates(mesh: Mesh, targets: FloatArray) -> list[IntArray]:
-    """For each process the targets that it may hold: those in its box, and those in nobody's that are nearest to it."""
+    """Targets that each process may hold: those in its box, and those in nobody's that are nearest to it."""
     if mesh.part is None:
         return [np.arange(len(targets))]
     boxes = mesh.ranks.allgather((mesh.points.min(axis=0), mesh.points.max(axis=0)))

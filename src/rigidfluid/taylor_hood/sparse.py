@@ -72,7 +72,7 @@ class _Assembled:
     """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``stiffness``, P of the
     ``constraint``; ``grad_div`` (M,) in K."""
 
-    of: CoupledMatrix
+    coupled: CoupledMatrix
     stiffness: sparse.csr_array
     constraint: Constraint
     masses: FloatArray
@@ -103,8 +103,8 @@ class SparseDiscretisation:
     assembly : Assembly
         The integrals.
     solver, inviscid_solver : LaggedSolver
-        Of the matrices of steps, and of those without viscosity, as projections have. Kept from topology to topology;
-        they must have been told to forget the last one.
+        Solvers for matrices of steps, and for those without viscosity, as projections have. Kept from topology to
+        topology; they must have been told to forget the last one.
     mesh : Mesh
         The topology.
     controlled : (N,) bool
@@ -177,20 +177,21 @@ class SparseDiscretisation:
         velocity = velocity.reshape(s.given.shape) + s.matrix.frame
         return Solution(velocity, pressure, twist, reaction.reshape(s.given.shape), jump_load)
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.controlled
         found = np.zeros_like(wrenches)
-        answers = self._answers(assembled, wrenches, tolerance)[assembled.twists]
-        found[free] = answers.reshape(-1, *wrenches.shape[1:])
+        responses = self._impulse_response(assembled, wrenches, tolerance)[assembled.twists]
+        found[free] = responses.reshape(-1, *wrenches.shape[1:])
         return found
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
-        answer = self._answers(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        response = self._impulse_response(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
         size = self.numbering.nodes * self.numbering.dimension
-        return np.asarray((self._constraint.operator @ answer)[:size].reshape(self.numbering.nodes, -1))
+        return np.asarray((self._constraint.operator @ response)[:size].reshape(self.numbering.nodes, -1))
 
     def memory(self) -> dict[str, FloatArray]:
-        """What the next step depends on beside the state: what factors were made from, and what solvers remember."""
+        """Arrays that the next step depends on beside the state: the matrices of the factors, and the solvers'
+        memories."""
         found: dict[str, FloatArray] = {}
         for viscous, solver in self._solvers.items():
             if solver.is_made:
@@ -221,17 +222,17 @@ class SparseDiscretisation:
             frame=memory["frame"],
         )
 
-    def _answers(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def _impulse_response(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
-        solver = self._solvers[assembled.of.viscosity != 0.0]
+        solver = self._solvers[assembled.coupled.viscosity != 0.0]
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
-        right_sides[assembled.twists] = wrenches[~assembled.of.controlled].reshape(-1, wrenches.shape[2])
+        right_sides[assembled.twists] = wrenches[~assembled.coupled.controlled].reshape(-1, wrenches.shape[2])
         return solver.solve_columns(assembled.apply, partial(self._parts, assembled), right_sides, tolerance)
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
         """The latest of a step and the latest of its masses are kept, since both are asked again how bodies answer."""
         viscous = matrix.viscosity != 0.0
-        if viscous not in self._latest or self._latest[viscous].of is not matrix:
+        if viscous not in self._latest or self._latest[viscous].coupled is not matrix:
             self._latest.pop(viscous, None)  # frees the one before
             self._latest[viscous] = self._assemble(matrix)
         return self._latest[viscous]
@@ -243,8 +244,8 @@ class SparseDiscretisation:
         return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled], grad_div)
 
     def _parts(self, assembled: _Assembled) -> Parts:
-        """What a preconditioner is made from, which is noted."""
-        m, stiffness, masses = assembled.of, assembled.stiffness, assembled.masses
+        """Ingredients of a preconditioner of this matrix, which is kept as its origin."""
+        m, stiffness, masses = assembled.coupled, assembled.stiffness, assembled.masses
         self._made_from[m.viscosity != 0.0] = m
 
         def reduced() -> sparse.csr_array:
@@ -254,7 +255,7 @@ class SparseDiscretisation:
         return Parts(self._constraint, stiffness, masses, m.points, *weights, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
-        """Whether its factors are of a step of another length or order, which serve badly."""
+        """Whether the factors at hand are of a step of another length or order, which serve badly."""
         origin = self._made_from.get(matrix.viscosity != 0.0)
         return origin is not None and abs(matrix.inertia - origin.inertia) > _OUTDATED * origin.inertia
 
@@ -268,7 +269,7 @@ class SparseDiscretisation:
         if constraint.pressure_pin is not None:
             pressure = pressure - pressure[constraint.pressure_pin]
         guess = np.empty(constraint.unknowns)
-        velocity = self.surfaces.frames.into(system.velocity)
+        velocity = self.surfaces.frames.local_components(system.velocity)
         guess[constraint.free_columns] = np.concatenate([velocity.ravel(), pressure])[constraint.free_unknowns]
         guess[twists] = system.twist[~system.matrix.controlled].ravel()
         return guess

@@ -66,7 +66,7 @@ class SparseBackend(TaylorHoodBackend):
 
     @final
     def discretise_steady(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> SparseDiscretisation:
-        """By factors where there is convection: without inertia blocks do not master it."""
+        """Discretise by LU factors where there is convection: without inertia blocks do not master it."""
         method = "lu" if self.problem.inertia else self._method(numbering.unknowns)
         return self._discretised(numbering, mesh, controlled, method)
 
@@ -98,7 +98,7 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory and mesh is not None:
-            discretisation = self._on(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
+            discretisation = self._discretisation(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

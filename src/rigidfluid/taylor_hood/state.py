@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
-def at_rest(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
+def resting_state(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
     """Fluid at rest, but for the nodes that move with a body."""
     node_points = surfaces.numbering.node_points(mesh.geometry)
     velocity = np.zeros_like(node_points)

@@ -17,7 +17,7 @@ from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.periodic import originals
 
 MOST_SCALED = 0.1
-"""Of prescribed inflow and outflow, what a coarse mesh may make of those that are equal [1]."""
+"""Greatest relative imbalance of inflow and outflow that a coarse mesh may make of equal ones [1]."""
 
 
 class Surfaces:
@@ -32,7 +32,7 @@ class Surfaces:
     conditions : sequence of BoundaryCondition
         One per piece of the domain's boundary.
     bodies : int
-        How many.
+        Number of bodies.
     carrier : sequence of int, optional
         The motion that carries each body, where not each moves by itself.
     """
@@ -51,9 +51,9 @@ class Surfaces:
         on = [mesh.facets[mesh.markers == surface] for surface in range(bodies + len(conditions))]
         nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
         self.body_nodes: list[IntArray] = nodes[:bodies]
-        self.motion_nodes = self.body_nodes if carrier is None else _of_motions(self.body_nodes, carrier)
-        """What moves with each motion; of one body, its nodes."""
-        self.faces = [Face.of(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
+        self.motion_nodes = self.body_nodes if carrier is None else _nodes_of_motions(self.body_nodes, carrier)
+        """Nodes that move with each motion; of a motion of one body, its nodes."""
+        self.faces = [Face.from_facets(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
         self.velocity_free: BoolArray = np.ones((numbering.nodes, d), dtype=bool)
         for face in self.faces:
             self.velocity_free[face.nodes] &= _free_components(face, d)
@@ -61,7 +61,8 @@ class Surfaces:
             self.velocity_free[body] = False
         held = np.logical_not(self.velocity_free.any(axis=1))
         self.frames = local_frames(self.faces, numbering.node_points(mesh.geometry), numbering.vertices, held)
-        """Of nodes on oblique and curved faces; ``velocity_free`` is of components along a node's own axes there."""
+        """Axes of nodes on oblique and curved faces; ``velocity_free`` is of components along a node's own axes
+        there."""
         self.velocity_free[self.frames.nodes] = self.frames.free
         self.originals = originals(self.faces, numbering.node_points(mesh.geometry))
         """The nodes that all nodes are images of, on periodic faces; else themselves."""
@@ -121,7 +122,7 @@ class Surfaces:
         )
 
     def pressure_jump(self, time: float, points: FloatArray) -> FloatArray:
-        """What the pressure at vertices (vertices, d) of periodic faces is higher than at their images, (vertices,)."""
+        """Excess of the pressure at vertices (vertices, d) of periodic faces over that at their images, (vertices,)."""
         jump = np.zeros(len(points))
         for face in self.faces:
             if face.condition.type == "periodic" and face.condition.value is not None:
@@ -188,7 +189,7 @@ def joined(each: Sequence[IntArray]) -> tuple[IntArray, IntArray]:
     return np.concatenate([*each, np.empty(0, np.int64)]), number
 
 
-def _of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[IntArray]:
+def _nodes_of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[IntArray]:
     """The nodes on all bodies that each motion carries."""
     return [
         np.concatenate([nodes for nodes, by in zip(body_nodes, carrier, strict=True) if by == motion])
@@ -218,7 +219,7 @@ def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
 
 
 def _free_components(face: Face, dimension: int) -> BoolArray:
-    """Those free on a whole face (d,); of nodes with axes of their own these say which."""
+    """Components of the velocity that are free on a whole face (d,); nodes with axes of their own have others."""
     kind, axis = face.condition.type, face.axis
     if kind not in ("slip", "pressure"):
         return np.full(dimension, kind == "periodic")

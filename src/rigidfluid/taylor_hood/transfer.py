@@ -10,10 +10,10 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twis
 from rigidfluid.taylor_hood.discretisation import Discretisation, Projection, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.sampling import Samples
-from rigidfluid.taylor_hood.state import at_rest
+from rigidfluid.taylor_hood.state import resting_state
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
-"""Of steps' tolerance, and at least: the residual of the projection that a run starts from."""
+"""Residual of the projection that a run starts from, over the steps' tolerance, and its least value."""
 
 _LOOSE, _OF_STATE = 1e-3, 2.0
 """The residual of the potential flow from which the energy's scale is known, and, times steps' tolerance, what it may
@@ -33,13 +33,13 @@ def transfer(
     new: Mesh,
     energies: tuple[float, float],
 ) -> FluidState:
-    """The state on ``new``.
+    """Carry the state over to the mesh ``new``.
 
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
     projected, on the mesh where it belongs, and given the kinetic energy that it had, of ``energies`` (now, one step
-    before). What is found for one level is the guess for the other. ``forget`` drops what solutions before have left.
+    before). The solution of one level is the guess for the other. ``forget`` drops what solutions before have left.
     """
     forget()
     numbering, inertia = target.numbering, target.problem.inert_density
@@ -61,7 +61,7 @@ def transfer(
         scale = 1.0
         if inertia > 0.0:
             held = target.surfaces.held_part(projected)
-            scale, beside = _beside(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
+            scale, beside = _rotational_part(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
         moved["velocity" + suffix] = projected + (scale - 1.0) * beside
     forget()
     return moved
@@ -72,7 +72,7 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
 
     An impact on the bodies sends a wave of pressure through the fluid, which is projection: the flow is potential.
     """
-    state = dict(at_rest(target.surfaces, mesh, pose, twist))
+    state = dict(resting_state(target.surfaces, mesh, pose, twist))
     if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
         projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
         state["velocity"] = state["velocity_previous"] = projected
@@ -82,11 +82,11 @@ def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, tw
 def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
     """The same where faces were set in motion as well: of all flows with their values that of least kinetic energy
     (Kelvin)."""
-    state, surfaces = dict(at_rest(target.surfaces, mesh, pose, twist)), target.surfaces
+    state, surfaces = dict(resting_state(target.surfaces, mesh, pose, twist)), target.surfaces
     node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
     held = surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
     projection = target.projection(mesh.geometry, pose.position)
-    least = projection.nearest(np.zeros_like(held), _of_start(tolerance), held, held)
+    least = projection.nearest(np.zeros_like(held), _start_tolerance(tolerance), held, held)
     state["velocity"] = state["velocity_previous"] = least
     return state, kinetic_energy(target, mesh.geometry, least)
 
@@ -99,14 +99,14 @@ def project(
 
     ``target`` takes all bodies as controlled.
     """
-    return target.projection(points, position).nearest(velocity, _of_start(tolerance), velocity)
+    return target.projection(points, position).nearest(velocity, _start_tolerance(tolerance), velocity)
 
 
-def _of_start(tolerance: float) -> float:
+def _start_tolerance(tolerance: float) -> float:
     return max(_TIGHTER * tolerance, _TIGHTEST)
 
 
-def _beside(
+def _rotational_part(
     projection: Projection,
     velocity: FloatArray,
     held: FloatArray,
@@ -114,9 +114,8 @@ def _beside(
     tolerance: float,
     guess: FloatArray,
 ) -> tuple[float, FloatArray]:
-    """What a ``velocity`` is beside the potential flow with the same ``held`` values, (nodes, d), from a ``guess``
-    onwards; and its scale, to a residual that ``tolerance`` asks for.
-    """
+    """Scale of `_scale`, and the difference (nodes, d) of a ``velocity`` from the potential flow with the same ``held``
+    values, from a ``guess`` onwards; the potential flow has the residual that ``tolerance`` asks for."""
     potential = projection.nearest(held, _LOOSE, velocity - guess)
     scale = _scale(projection, velocity, velocity - potential, square)
     if _LOOSE * abs(scale - 1.0) > _OF_STATE * tolerance:

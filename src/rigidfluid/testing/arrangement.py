@@ -27,7 +27,7 @@ DIVISIONS = 12
 """Points along an edge of a facet where its depth below the surface is measured; the middle is one of them."""
 
 ROOM, SAMPLES = 0.04, 500
-"""Least gap of crowded bodies or less [length], and at how many points of a surface it is measured."""
+"""Upper bound on the least gap of crowded bodies [length], and number of points per surface that measure it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Arrangement:
         return self.make_mesh()
 
     def moved(self, turn: FloatArray, shift: FloatArray, scale: float = 1.0) -> Arrangement:
-        """x → scale · R x + shift of all there is, R from the rotation vector ``turn`` (k,) [rad]."""
+        """Map bodies, walls and mesh by x → scale · R x + shift, R from the rotation vector ``turn`` (k,) [rad]."""
         rotation = turn_matrix(turn)
 
         def place(points: FloatArray) -> FloatArray:
@@ -131,9 +131,9 @@ def in_a_box(
     Parameters
     ----------
     semi_axes : (n, d) array
-        Of the bodies [length].
+        Semi-axes of the bodies [length].
     pose : Pose
-        Where they are.
+        Their positions and orientations.
     corners : (d,) array, (d,) array
         Lower and upper corner of the box [length].
     faces : sequence of int
@@ -144,7 +144,7 @@ def in_a_box(
     Returns
     -------
     Arrangement
-        With a mesh of the fluid in the box.
+        Bodies, walls, and a mesh of the fluid in the box.
     """
     bodies, (lower, upper) = tuple(map(_body, semi_axes.tolist())), corners
     box = Box(BoxOptions(lower=tuple(lower.tolist()), upper=tuple(upper.tolist())), len(lower))
@@ -217,7 +217,7 @@ def _balls(radii: list[float], centres: FloatArray, faces: list[int], dimension:
 
 
 def _shrunk(semi_axes: FloatArray, pose: Pose, corner: FloatArray) -> float:
-    """How much nearer to the origin bodies may move, that are apart, until two of them or a wall are `ROOM` apart."""
+    """Factor on positions and box, lowered from 1 until disjoint bodies and walls have a gap of `ROOM` at most."""
     bodies = [_body(row) for row in semi_axes.tolist()]
     shrink = 1.0
     while _least_gap(bodies, replace(pose, position=shrink * pose.position), shrink * corner) > ROOM:
@@ -226,7 +226,7 @@ def _shrunk(semi_axes: FloatArray, pose: Pose, corner: FloatArray) -> float:
 
 
 def _least_gap(bodies: Sequence[Body], pose: Pose, corner: FloatArray) -> float:
-    """Of samples of each surface to the bodies before and to the faces of the box."""
+    """Least distance of sampled surface points from bodies of lower number and from the faces of the box [length]."""
     least = np.inf
     for body, shape in enumerate(bodies):
         surface = to_world(pose, body, shape.sample_surface(SAMPLES))

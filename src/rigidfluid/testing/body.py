@@ -1,4 +1,4 @@
-"""What every body type must satisfy."""
+"""Contract tests of a body type."""
 
 from __future__ import annotations
 

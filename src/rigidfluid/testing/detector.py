@@ -1,4 +1,4 @@
-"""What every detector must satisfy."""
+"""Contract tests of a detector."""
 
 from __future__ import annotations
 
@@ -97,8 +97,8 @@ class DetectorContract:
         """Aspect ratios up to 5 at random tilts, each other and walls, against a search over both surfaces."""
         self._check_gaps(ellipsoids, _searched_gaps(ellipsoids, 1.01 * self.reach), self.reach)
 
-    def test_what_it_is_exact_for_it_takes_and_meets_exactly(self, arrangement: Arrangement) -> None:
-        """What `exact_for` claims, on which ``auto`` relies: gaps to 1e-10, whatever ``gap_tolerance`` is."""
+    def test_exactness_holds_for_the_shapes_it_is_claimed_for(self, arrangement: Arrangement) -> None:
+        """Claims of `exact_for`, on which ``auto`` relies: gaps to 1e-10, whatever ``gap_tolerance`` is."""
         pieces = [Piece(wall.name, wall.shape, math.inf) for wall in arrangement.walls]
         made = self.make_detector(arrangement)
         if made.exact_for(arrangement.bodies, pieces) is None:
@@ -107,7 +107,7 @@ class DetectorContract:
             pytest.skip("this detector is exact to the facets of its mesh")
         self._check_gaps(arrangement, _searched_gaps(arrangement, 1.01 * self.reach), self.reach, 1e-10)
 
-    def test_what_it_refuses_it_is_not_exact_for(self) -> None:
+    def test_exactness_is_not_claimed_for_refused_shapes(self) -> None:
         """With ``balls_only``: no claim of exactness for ellipsoids."""
         if not self.balls_only:
             pytest.skip("this detector takes other shapes than balls")
@@ -121,7 +121,7 @@ class DetectorContract:
         self._check_points(arrangement, contacts)
 
     def test_contacts_are_sorted_and_within_reach(self, arrangement: Arrangement) -> None:
-        """By (body_a, body_b), a body before a body or a wall; no gap beyond reach."""
+        """Rows are sorted by (body_a, body_b), body_a < body_b, walls counted after bodies; no gap exceeds reach."""
         contacts = self.detect(arrangement, self.reach)
         pairs = _pairs(contacts)
         assert len(pairs) > 1

@@ -1,4 +1,4 @@
-"""What every domain must satisfy."""
+"""Contract tests of a domain."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 _PROBES = 400
 _STEP = 1e-6
 _NUDGE = 1e-3
-"""Over the size of the domain: of differences, and of a step from the boundary that is surely inside or outside."""
+"""Step of differences, and distance from the boundary that is surely inside or outside, over the domain's size."""
 
 
 _MADE: dict[tuple[Hashable, float], tuple[Mesh, Mesh]] = {}
@@ -35,11 +35,11 @@ class DomainContract:
     tolerance: ClassVar[float] = 1e-10
     """Accuracy of points and distances, relative to the size of the domain."""
     smooth_share: ClassVar[float] = 0.95
-    """Of all points, how many at least are on no kink of the distance to a piece."""
+    """Least share of the points at which the distance to a piece is differentiable [1]."""
     coarse: ClassVar[float] = 0.2
     """Edges of the coarse mesh over the size of the domain; those of the fine one are half as long."""
     volume_tolerance: ClassVar[float] = 0.02
-    """Of volume and areas on the fine mesh: a curved boundary lacks h²/8R."""
+    """Relative error of volume and areas on the refined mesh: facets are up to h²/8R off a curved boundary."""
 
     @pytest.fixture
     def domain(self) -> Domain:
@@ -82,7 +82,7 @@ class DomainContract:
             assert np.mean(np.abs(slope - 1.0) < 1e-6) >= self.smooth_share
 
     def test_normal_is_the_slope_of_the_distance(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
-        """Of length 1 and along ∇ signed_distance, on the piece itself."""
+        """On the piece itself the normal is ∇ signed_distance, of length 1."""
         for number, piece in enumerate(domain.pieces):
             points = _middles(meshes[0], number)
             slope = _gradient(piece, piece.shape.closest_point(points), _size(domain))
@@ -97,7 +97,7 @@ class DomainContract:
             assert not domain.contains(foot - step).any()
 
     def test_a_part_between_two_planes_is_the_same_all_along(self, domain: Domain) -> None:
-        """Where there is one: names as before, flat ends at the planes, and the same points inside between them."""
+        """A part, if the domain has one, has its names, flat ends at the planes, and its points between them."""
         lower, upper = domain.extent
         for axis in range(len(lower)):
             low, high = lower[axis] + np.array([0.3, 0.6]) * (upper - lower)[axis]
@@ -112,7 +112,7 @@ class DomainContract:
             assert part.volume / domain.volume == pytest.approx(0.3)
 
     def test_the_mesh_is_in_the_domain(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
-        """What is far from the facets is inside, and the box around all is `extent`."""
+        """Vertices off the boundary are inside, and the bounding box of the mesh is `extent`."""
         points, boundary = meshes[1].points, np.unique(meshes[1].facets)
         assert domain.contains(np.delete(points, boundary, axis=0)).all()
         lower, upper = domain.extent
@@ -142,7 +142,7 @@ class DomainContract:
         assert np.all(np.abs(errors[1]) <= np.maximum(0.5 * np.abs(errors[0]), self.tolerance)), errors
 
     def test_closed_forms_are_true(self, domain: Domain, meshes: tuple[Mesh, Mesh]) -> None:
-        """Of a plane, (x - x₀)·n is the distance; of a round surface, x - radius · n is one point."""
+        """A plane's distance is (x - x₀)·n; a round surface has one centre, x - radius · n at each of its points x."""
         points = _probes(domain)
         for number, piece in enumerate(domain.pieces):
             plane, radius = piece.shape.plane, piece.shape.radius
@@ -185,7 +185,7 @@ def _probes(domain: Domain) -> FloatArray:
 
 
 def _identity(domain: Domain) -> Hashable:
-    """What tells domains apart: some are made from more than their options."""
+    """Key by which domains differ: some are made from more than their options."""
     options, extent = domain.options.model_dump_json(), tuple(np.ravel(domain.extent).tolist())
     facets = () if domain.facets is None else (domain.facets.points.tobytes(), domain.facets.vertices.tobytes())
     return type(domain), domain.dimension, options, domain.names, domain.volume, extent, facets
@@ -216,7 +216,7 @@ def _halved(mesh: Mesh, domain: Domain) -> Mesh:
 
 
 def _middles(mesh: Mesh, piece: int) -> FloatArray:
-    """Of the facets of one piece, (F, d)."""
+    """Midpoints of the facets of one piece, (F, d)."""
     return np.asarray(mesh.points[mesh.facets[mesh.markers == piece]].mean(axis=1))
 
 

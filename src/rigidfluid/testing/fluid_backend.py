@@ -1,4 +1,4 @@
-"""What every fluid backend must satisfy."""
+"""Contract tests of a fluid backend."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every force law must satisfy."""
+"""Contract tests of a force law."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Column = Callable[[Contacts], FloatArray]
 class ForceLawContract:
     """A short-range force that an energy gives, with or without damping, or damping alone.
 
-    Override the fixture ``law``. Where a law needs other contacts than two balls and a ball at a wall, override
-    ``make_contacts``; both balls are bodies 0 and 1, the wall is surface 2. What a law does in overlap, and whether it
-    has an energy and damping at all, it declares itself: ``overlap``, ``conservative``, ``dissipative``.
+    Override the fixture ``law``; and ``make_contacts`` for a law that needs other contacts than two balls and a ball at
+    a wall: both balls are bodies 0 and 1, the wall is surface 2. The law itself declares its behaviour in overlap, and
+    whether it has an energy and damping at all: ``overlap``, ``conservative``, ``dissipative``.
     """
 
     gap_fractions: ClassVar[tuple[float, ...]] = (0.03, 0.2, 0.5, 0.8, 0.97)

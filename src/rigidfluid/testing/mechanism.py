@@ -1,4 +1,4 @@
-"""What every mechanism must satisfy."""
+"""Contract tests of a mechanism."""
 
 from __future__ import annotations
 
@@ -30,14 +30,13 @@ class MechanismContract:
     """
 
     times: ClassVar[tuple[float, ...]] = (0.0, 0.13, 0.5, 1.7)
-    """When a mechanism that is driven is looked at closely [time]; jumps and overlaps are sought from the first to the
-    last of them."""
+    """Times of a driven mechanism's tests [time]; jumps and overlaps are sought from the first to the last."""
     looks: ClassVar[int] = 200
-    """How often in all that time."""
+    """Number of looks for jumps and overlaps."""
     tolerance: ClassVar[float] = 1e-10
-    """Of what is exact, relatively."""
+    """Relative error of exact identities."""
     slope_tolerance: ClassVar[float] = 1e-6
-    """Of derivatives, against differences of places [1]."""
+    """Error of rates against central differences of placements, over the sum of size and largest rate [1]."""
 
     @pytest.fixture
     def mechanism(self) -> Mechanism:
@@ -179,12 +178,12 @@ class MechanismContract:
         np.testing.assert_allclose(found, expected, rtol=0, atol=enough)
 
     def _looks(self, mechanism: Mechanism) -> FloatArray:
-        """From the first time to the last; one of what is not driven."""
+        """Times from the first to the last [time]; the first alone without ``driven``."""
         first, last = min(self.times), max(self.times)
         return np.linspace(first, last, self.looks) if mechanism.driven else np.array([first])
 
     def _length(self, mechanism: Mechanism) -> float:
-        """How large it is."""
+        """Size of the mechanism [length]."""
         reach = [component.shape.bounding_radius for component in mechanism.components]
         return float(np.ptp(mechanism.placement(self.times[0]).position, axis=0).max() + max(reach))
 

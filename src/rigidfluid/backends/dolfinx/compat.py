@@ -1,4 +1,4 @@
-"""What differs between the versions of DOLFINx that are supported: 0.9 and newer."""
+"""Calls that differ between the supported versions of DOLFINx: 0.9 and newer."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def create_block_matrix(blocks: Any) -> Any:
 
 
 def assemble_block_matrix(matrix: Any, blocks: Any) -> None:
-    """Overwrite its entries."""
+    """Overwrite the entries of a ``matrix`` by those of its ``blocks``."""
     matrix.zeroEntries()
     if hasattr(assembling, "assemble_matrix_block"):  # until 0.9
         assembling.assemble_matrix_block(matrix, blocks)
@@ -33,6 +33,6 @@ def cell_nodes(mesh: Any) -> Any:
 
 
 def staying(cells: int, communicator: Any) -> Any:
-    """What a partitioner answers that leaves so many cells with the process that has them."""
+    """A partition that keeps this many ``cells`` on the rank that has them."""
     made = graph.adjacencylist(np.full((cells, 1), communicator.rank, dtype=np.int32))
     return getattr(made, "_cpp_object", made)  # since 0.10 in a class of Python's

@@ -1,6 +1,6 @@
 """The operator P of `rigidfluid.taylor_hood.constraint`, distributed.
 
-Of its columns each process has its own free velocities first, the root all twists next, and each its free pressures.
+Columns of each process are its own free velocities first, next all twists on the root, and then its free pressures.
 """
 
 from __future__ import annotations
@@ -18,20 +18,10 @@ from rigidfluid.taylor_hood.surfaces import Surfaces, joined
 
 
 class DistributedConstraint:
-    """Which unknowns are free on one topology, and P as a PETSc matrix.
+    """Free unknowns on one topology, and P as a PETSc matrix; motions that are ``controlled`` (N,) have no unknowns.
 
-    Parameters
-    ----------
-    space : Space
-        Who owns which node.
-    surfaces : Surfaces
-        Nodes on bodies and faces.
-    controlled : (N,) bool
-        Motions whose twist is given.
-    pressure_pin : int or None
-        A vertex of this process where the pressure is zero.
-
-    ``velocity_free`` says which of the process' own velocities are free.
+    ``pressure_pin``: a vertex of this process whose pressure is zero, None elsewhere. ``velocity_free`` says which of
+    the process' own velocities are free.
     """
 
     def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pressure_pin: int | None) -> None:
@@ -69,7 +59,7 @@ class DistributedConstraint:
 
     @property
     def is_coarse(self) -> BoolArray:
-        """Which of this process' free velocities and twists linear functions have: at vertices, and all twists."""
+        """Whether linear functions have this process' free velocities and twists: at vertices, and all twists."""
         at_vertices = np.repeat(self.space.owned_nodes < self.space.numbering.vertices, self.space.numbering.dimension)
         return np.concatenate([at_vertices[self.velocity_free], np.ones(self.twists, dtype=bool)])
 
@@ -103,7 +93,7 @@ class DistributedConstraint:
         return free, self.first_column + number
 
     def _lay_out(self) -> None:
-        """Ones of what is free, U and ω × r of u = U + ω × r: the rows of P, and where its values come from."""
+        """Lay out the rows of P, and the order of its values: ones of free unknowns, U and ω × r of u = U + ω × r."""
         d, at, first = self.space.numbering.dimension, self._carried, self._first_twist + self._width * self._carrier
         free, number = self._free_columns()
         row = np.concatenate([free, *(at * d + a for a in range(d)), *(at * d + a for a, *_ in CROSS[d])])

@@ -23,7 +23,7 @@ from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
 
 class Topology:
-    """What stays while the bodies under control change: the space, its forms and the matrix K."""
+    """Data of one topology, whichever bodies are controlled: the space, its forms and the matrix K."""
 
     def __init__(self, numbering: Numbering, mesh: Mesh) -> None:
         self.numbering = numbering
@@ -46,21 +46,11 @@ class Topology:
 
 
 class PetscDiscretisation:
-    """Pᵀ K P on MPI's processes, solved by a Krylov method.
+    """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``controlled`` (N,) have a prescribed
+    twist.
 
-    Parameters
-    ----------
-    problem : FluidProblem
-        Equations and boundary conditions.
-    topology : Topology
-        The space.
-    solver, inviscid_solver : Krylov
-        Of the matrices of steps, and of those without viscosity. Kept from topology to topology; they must have been
-        told to forget the last one.
-    mesh : Mesh
-        The mesh, for its surfaces.
-    controlled : (N,) bool
-        Motions whose twist is given.
+    ``solver`` is for matrices of steps, ``inviscid_solver`` for those without viscosity. Both are kept from topology to
+    topology, and must have been told to forget the last one.
     """
 
     def __init__(
@@ -118,19 +108,21 @@ class PetscDiscretisation:
         correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
         return self._solution(s, reduced, guess + correction, given, load)
 
-    def twists_by(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
-        answers = self._answers(self._reduced(matrix), matrix, wrenches, tolerance)
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        responses = self._impulse_response(self._reduced(matrix), matrix, wrenches, tolerance)
         found = np.zeros_like(wrenches)
-        on_root = answers[self._constraint.twist_slice]
+        on_root = responses[self._constraint.twist_slice]
         found[~matrix.controlled] = self.surfaces.ranks.bcast(on_root).reshape(-1, *wrenches.shape[1:])
         return found
 
-    def velocity_by(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         reduced, space = self._reduced(matrix), self._topology.space
-        answer = self._answers(reduced, matrix, wrench[:, :, None], tolerance)[:, 0]
-        return space.velocities(reduced.expand(answer)[: space.owned_nodes.size * space.numbering.dimension])
+        response = self._impulse_response(reduced, matrix, wrench[:, :, None], tolerance)[:, 0]
+        return space.velocities(reduced.expand(response)[: space.owned_nodes.size * space.numbering.dimension])
 
-    def _answers(self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+    def _impulse_response(
+        self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float
+    ) -> FloatArray:
         """This process' unknowns (columns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
         solver = self._inviscid_solver if matrix.viscosity == 0.0 else self._solver
         constraint = self._constraint
@@ -140,7 +132,7 @@ class PetscDiscretisation:
         return solver.solve_columns(reduced.apply, lambda: reduced, right_sides, tolerance)
 
     def _reduced(self, matrix: CoupledMatrix) -> Reduced:
-        """Of this matrix, until the next one is assembled in the place of K."""
+        """Reduced form of this matrix, valid until the next one is assembled in the place of K."""
         m, topology, constraint = matrix, self._topology, self._constraint
         topology.clean()
         topology.space.move(m.points)
@@ -153,7 +145,7 @@ class PetscDiscretisation:
         return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:
-        """Of the guess, at the vertex where it is pinned to zero; other solvers need no such vertex."""
+        """The guess's ``pressure`` at the vertex where it is pinned to zero; 0 for solvers that need no such vertex."""
         own = 0.0 if self._pinned is None else float(pressure[self._pinned])
         return float(self.surfaces.ranks.sum(own))
 

@@ -19,14 +19,8 @@ _TOLERANCE = 1e-12
 class DistributedExtension:
     """Solves A_ff u_f = -A_fh u_h, A the sum of the parts' matrices: by Cholesky factors in 2D, by multigrid in 3D.
 
-    Parameters
-    ----------
-    space : Space
-        Who owns which vertex.
-    matrix : (N, N) sparse array
-        What this process' cells give to A.
-    held : (N,) array of bool
-        Where values are given, the same for all that hold a vertex.
+    ``matrix`` (N, N) is this process' part of A. Values at vertices that are ``held`` (N,) are given; all processes
+    that hold a vertex agree on that.
     """
 
     def __init__(self, space: Space, matrix: csc_array, held: BoolArray) -> None:

@@ -16,7 +16,7 @@ from rigidfluid.core.model.types import FloatArray
 
 _STRAIGHT, _CURVED = 1, 2
 _DEGREE_IN_CURVED_CELLS = {2: 6, 3: 7}
-"""Of convection: 2 + 1 + 2 and d - 1 of the map's adjugate."""
+"""Degree of convection in curved cells: 2 + 1 + 2 and d - 1 of the map's adjugate."""
 
 _COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
 
@@ -84,7 +84,7 @@ class Forms:
     def mass_times(self, field: FloatArray) -> FloatArray:
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
         self._space.set(self._field, field)
-        return self._space.as_nodal(fem.assemble_vector(self._mass).array)
+        return self._space.nodal_field(fem.assemble_vector(self._mass).array)
 
     def strain_square(self, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""

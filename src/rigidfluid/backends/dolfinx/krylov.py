@@ -24,22 +24,15 @@ _PREFIX = "rigidfluid_"
 
 
 class Krylov(LaggedSolver[Reduced]):
-    """Right-preconditioned, so that the norm that stops the iteration is the true residual's.
+    """Krylov solver with its preconditioner on the right, so that the norm that stops it is the true residual's.
 
-    Parameters
-    ----------
-    ranks : Ranks
-        The processes that share the vectors.
-    dimension : int
-        Of space.
-    settings : mapping
-        PETSc options from the scene; they have the last word.
+    ``settings`` are PETSc options from the scene, which have the last word over ``defaults``.
     """
 
     defaults: ClassVar[Settings]
-    """PETSc options."""
+    """PETSc options of the solver."""
     keeps_pattern: ClassVar[bool]
-    """Whether what is found out about a matrix' pattern serves for the next one."""
+    """Whether the analysis of a matrix' pattern serves for the next one."""
 
     def __init__(self, ranks: Ranks, dimension: int, settings: Settings) -> None:
         super().__init__(ranks, dimension)
@@ -62,7 +55,7 @@ class Krylov(LaggedSolver[Reduced]):
             ) from error
 
     def _make(self, matrix: Reduced) -> None:
-        self._assembled = matrix.as_matrix(self._assembled)
+        self._assembled = matrix.to_petsc(self._assembled)
         if self._ksp is not None:
             self._ksp.setOperators(*self._ksp.getOperators())  # the same ones, with new entries
             self._ksp.setUp()
@@ -110,11 +103,11 @@ class Krylov(LaggedSolver[Reduced]):
 
     @abstractmethod
     def prepare(self, ksp: Any, matrix: Reduced, shell: Any) -> None:
-        """What must be there before the options are read."""
+        """Set up whatever PETSc needs before the options are read."""
 
     @abstractmethod
     def finish(self, ksp: Any, matrix: Reduced) -> None:
-        """What can be there only after."""
+        """Set up whatever PETSc can take only after the options are read."""
 
     @contextmanager
     def _options(self, defaults: Settings) -> Iterator[None]:
@@ -150,10 +143,10 @@ class LaggedLU(Krylov):
     }
 
     def prepare(self, ksp: Any, matrix: Reduced, shell: Any) -> None:
-        """Nothing: factors need the matrix alone."""
+        """Set up nothing: factors need the matrix alone."""
 
     def finish(self, ksp: Any, matrix: Reduced) -> None:
-        """Nothing."""
+        """Set up nothing."""
 
 
 @final
@@ -225,7 +218,7 @@ def _two_levels(velocity: Any, basis: Any) -> None:
 
 
 class _Operator:
-    """What PETSc calls for A x, on all processes together."""
+    """Shell matrix by which PETSc computes A x, on all processes together."""
 
     def __init__(self, ranks: Ranks) -> None:
         self._ranks = ranks
@@ -239,7 +232,7 @@ class _Operator:
 
 @contextmanager
 def _causes_told() -> Iterator[None]:
-    """Raise what was raised where PETSc called Python, such as Ctrl-C, in the place of PETSc's own error."""
+    """Raise the exception of Python code that PETSc called, such as Ctrl-C, in the place of PETSc's own error."""
     try:
         yield
     except PETSc.Error as error:

@@ -10,8 +10,8 @@ from petsc4py import PETSc
 def projected(matrix: Any, basis: Any, before: Any = None) -> Any:
     """basisᵀ matrix basis, in the place of one that was made ``before`` with the same patterns, if there is one.
 
-    By two products: PETSc's PtAP takes seconds where a row is long, as a body's is, which joins all nodes on it. What
-    is given is a copy, since a product holds its factors as long as it lives.
+    Two products serve: PETSc's PtAP takes seconds where a row is long, as a body's is, which joins all nodes on it. The
+    result is a copy, since a product holds its factors as long as it lives.
     """
     image = matrix.matMult(basis)
     product = basis.transposeMatMult(image)

@@ -20,7 +20,7 @@ from rigidfluid.core.model.types import FloatArray
 class Reduced:
     """``matrix`` K and ``operator`` P of one step, ``inertia`` (t, t) of the free bodies' twists.
 
-    ``schur()``: what the Schur complement of the pressures is made of; asked by all processes together.
+    ``schur()``: data of the Schur complement of the pressures; called by all processes together.
     """
 
     constraint: DistributedConstraint
@@ -30,7 +30,7 @@ class Reduced:
     schur: Callable[[], SchurData]
 
     def apply(self, x: FloatArray) -> FloatArray:
-        """(Pᵀ K P + inertia) x, of this process' unknowns."""
+        """(Pᵀ K P + inertia) x, this process' unknowns (columns,)."""
         given, everything, image, result = self._vectors
         given.array[:] = x
         self.operator.mult(given, everything)
@@ -63,7 +63,7 @@ class Reduced:
         self.matrix.mult(source, image)
         return np.asarray(image.array.copy())
 
-    def as_matrix(self, before: Any = None) -> Any:
+    def to_petsc(self, before: Any = None) -> Any:
         """A PETSc matrix, in the place of one that was made ``before`` with the same constraint, if there is one."""
         made = projected(self.matrix, self.operator, before)
         made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)

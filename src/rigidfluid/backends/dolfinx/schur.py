@@ -17,10 +17,10 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 @dataclass(frozen=True)
 class SchurData:
-    """What the Schur complement is made of at present: weights ``inertia`` of (u, v), ``viscosity`` of
+    """Data of the Schur complement at present: weights ``inertia`` of (u, v), ``viscosity`` of
     (∇u + ∇uᵀ, ∇v) and ``grad_div`` (M,) of (∇·u, ∇·v), the matrices' forms.
 
-    ``open`` (owned vertices,): where a pressure is prescribed; ``enclosed``: nowhere.
+    ``open`` (owned vertices,): whether a pressure is prescribed there; ``enclosed``: whether it is nowhere.
     """
 
     inertia: float
@@ -34,7 +34,7 @@ class SchurData:
 def schur_data(
     space: Space, forms: Forms, surfaces: Surfaces, inertia: float, viscosity: float, grad_div: FloatArray
 ) -> SchurData:
-    """For the mesh where it is now."""
+    """Collect the data of the Schur complement on the mesh as it lies now."""
     numbering = space.numbering
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
@@ -47,7 +47,7 @@ class CahouetChabard:
     """S⁻¹ ≈ -(M⁻¹ + inertia L⁻¹), M the pressures' mass matrix weighted by 1/(2 μ + γ), L their Laplace matrix.
 
     Exact for A = inertia I - (2 μ + γ) ∇∇· on a whole space: what ∇u + ∇uᵀ and grad-div make of gradients (Cahouet and
-    Chabard 1988, doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
+    Chabard 1988, doi:10.1002/fld.1650080802). L is but its diagonal at open faces, where the pressure is nearly given.
     """
 
     def __init__(self, data: SchurData) -> None:

@@ -34,7 +34,7 @@ class Space:
         self.numbering = numbering
         self.communicator = mesh.ranks.communicator if isinstance(mesh.ranks, MpiRanks) else MPI.COMM_SELF
         d, curved = numbering.dimension, bool(mesh.ranks.greatest(len(numbering.curved_cells)))
-        self.mesh = _as_dolfinx(numbering, mesh, self.communicator, 2 if curved else 1)
+        self.mesh = _dolfinx_mesh(numbering, mesh, self.communicator, 2 if curved else 1)
         self.velocity = fem.functionspace(self.mesh, ("Lagrange", 2, (d,)))
         self.pressure = fem.functionspace(self.mesh, ("Lagrange", 1))
         corners = _corners(mesh, self.mesh)
@@ -72,7 +72,7 @@ class Space:
         """Give a function that is constant in each cell its ``values`` (M,), in the order of ``numbering``."""
         function.x.array[:] = values[self._cell_of_made]
 
-    def as_nodal(self, dofs: FloatArray) -> FloatArray:
+    def nodal_field(self, dofs: FloatArray) -> FloatArray:
         """A nodal field (nodes, d) from its values at all local degrees of freedom."""
         field = np.empty((self.numbering.nodes, self.numbering.dimension))
         field[self.node_of_dof] = dofs.reshape(field.shape)
@@ -88,7 +88,7 @@ class Space:
         """A nodal field (nodes, d) from its flat values at the owned nodes."""
         self._nodal.array[: owned.size] = owned
         self._nodal.scatter_forward()
-        return self.as_nodal(self._nodal.array)
+        return self.nodal_field(self._nodal.array)
 
     def pressures(self, owned: FloatArray) -> FloatArray:
         """A field at the vertices (vertices,) from its values at the owned ones."""
@@ -99,7 +99,7 @@ class Space:
         return field
 
 
-def _as_dolfinx(numbering: Numbering, mesh: Mesh, communicator: Any, order: int) -> Any:
+def _dolfinx_mesh(numbering: Numbering, mesh: Mesh, communicator: Any, order: int) -> Any:
     d = numbering.dimension
     count = len(mesh.points) if mesh.part is None else int(mesh.part.counts[0])
     cells = mesh.cells if mesh.part is None else mesh.part.vertices[mesh.cells]

@@ -33,7 +33,7 @@ class Sizes(NamedTuple):
 
 
 class ReferenceTables(NamedTuple):
-    """What the integrals over a cell take from scikit-fem.
+    """Tables of scikit-fem that the integrals over a cell read.
 
     On straight cells ``cubic`` is exact for convection (degree 5), ``flat`` for stress and divergence (2), ``mass``
     (b, b) is the exact mass matrix and ``flux`` (b, d, d+1) has -(∂φ/∂X, ψ). On curved ones ``curved`` is exact for all
@@ -59,7 +59,7 @@ class Cells(NamedTuple):
 
 
 class Sparsity(NamedTuple):
-    """Where a cell's entries are in the sorted rows of the matrix, which start at ``indptr`` (unknowns + 1,).
+    """Places of a cell's entries in the sorted rows of the matrix, which start at ``indptr`` (unknowns + 1,).
 
     A node's d rows and a vertex' row of pressures have an entry for each component of each neighbour, then one for
     each neighbour that is a vertex: ``vertices_around`` (nodes,). ``ranks`` (M, b, b): the place of a cell's node j

@@ -1,1 +1,1 @@
-"""What joins motions: rows of joints, poses at which they fit, and how they move between contacts."""
+"""Joints between motions: their rows, poses at which they fit, and motion between contacts."""

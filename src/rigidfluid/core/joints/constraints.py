@@ -1,4 +1,5 @@
-"""What joints, held directions and dampers ask of the relative motion of two bodies, or of one and the ground."""
+"""Constraints of joints, held directions and dampers on the relative motion of two bodies, or of a body and the
+ground."""
 
 from __future__ import annotations
 
@@ -23,19 +24,20 @@ class Constraint(ABC):
 
     @abstractmethod
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
-        """E (r, d) and A (r, k) where the markers are there."""
+        """Matrices E (r, d) and A (r, k) with the markers at ``at``."""
 
     @abstractmethod
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
-        """By how much it does not fit (r,), none of a damper; the rows are its rate where it is zero [length | rad]."""
+        """Constraint violation c(q) (r,), empty for dampers; its rate is that of the rows where it is zero [length |
+        rad]."""
 
     @property
     @abstractmethod
     def compliance(self) -> FloatArray:
-        """(r,), zero for rigid rows, 1/damping for those of dampers."""
+        """Compliance of each row (r,), zero for rigid rows, 1/damping for those of dampers."""
 
     def rate(self, time: float) -> FloatArray:
-        """(r,) [length/time | rad/time]."""
+        """Prescribed rate of each row (r,) [length/time | rad/time]."""
         return np.zeros_like(self.compliance)
 
     def add_rows(self, at: PlacedPair, rows: FloatArray) -> None:

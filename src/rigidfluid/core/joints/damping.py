@@ -12,25 +12,11 @@ _SMALL = 1e-3
 def damper_impulse(
     answer: FloatArray, compliance: FloatArray, before: FloatArray, undamped: FloatArray, time: float
 ) -> FloatArray:
-    """Impulse -∫ s/compliance of ds/dt = a - answer · s/compliance, a the rate that leads to ``undamped`` without it.
+    """Impulse (c,) -∫ s/compliance of ds/dt = a - answer · s/compliance over ``time`` [force·time | force·length·time].
 
-    In the modes of answer/compliance exact: so dampers of any strength give no energy.
-
-    Parameters
-    ----------
-    answer : (c, c) array
-        How the rates at which dampers are stretched answer to impulses in them [1/mass | 1/(mass·length²)].
-    compliance : (c,) array
-        1/damping.
-    before, undamped : (c,) array
-        Rates of stretch at the start, and at the end without dampers [length/time | rad/time].
-    time : float
-        How long it is [time].
-
-    Returns
-    -------
-    (c,) array
-        [force·time | force·length·time].
+    a is the rate that leads from the rates of stretch ``before`` (c,) to ``undamped`` (c,) without dampers, ``answer``
+    (c, c) the inverse mass C W Cᵀ between dampers, ``compliance`` (c,) 1/damping. In the modes of answer/compliance it
+    is exact: so dampers of any strength give no energy.
     """
     root = 1.0 / np.sqrt(compliance)
     decay, modes = np.linalg.eigh(root[:, None] * answer * root)

@@ -9,24 +9,10 @@ from rigidfluid.errors import StepRejected
 
 
 def joint_forces(answer: FloatArray, missing: FloatArray) -> FloatArray:
-    """λ of (C W Cᵀ + κ) λ = missing.
+    """Solve (C W Cᵀ + κ) λ = ``missing`` (c,) or (c, m) for the joint forces λ; ``answer`` (c, c) is C W Cᵀ + κ of
+    joint rows C, inverse masses W and compliances κ, if there are any.
 
-    Parameters
-    ----------
-    answer : (c, c) array
-        C W Cᵀ + κ of joint rows C, what motions answer to impulses or forces, W, and compliances κ, if there are any.
-    missing : (c,) or (c, m) array
-        What the joints have to change.
-
-    Returns
-    -------
-    array
-        As ``missing``.
-
-    Raises
-    ------
-    StepRejected
-        Where two joints hold the same in this pose.
+    Raises StepRejected where two joints hold the same in this pose.
     """
     try:
         return np.asarray(np.linalg.solve(answer, missing), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""From joints and ground links to what they ask of motions, and to their springs."""
+"""Constraints and springs of joints and ground links."""
 
 from __future__ import annotations
 
@@ -26,25 +26,22 @@ _ROUNDING = 1e-9
 
 
 def joint_parts(joint: Joint, pose: Pose) -> LinkParts:
-    """Of a joint between bodies that are at ``pose`` at the start; raises SceneError as its parts do."""
+    """Constraints and springs of a joint between bodies whose initial poses are ``pose``; raises SceneError as they
+    do."""
     rows, springs = joint_constraints(joint, pose), joint_springs(joint, pose)
     return LinkParts(joint.name, joint.first, joint.second, rows, springs, joint.type == "hinge")
 
 
 def ground_parts(link: GroundLink, pose: Pose) -> LinkParts:
-    """Of a body that is at ``pose`` at the start; raises SceneError as its parts do."""
+    """Constraints and springs of a ground link to a body whose initial pose is in ``pose``; raises SceneError as they
+    do."""
     rows, springs = ground_constraints(link, pose), ground_springs(link, pose)
     return LinkParts(link.name, link.body, None, rows, springs, has_angle=False)
 
 
 def joint_constraints(joint: Joint, pose: Pose) -> list[Constraint]:
-    """Of a joint between bodies that are at ``pose`` at the start.
-
-    Raises
-    ------
-    SceneError
-        If its drive does not start at the angle zero.
-    """
+    """Constraints of a joint between bodies whose initial poses are ``pose``; raises SceneError if its drive does not
+    start at the angle zero."""
     markers, name = _joint_markers(joint, pose), f"joint {joint.name!r}"
     d = len(joint.at)
     parts: list[Constraint] = [SamePoint(name, markers, np.eye(d))]
@@ -61,20 +58,15 @@ def joint_constraints(joint: Joint, pose: Pose) -> list[Constraint]:
 
 
 def joint_springs(joint: Joint, pose: Pose) -> list[Spring]:
-    """Of a joint: of its hinge, if there is one."""
+    """Spring of a joint's hinge, if there is one."""
     if joint.stiffness == 0.0:
         return []
     return [HingeSpring(_joint_markers(joint, pose), joint.stiffness, joint.rest_angle)]
 
 
 def ground_constraints(link: GroundLink, pose: Pose) -> list[Constraint]:
-    """Of a body that is at ``pose`` at the start: the directions that are held, and its dampers.
-
-    Raises
-    ------
-    SceneError
-        If one rotation of three is held, which leaves no path to fit to.
-    """
+    """Held directions and dampers of a ground link to a body whose initial pose is in ``pose``; raises SceneError if
+    one rotation of three is held, which leaves no path to fit to."""
     name, d = f"body {link.name!r}", pose.position.shape[1]
     straight, turning = link.held[:d], link.held[d:]
     markers, parts = _ground_markers(link, pose, np.eye(d)), list[Constraint]()
@@ -96,7 +88,7 @@ def ground_constraints(link: GroundLink, pose: Pose) -> list[Constraint]:
 
 
 def ground_springs(link: GroundLink, pose: Pose) -> list[Spring]:
-    """Of a body that is at ``pose`` at the start, on the directions that are not held."""
+    """Springs of a ground link on the directions that are not held; ``pose`` has the body's initial pose."""
     stiffness = np.where(link.held, 0.0, link.stiffness)
     if not stiffness.any():
         return []

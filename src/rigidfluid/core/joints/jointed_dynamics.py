@@ -1,4 +1,4 @@
-"""How motions go that joints, held directions, springs and dampers link."""
+"""Motion of bodies linked by joints, held directions, springs and dampers."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from rigidfluid.errors import StepRejected
 _MOST_ITERATIONS = 50
 
 _AHEAD = 1e-3
-"""Of its first kick: so long after a corner its rates are read."""
+"""Time after a corner at which rates are read, over that of the first kick [1]."""
 
 _PARTS = 4
-"""In so many parts of a time accelerations are looked at."""
+"""Number of parts of a time in which accelerations are sampled."""
 
 
 class PushedDynamics(MotionDynamics, Protocol):
     """Motions that take impulses."""
 
     def begin(self, ahead: float) -> None:
-        """Have, until the first drift, the twist after a corner that may be at the start: rates are read so much later
+        """Use, until the first drift, the twist after a corner that may be at the start: rates are read ``ahead`` later
         [time]."""
 
     def push(self, impulse: FloatArray) -> None:
@@ -43,19 +43,9 @@ class JointedDynamics:
     """RATTLE: kicks by impulses Cᵀ J after which twists are those that joints allow, drifts after impulses Cᵀ J at
     their start with which rigid joints fit at their end.
 
-    Second order, reversible, and without a fluid symplectic. Dampers act during a kick, exactly.
+    It is of second order, reversible, and without a fluid symplectic; dampers act during a kick, exactly. ``inner`` are
+    the N motions without joints, at the start, and is replaced by copies; ``time`` is that of the start [time].
 
-    Parameters
-    ----------
-    inner : PushedDynamics
-        The N motions without joints, at the start; what goes on is its copies.
-    linkage : Linkage
-        What links them.
-    time : float
-        At the start [time].
-
-    Notes
-    -----
     Andersen, J. Comput. Phys. 52 (1983) 24, doi:10.1016/0021-9991(83)90014-1; Leimkuhler and Skeel, J. Comput. Phys.
     112 (1994) 117, doi:10.1006/jcph.1994.1085.
     """
@@ -73,7 +63,7 @@ class JointedDynamics:
 
     @property
     def pose(self) -> Pose:
-        """Of the motions."""
+        """Poses of the N motions."""
         return self._inner.pose
 
     @property
@@ -90,16 +80,17 @@ class JointedDynamics:
 
     @property
     def mobility(self) -> FloatArray:
-        """That without joints, which only make motions give way less: what is planned for it is on the safe side."""
+        """Inverse masses of the motions without joints [1/mass]: joints only make motions heavier, so that plans with
+        these err to the safe side."""
         return self._inner.mobility
 
     @property
     def inverse_inertia(self) -> FloatArray:
-        """As `mobility`."""
+        """Inverse inertia without joints; see `mobility`."""
         return self._inner.inverse_inertia
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """As `mobility`."""
+        """Inverse mass without joints; see `mobility`."""
         return self._inner.inverse_mass(body, direction)
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
@@ -115,42 +106,44 @@ class JointedDynamics:
         return other
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """Of the motions without contacts, looked at a few times in so much time from now."""
+        """Largest acceleration of each motion without contacts (N,) [length/time²], sampled a few times within ``time``
+        from now."""
         d = self.pose.position.shape[1]
         return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, :d], axis=2).max(axis=0))
 
     def angular_pull(self, time: float) -> FloatArray:
-        """As `max_acceleration`."""
+        """Largest angular acceleration of each motion (N,) [rad/time²]; see `max_acceleration`."""
         d = self.pose.position.shape[1]
         return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, d:], axis=2).max(axis=0))
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """By ``wrench`` and springs, while dampers act, and then by rigid joints."""
+        """Change the twists by ``wrench`` and springs, while dampers act, and then by rigid joints."""
         if not self._begun:
             self._begin(time)
-        springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing()
+        springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing_rate()
         driven = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(wrench_sum(wrench, springs), time, at)
-        impulse, damped = self._held(), 0.0
+        impulse, damped = self._rigid_impulse(), 0.0
         if not self._rigid.all():
-            by_dampers, damped = self._damped(before, self._missing() - self._here.answer @ impulse, time)
+            by_dampers, damped = self._damper_impulse(before, self._missing_rate() - self._here.answer @ impulse, time)
             impulse += by_dampers
-        self._inner.push(self._on_motions(impulse))
-        self._add(impulse, driven, damped, time * flat(springs))
+        self._inner.push(self._motion_impulse(impulse))
+        self._add_work(impulse, driven, damped, time * flat(springs))
 
     def drift(self, time: float) -> None:
-        """So that rigid joints fit at its end, where they then take out of the twist what they do not allow."""
+        """Move the poses so that rigid joints fit at the end, where they then take out of the twist what they do not
+        allow."""
         impulse = self._close(time)
-        self._add(impulse)
+        self._add_work(impulse)
         self._time += time
         self._here = self._rows_here()
-        settled = self._held()
-        self._inner.push(self._on_motions(settled))
-        self._add(settled)
+        settled = self._rigid_impulse()
+        self._inner.push(self._motion_impulse(settled))
+        self._add_work(settled)
 
     def _begin(self, time: float) -> None:
-        """Where the first drift, twice as long as its first kick of so much ``time``, begins at a corner of a drive or
-        stroke or just before: from the rates before it on to those after it."""
+        """Change from the rates before a corner of a drive or stroke to those after it, where the first drift, twice as
+        long as its first kick of so much ``time``, begins at the corner or just before."""
         self._begun, before = True, self._here.links
         corner = self._linkage.next_corner(self._time - time)
         if corner >= self._time + 2.0 * time:
@@ -159,16 +152,16 @@ class JointedDynamics:
         after = replace(before, rate=self._linkage.links(self.pose, self._time + ahead).rate)
         self._here = self._here._replace(links=after)
         self._inner.begin(ahead)
-        impulse = self._held()
-        self._inner.push(self._on_motions(impulse))
-        self._add(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
+        impulse = self._rigid_impulse()
+        self._inner.push(self._motion_impulse(impulse))
+        self._add_work(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
 
     def _close(self, time: float) -> FloatArray:
         """Drift after the impulses (c,) that make rigid joints fit at the end, by Newton's method."""
         impulse, rigid, end = np.zeros(len(self._rigid)), self._rigid, self._time + time
         for _ in range(_MOST_ITERATIONS):
             trial = self._inner.copied()
-            trial.push(self._on_motions(impulse))
+            trial.push(self._motion_impulse(impulse))
             trial.drift(time)
             misfit = self._linkage.misfit(trial.pose, end)
             if np.all(np.abs(misfit) <= self._linkage.tolerance(trial.pose)):
@@ -180,13 +173,13 @@ class JointedDynamics:
         found = f"a misfit of {np.abs(misfit).max():.3g} that no force closes"
         raise StepRejected("joints", found, "forces with which they fit", "Shorten time.step.")
 
-    def _held(self) -> FloatArray:
+    def _rigid_impulse(self) -> FloatArray:
         """Impulses (c,) of rigid joints that make the twist what they allow."""
         impulse, rigid = np.zeros(len(self._rigid)), self._rigid
-        impulse[rigid] = joint_forces(self._here.answer[np.ix_(rigid, rigid)], self._missing()[rigid])
+        impulse[rigid] = joint_forces(self._here.answer[np.ix_(rigid, rigid)], self._missing_rate()[rigid])
         return impulse
 
-    def _damped(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
+    def _damper_impulse(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
         """Impulses (c,) of dampers, whose rates lack ``before`` and without them ``undamped`` (c,), and of rigid joints
         that resist them; and the energy that they take."""
         rigid, damped, answer = self._rigid, ~self._rigid, self._here.answer
@@ -198,22 +191,23 @@ class JointedDynamics:
         impulse[rigid] = resisting @ impulse[damped]
         return impulse, -0.5 * float(impulse[damped] @ (start + end + alone @ impulse[damped]))
 
-    def _missing(self) -> FloatArray:
-        """rate - C u (c,)."""
+    def _missing_rate(self) -> FloatArray:
+        """Rates that the twist lacks, rate - C u (c,)."""
         return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
 
-    def _add(
+    def _add_work(
         self, impulse: FloatArray, driven: float = 0.0, damped: float = 0.0, springs: FloatArray | float = 0.0
     ) -> None:
-        """To what joints did, by impulses (c,) here, at the rates that hold here, and else."""
-        so_far, pushed = self.link_work, self._on_motions(impulse) + springs
+        """Add to the work of joints: impulses (c,) here, at the rates here, and works of drives, dampers and
+        springs."""
+        so_far, pushed = self.link_work, self._motion_impulse(impulse) + springs
         driven += float(impulse @ self._here.links.rate)
         self.link_work = LinkWork(
             so_far.impulse + impulse, so_far.pushed + pushed, so_far.driven + driven, so_far.damped + damped
         )
 
-    def _on_motions(self, impulse: FloatArray) -> FloatArray:
-        """Cᵀ J (N, d+k)."""
+    def _motion_impulse(self, impulse: FloatArray) -> FloatArray:
+        """Impulses on the motions Cᵀ J (N, d+k)."""
         return np.asarray(np.einsum("c,cni->ni", impulse, self._here.links.rows))
 
     def _rows_here(self) -> _Rows:
@@ -223,7 +217,7 @@ class JointedDynamics:
         return _Rows(links, rows, answers, rows @ answers)
 
     def _accelerations(self, time: float) -> FloatArray:
-        """Mean ones in parts of a time (parts, N, d+k)."""
+        """Mean accelerations in parts of a time (parts, N, d+k)."""
         trial, none, part = self.copied(), nothing(self.pose), time / _PARTS
         twists = [flat(self.twist)]
         for _ in range(_PARTS):
@@ -234,7 +228,7 @@ class JointedDynamics:
 
 
 class _Rows(NamedTuple):
-    """Of the links in one pose: ``rows`` C (c, N·(d+k)), ``answers`` W Cᵀ to impulses, ``answer`` C W Cᵀ."""
+    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``answers`` W Cᵀ to impulses, ``answer`` C W Cᵀ."""
 
     links: Links
     rows: FloatArray

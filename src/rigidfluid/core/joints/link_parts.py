@@ -1,4 +1,4 @@
-"""All that one joint or ground link is made of, and what can be read from it in a state."""
+"""Constraints and springs of one joint or ground link, and its reading in a state."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ class LinkParts:
 
     @property
     def rows(self) -> int:
-        """How many."""
+        """Number of rows."""
         return sum(len(one.compliance) for one in self.constraints)
 
     def reading(
         self, placed: Sequence[PlacedPair], bodies: Pose, twist: Twist, time: float, force: FloatArray
     ) -> LinkReading:
-        """Where the bodies are there, and the markers of its constraints ``placed``, with the ``force`` of its rows
-        (r,)."""
-        held, torque = self._held(placed, force)
+        """Gap, angle, force and torque of the link at poses ``bodies``, with the markers of its constraints ``placed``
+        and the ``force`` of its rows (r,)."""
+        held, torque = self._constraint_wrench(placed, force)
         pull = nothing(bodies)
         for spring in self.springs:
             spring.add_wrench(bodies, pull)
@@ -53,7 +53,7 @@ class LinkParts:
             torque=torque + pull.torque[self.first],
         )
 
-    def _held(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _constraint_wrench(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and torque of the rows on the first body."""
         pulled, turned, start = np.zeros(1), np.zeros(1), 0
         for one, at in zip(self.constraints, placed, strict=True):
@@ -63,6 +63,6 @@ class LinkParts:
         return pulled, turned
 
     def _turn(self, hinge: PlacedPair, twist: Twist) -> tuple[float, float]:
-        """Angle and rate of the first seen from the second."""
+        """Angle and rate of the first body seen from the second."""
         spins = [0.0 if body is None else twist.angular_velocity[body] for body in (self.first, self.second)]
         return hinge.angle, float(hinge.spin_axis @ (spins[0] - spins[1]))

@@ -31,43 +31,24 @@ _MOST_ITERATIONS = 30
 
 
 class JointLinkage:
-    """Joints and ground links between bodies, as a `Linkage` of the motions that carry them.
+    """Joints and ground links between n bodies, as a `Linkage` of the N motions that carry them.
 
-    Its rows are, in this order, those of the joints as they are given, then those of the ground links. Of a joint:
-    its force on the first body, d of them along the axes of space; then torques on that, of a rod all k, of a hinge in
-    3D two across the axis; then that of its drive or its damper about the axis. Of a ground link: forces and torques
-    that hold the body, then those of its dampers.
+    Its rows are, in this order, those of the joints as they are given, then those of the ground links. A joint has d
+    rows for its force on the first body along the axes of space; then torques on that, all k for a rod, two across the
+    axis for a hinge in 3D; then that of its drive or its damper about the axis. A ground link has rows for the forces
+    and torques that hold the body, then those of its dampers.
 
-    Parameters
-    ----------
-    pose : Pose
-        Of the n bodies at the start.
-    joints, ground : sequences of Joint, of GroundLink
-        What links them.
-    mass : (n,) array
-        Of the bodies [mass].
-    inertia : (n, k, k) array
-        In their frames [mass·length²].
-    controlled : (n,) array
-        Which bodies have a given motion.
-    controlled_twist : callable
-        From a time to the twists (N, d+k) of given motions.
-    mechanisms : Mechanisms, optional
-        The motions that carry the bodies, where these do not all move by themselves.
-    resistance : (n, d+k) array, optional
-        Of a fluid without inertia, at least, to the velocities of each body [force·time/length | force·length·time].
+    ``pose``, ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the bodies' frames [mass·length²] and ``controlled`` (n,)
+    are those of the bodies at the start; ``controlled_twist`` gives the prescribed twists (N, d+k) at a time;
+    ``mechanisms`` is None where each body is a motion; ``resistance`` (n, d+k) is a lower bound of that of a fluid
+    without inertia [force·time/length | force·length·time]. Raises SceneError if a joint holds nothing that moves
+    freely, or what other joints hold already.
 
-    Raises
-    ------
-    SceneError
-        If a joint holds nothing that moves freely, or what other joints hold already.
-
-    Notes
-    -----
-    ``clusters`` (N,): equal for motions that joints link, directly or over others; where a motion is linked to nothing,
-    or to the ground alone, its own number. ``frequency`` is that of the springs on the masses without joints, at the
-    start: joints make motions heavier, so it bounds the frequencies with them in any pose. In a fluid without inertia
-    it is the rate at which they relax against the ``resistance``, if less: a mass then follows without swinging.
+    ``clusters`` (N,) is equal for motions that joints link, directly or over others, and is a motion's own number where
+    it is linked to nothing, or to the ground alone. ``frequency`` is that of the springs on the masses without joints,
+    at the start: joints make motions heavier, so it bounds the frequencies with them in any pose. In a fluid without
+    inertia it is the rate at which they relax against the ``resistance``, if less: a mass then follows without
+    swinging.
     """
 
     def __init__(
@@ -98,14 +79,14 @@ class JointLinkage:
         self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
         if mechanisms is not None:
             self._corners.append(mechanisms.next_corner)
-        self.linked, self.clusters = self._linked(
+        self.linked, self.clusters = self._link_clusters(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
         moved = mechanisms is not None and mechanisms.driven
         self.driven = moved or bool(self._controlled.any()) or any(joint.drive is not None for joint in joints)
         start = pose if mechanisms is None else mechanisms.pose
         refuse_void(self._constraints, self._carrier, self._controlled)
-        refuse_redundant(self._constraints, self._weighted(self._rigid(self.links(start, 0.0).rows), start))
+        refuse_redundant(self._constraints, self._mass_weighted_rows(self._rigid(self.links(start, 0.0).rows), start))
         self.frequency = self._greatest_rate(start, resistance)
 
     def next_corner(self, time: float) -> float:
@@ -121,11 +102,11 @@ class JointLinkage:
             here = slice(start, start := start + len(one.compliance))
             one.add_rows(at, rows[here])
             rate[here] = one.rate(time)
-        rate -= np.einsum("cni,ni->c", rows, self._given(bodies, kinematics, time))
-        return Links(self._carried(rows, kinematics), rate, self._compliance)
+        rate -= np.einsum("cni,ni->c", rows, self._prescribed_twist(bodies, kinematics, time))
+        return Links(self._rows_on_motions(rows, kinematics), rate, self._compliance)
 
     def misfit(self, motions: Pose, time: float) -> FloatArray:
-        """By how much rigid links do not fit, a row for each [length | rad]."""
+        """Constraint violations of rigid links, one for each row [length | rad]."""
         bodies = self._bodies(motions, time)[0]
         return np.concatenate([np.zeros(0), *(one.misfit(at, time) for one, at in self._placed(bodies))])
 
@@ -136,13 +117,8 @@ class JointLinkage:
         return np.asarray(ROUNDING * np.where(self._are_lengths, length, angle))
 
     def closed(self, motions: Pose, time: float) -> Pose:
-        """The nearest poses at which the joints fit, in the metric of the masses, by Newton's method.
-
-        Raises
-        ------
-        StepRejected
-            If there are none near.
-        """
+        """Nearest poses at which the joints fit, in the metric of the masses, by Newton's method; raises StepRejected
+        if there are none near."""
         moves, d = (self.linked & ~self._controlled)[:, None], motions.position.shape[1]
         for _ in range(_MOST_ITERATIONS):
             misfit = self.misfit(motions, time)
@@ -167,28 +143,28 @@ class JointLinkage:
         return Twist(twist.velocity - change[:, :d], twist.angular_velocity - change[:, d:])
 
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
-        """Of springs on the motions, N rows."""
+        """Wrenches of the springs on the N motions."""
         bodies, kinematics = self._bodies(motions, time)
         return free_wrench(kinematics, self._pull(bodies))
 
     def spring_energy(self, motions: Pose, time: float) -> float:
-        """Stored in springs [energy]."""
+        """Energy stored in springs [energy]."""
         bodies = self._bodies(motions, time)[0]
         return sum(spring.energy(bodies) for spring in self._springs)
 
     def spring_power(self, motions: Pose, time: float) -> float:
-        """Of what moves bodies as they are told, against springs [energy/time]."""
+        """Power that prescribed motions and strokes spend against springs [energy/time]."""
         if not self._springs or not self.driven:
             return 0.0
         bodies, kinematics = self._bodies(motions, time)
-        return -float(np.sum(flat(self._pull(bodies)) * self._given(bodies, kinematics, time)))
+        return -float(np.sum(flat(self._pull(bodies)) * self._prescribed_twist(bodies, kinematics, time)))
 
     def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
         return zip(self._constraints, self._markers.placed(bodies), strict=True)
 
     def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
-        """Of all joints and then all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,): of the rows,
-        None where it is not known yet."""
+        """Readings of all joints and then all ground links; ``bodies`` and ``twist`` are those of the n bodies,
+        ``force`` (c,) that of the rows, None while it is unknown."""
         known = np.zeros(len(self._compliance)) if force is None else force
         placed, readings = iter(self._markers.placed(bodies)), []
         for part, rows in zip(self._parts, self._slices, strict=True):
@@ -213,13 +189,13 @@ class JointLinkage:
             return motions, None
         return self._mechanisms.poses(motions, time), self._mechanisms.kinematics(motions, time)
 
-    def _given(self, bodies: Pose, kinematics: Kinematics | None, time: float) -> FloatArray:
-        """Of the bodies' twists what no free motion has a share in (n, d+k)."""
+    def _prescribed_twist(self, bodies: Pose, kinematics: Kinematics | None, time: float) -> FloatArray:
+        """Twists of the bodies (n, d+k) by prescribed motions and strokes alone, free motions at rest."""
         d = bodies.position.shape[1]
         held = np.where(self._controlled[:, None], self._controlled_twist(time), 0.0)
         return flat(component_twist(kinematics, Twist(held[:, :d], held[:, d:])))
 
-    def _carried(self, rows: FloatArray, kinematics: Kinematics | None) -> FloatArray:
+    def _rows_on_motions(self, rows: FloatArray, kinematics: Kinematics | None) -> FloatArray:
         """C G of rows (c, n, d+k) on the bodies, zero for given motions (c, N, d+k)."""
         if kinematics is not None:
             d = kinematics.arm.shape[1]
@@ -233,7 +209,7 @@ class JointLinkage:
         return np.asarray(rows[self._compliance == 0.0])
 
     def _answer(self, motions: Pose, time: float, missing: FloatArray) -> FloatArray:
-        """M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ times something of the rigid rows (r,), (N, d+k)."""
+        """Product M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ · missing of the rigid rows, ``missing`` (r,), (N, d+k)."""
         rows = self._rigid(self.links(motions, time).rows)
         light = np.einsum("nij,cnj->cni", self._inverse_masses(motions, time), rows)
         force = joint_forces(np.einsum("cni,eni->ce", rows, light), missing)
@@ -249,7 +225,7 @@ class JointLinkage:
         blocks[:, d:, d:] = inverse_lab_inertia(inertia, motions.orientation)
         return blocks
 
-    def _weighted(self, rows: FloatArray, motions: Pose) -> FloatArray:
+    def _mass_weighted_rows(self, rows: FloatArray, motions: Pose) -> FloatArray:
         """Rows (c, N, d+k) times the root of M⁻¹ at the start."""
         root = np.linalg.cholesky(self._inverse_masses(motions, 0.0))
         return np.asarray(np.einsum("cni,nij->cnj", rows, root))
@@ -258,16 +234,20 @@ class JointLinkage:
         if not self._springs:
             return 0.0
         bodies, kinematics = self._bodies(motions, 0.0)
-        stretch = self._carried(np.concatenate([spring.stretch(bodies) for spring in self._springs]), kinematics)
-        frequency = _norm(self._weighted(stretch, motions))
+        stretch = self._rows_on_motions(
+            np.concatenate([spring.stretch(bodies) for spring in self._springs]), kinematics
+        )
+        frequency = _norm(self._mass_weighted_rows(stretch, motions))
         if resistance is None:
             return frequency
         carried = np.zeros(stretch.shape[1:])
         np.add.at(carried, self._carrier, resistance)
         return min(frequency, _norm(stretch / np.sqrt(carried)) ** 2)
 
-    def _linked(self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]) -> tuple[BoolArray, IntArray]:
-        """Which motions have links, and the lowest number of those that each is linked with."""
+    def _link_clusters(
+        self, joints: Sequence[tuple[int, int | None]], ground: Sequence[int]
+    ) -> tuple[BoolArray, IntArray]:
+        """Mask (N,) of the motions that have links, and the lowest number (N,) of those that each is linked with."""
         from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
 
         count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)

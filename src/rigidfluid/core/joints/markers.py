@@ -29,7 +29,7 @@ class Marker:
 
 
 def marker(body: int | None, point: FloatArray, axes: FloatArray, pose: Pose) -> Marker:
-    """On a body that is now at ``pose``, where a ``point`` (d,) and ``axes`` (d, d) of space are now."""
+    """Marker on a body of ``pose``, where ``point`` (d,) and ``axes`` (d, d) of space are now."""
     if body is None:
         return Marker(None, point, axes, 0.0)
     rotation = rotation_matrices(pose.orientation[body : body + 1])[0]
@@ -46,12 +46,12 @@ class MarkerPair:
 
     @property
     def bodies(self) -> tuple[int | None, int | None]:
-        """That carry them, None for the ground."""
+        """Bodies that carry the markers, None for the ground."""
         return self.first.body, self.second.body
 
     @property
     def spins(self) -> int:
-        """k."""
+        """Number k of rotations."""
         return 1 if len(self.first.point) == 2 else 3
 
 
@@ -67,13 +67,13 @@ class PlacedPair(NamedTuple):
 
     @property
     def gap(self) -> FloatArray:
-        """From the second point to the first one (d,) [length]."""
+        """Vector from the second point to the first one (d,) [length]."""
         return np.asarray(self.points[0] - self.points[1])
 
     @property
     def angle(self) -> float:
-        """Of the first seen from the second, about the last axis, zero at the start [rad]; in 2D whole turns included,
-        in 3D in (-π, π]."""
+        """Angle of the first marker seen from the second, about the last axis, zero at the start [rad]; in 2D whole
+        turns included, in 3D in (-π, π]."""
         if self.levers.shape[-1] == 1:
             return float(self.turned[0] - self.turned[1])
         first, second = self.axes
@@ -81,18 +81,12 @@ class PlacedPair(NamedTuple):
 
     @property
     def spin_axis(self) -> FloatArray:
-        """About which the angle is counted (k,)."""
+        """Axis about which the angle is counted (k,) [1]."""
         return np.ones(1) if self.levers.shape[-1] == 1 else self.axes[1][:, 2]
 
 
 class Markers:
-    """Pairs of markers, to be placed together.
-
-    Parameters
-    ----------
-    pairs : sequence of MarkerPair
-        Of bodies of ``dimension`` d.
-    """
+    """Pairs of markers on bodies of ``dimension`` d, to be placed together."""
 
     def __init__(self, pairs: Sequence[MarkerPair], dimension: int) -> None:
         markers, d = [one for pair in pairs for one in (pair.first, pair.second)], dimension
@@ -103,11 +97,11 @@ class Markers:
 
     @property
     def reach(self) -> float:
-        """How far their points are from the origins of their frames at most [length]."""
+        """Greatest distance of the points from the origins of their frames [length]."""
         return float(np.linalg.norm(self._point, axis=1).max(initial=0.0))
 
     def placed(self, pose: Pose) -> list[PlacedPair]:
-        """In the order of the pairs."""
+        """Place all pairs, in their order, at the bodies' ``pose``."""
         d = self._point.shape[1]
         rotation = np.concatenate([rotation_matrices(pose.orientation), np.eye(d)[None]])[self._body]
         centre = np.concatenate([pose.position, np.zeros((1, d))])[self._body]

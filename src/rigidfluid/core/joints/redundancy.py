@@ -26,18 +26,13 @@ def refuse_void(constraints: Sequence[Constraint], carrier: IntArray, controlled
 
 
 def motion_of(body: int | None, carrier: IntArray, controlled: BoolArray) -> int | None:
-    """The free motion that carries a body; None for the ground, and for what moves as it is told."""
+    """Number of the free motion that carries a body; None for the ground and for prescribed motions."""
     return None if body is None or controlled[carrier[body]] else int(carrier[body])
 
 
 def refuse_redundant(constraints: Sequence[Constraint], rows: FloatArray) -> None:
-    """Refuse rigid constraints whose ``rows`` (r, N, d+k), in the metric of the masses, others span.
-
-    Raises
-    ------
-    SceneError
-        That names the first whose rows add nothing to those before it.
-    """
+    """Refuse rigid constraints whose ``rows`` (r, N, d+k), in the metric of the masses, others span: SceneError names
+    the first whose rows add nothing to those before it."""
     names = [one.name for one in constraints for _ in range(int(np.sum(one.compliance == 0.0)))]
     flat = rows.reshape(len(rows), rows.shape[1] * rows.shape[2])
     unit = flat / np.linalg.norm(flat, axis=1, keepdims=True)

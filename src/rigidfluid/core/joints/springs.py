@@ -16,7 +16,7 @@ class Spring(Protocol):
     """Stores energy in a pose of the n bodies."""
 
     def energy(self, pose: Pose) -> float:
-        """[energy]."""
+        """Energy stored at the bodies' ``pose`` [energy]."""
 
     def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
         """Add -d energy/d pose in place."""

@@ -20,7 +20,8 @@ class Cause(StrEnum):
 class Power:
     """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
     viscous dissipation, also ``dissipation_midway`` through the step that led there, of what the dampers of joints
-    take, of what convection takes through faces that let nothing pass, and of grad-div stabilisation."""
+    take, of what convection takes through faces that let nothing pass, of grad-div stabilisation, and of the force on
+    the fluid."""
 
     boundary: float = 0.0
     control: float = 0.0
@@ -29,6 +30,7 @@ class Power:
     damping: float = 0.0
     leak: float = 0.0
     grad_div: float = 0.0
+    source: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +50,8 @@ class Work:
 class Ledger:
     """Sums since the start [energy], and what is stored now.
 
-    Stored: ``kinetic`` (fluid and bodies), ``contact`` (and springs). In: ``gravity``, ``boundary``, ``control``. Out:
+    Stored: ``kinetic`` (fluid and bodies), ``contact`` (and springs). In: ``gravity``, ``boundary``, ``control``,
+    ``body_force`` (on the fluid). Out:
     ``dissipation``, ``grad_div_loss`` (by stabilisation), ``contact_loss`` (by dampers of contacts and joints),
     ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
@@ -67,6 +70,7 @@ class Ledger:
     gravity: float = 0.0
     boundary: float = 0.0
     control: float = 0.0
+    body_force: float = 0.0
     dissipation: float = 0.0
     grad_div_loss: float = 0.0
     contact_loss: float = 0.0
@@ -88,9 +92,14 @@ class Ledger:
         return self.residual - special
 
     @property
+    def works(self) -> tuple[float, ...]:
+        """Energies supplied since the start: by gravity, faces, what drives bodies, and the force on the fluid."""
+        return self.gravity, self.boundary, self.control, self.body_force
+
+    @property
     def residual(self) -> float:
         """Energy that the balance does not account for: in - out - (stored now - stored at the start)."""
-        incoming = self.gravity + self.boundary + self.control
+        incoming = sum(self.works)
         outgoing = self.dissipation + self.grad_div_loss + self.contact_loss + self.transfer_loss
         return incoming - outgoing - (self.kinetic + self.contact - self.initial)
 
@@ -98,12 +107,12 @@ class Ledger:
     def put_in(self) -> float:
         """Energy stored at the start, and that which came in since, as far as more came in than went out the same
         way."""
-        return self.initial + sum(max(work, 0.0) for work in (self.gravity, self.boundary, self.control))
+        return self.initial + sum(max(work, 0.0) for work in self.works)
 
     @property
     def relative_residual(self) -> float:
         """The residual over the energy that has passed through."""
-        passed = max(abs(self.gravity) + abs(self.boundary) + abs(self.control), self.kinetic, self.initial)
+        passed = max(sum(map(abs, self.works)), self.kinetic, self.initial)
         return self.residual / passed if passed > 0 else 0.0
 
     def after(self, step: float, power: Power, work: Work, kinetic: float, contact: float) -> Ledger:
@@ -127,6 +136,7 @@ class Ledger:
             gravity=self.gravity + work.gravity,
             boundary=total("boundary", self.boundary),
             control=total("control", self.control) + work.control,
+            body_force=total("source", self.body_force),
             dissipation=self.dissipation + step * dissipated + work.drag_loss,
             grad_div_loss=total("grad_div", self.grad_div_loss),
             contact_loss=self.contact_loss + work.contact_loss + damped,

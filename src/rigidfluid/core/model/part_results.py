@@ -44,8 +44,12 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, moti
     ):
         refuse_shape(key, quantity, values, shape, "body")
         _refuse_lost_bodies(names, quantity, values, key)
-    for quantity in ("kinetic_energy", "dissipation", "dissipation_midway", "boundary_power", "leak", "grad_div"):
+    for quantity in _ENERGIES:
         refuse_no_number("fluid", quantity, getattr(advance, quantity), key)
+
+
+_POWERS = ("boundary_power", "leak", "grad_div", "source_power")
+_ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
 
 
 def refuse_lost_forces(contacts: Contacts, force: FloatArray, key: str = "contact.law") -> None:

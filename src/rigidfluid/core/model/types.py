@@ -244,7 +244,7 @@ class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
     With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
-    mean. ``source(time, points)`` (N, d) [force/volume] is there for manufactured solutions. ``carrier`` (bodies,):
+    mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):
     the motion that carries each body, None where each moves by itself. ``initial``: the flow at the start, at rest but
     for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
     """
@@ -347,6 +347,7 @@ class Advance:
     ``link_force`` (c,): of the step's links; None without any [force | force·length]. ``leak``: kinetic energy that
     convection takes through faces that let none pass, an error of the mesh [energy/time]. ``grad_div``: what
     stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow [energy/time].
+    ``source_power``: that of the problem's source on the fluid, ∫ f·u [energy/time].
     """
 
     fluid: FluidState
@@ -359,6 +360,7 @@ class Advance:
     link_force: FloatArray | None = None
     leak: float = 0.0
     grad_div: float = 0.0
+    source_power: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,11 +61,12 @@ PARTS = tuple(cause.part for cause in _CAUSES)
 class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
-    Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces and
-    driven bodies had. The error at a time is the residual and what re-meshing took. ``created``: the lowest that it was
-    after the first step, less that step's own, its sign changed. ``lost``: the highest, without what friction between
-    the fluid's solutions explains. ``unaccounted``: the residual at the end. ``path_friction``: that friction, until
-    the end. ``grad_div``: what stabilisation took until the end, no part of the others.
+    Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces,
+    driven bodies and the force on the fluid had. The error at a time is the residual and what re-meshing took.
+    ``created``: the lowest that it was after the first step, less that step's own, its sign changed. ``lost``: the
+    highest, without what friction between the fluid's solutions explains. ``unaccounted``: the residual at the end.
+    ``path_friction``: that friction, until the end. ``grad_div``: what stabilisation took until the end, no part of
+    the others.
     """
 
     put_in: float
@@ -136,7 +137,7 @@ def per_cent(share: float) -> str:
 
 
 def _put_in(energy: Table) -> float:
-    driven = energy["boundary"] + energy["control"]
+    driven = energy["boundary"] + energy["control"] + energy["body_force"]
     start = energy["kinetic"][0] + energy["contact"][0]
     return float(start + max(energy["gravity"].max(), 0.0) + max(driven.max(), 0.0))
 

@@ -164,8 +164,16 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
         control += float(advance.link_force @ step.links.rate)
         control += 0.0 if system.linkage is None else system.linkage.spring_power(motions, step.time)
         damping = float(step.links.compliance @ advance.link_force**2)
-    dissipation = advance.dissipation, advance.dissipation_midway
-    return Power(advance.boundary_power, control, *dissipation, damping, advance.leak, advance.grad_div)
+    return Power(
+        boundary=advance.boundary_power,
+        control=control,
+        dissipation=advance.dissipation,
+        dissipation_midway=advance.dissipation_midway,
+        damping=damping,
+        leak=advance.leak,
+        grad_div=advance.grad_div,
+        source=advance.source_power,
+    )
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:

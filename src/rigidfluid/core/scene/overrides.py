@@ -7,27 +7,16 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
-from rigidfluid.core.scene.validation import shown
+from rigidfluid.core.scene.validation import value_text
 from rigidfluid.errors import SceneError
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
 
 
 def override(data: dict[str, Any], assignments: Iterable[str]) -> None:
-    """Set values in place.
-
-    Parameters
-    ----------
-    data : dict
-        The scene's tables, changed in place.
-    assignments : iterable of str
-        ``key=value``: a dotted key, numbers count the entries of lists from 0; a TOML value, or one bare word.
-
-    Raises
-    ------
-    SceneError
-        If an assignment cannot be read, or its key leads nowhere.
-    """
+    """Set values in the scene's tables, in place, by assignments ``key=value``: a dotted key, in which numbers count
+    the entries of lists from 0; a TOML value, or one bare word. Raises SceneError for an unreadable assignment or an
+    unknown key."""
     for assignment in assignments:
         path, equals, text = assignment.partition("=")
         if not equals or not path.strip():
@@ -36,22 +25,8 @@ def override(data: dict[str, Any], assignments: Iterable[str]) -> None:
 
 
 def assign(data: dict[str, Any], path: str, value: Any) -> None:
-    """Set one value in place.
-
-    Parameters
-    ----------
-    data : dict
-        The scene's tables, changed in place.
-    path : str
-        A dotted key; numbers count the entries of lists from 0.
-    value : object
-        As TOML gives it.
-
-    Raises
-    ------
-    SceneError
-        If the key leads nowhere.
-    """
+    """Set one value in the scene's tables, in place; numbers in the dotted key ``path`` count the entries of lists from
+    0. Raises SceneError for a key that leads nowhere."""
     *parents, key = path.split(".")
     table: Any = data
     for parent in parents:
@@ -73,7 +48,7 @@ def _value(path: str, text: str) -> Any:
     if _WORD.fullmatch(text):
         return text
     raise SceneError(
-        path, shown(text), "a TOML value, or one word", 'For instance: 0.02, [0.0, 1.0], "a text", stokes.'
+        path, value_text(text), "a TOML value, or one word", 'For instance: 0.02, [0.0, 1.0], "a text", stokes.'
     )
 
 

@@ -1,7 +1,7 @@
-"""What a scene file may say: one model per table, and how a file becomes a `Scene`.
+"""Tables of a scene file, one model per table, and how a file becomes a `Scene`.
 
-The description of each key ends with its unit in brackets where it has one; the scene reference is made from it.
-Units are free but must be consistent; ``d`` is the dimension.
+The description of each key ends with its unit in brackets where it has one; the scene reference is made from it. Units
+are free but must be consistent; ``d`` is the dimension.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from rigidfluid.errors import SceneError
 
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
-"""What names are: a control character would break the tables and plots that they stand in."""
+"""Pattern of names: no control characters, which would break the tables and plots that names stand in."""
 
 Positive = Annotated[float, Field(gt=0)]
 Vector = tuple[float, ...]
@@ -71,7 +71,7 @@ class _OpenTable(_Table):
 
 
 class SceneTable(_Table):
-    """What the scene is called, and how many dimensions it has."""
+    """Name, number of dimensions and random seed of the scene."""
 
     name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the scene; results go to `out/<name>` by default")
     dimension: Literal[2, 3] = Field(description="Number of space dimensions d")
@@ -92,6 +92,9 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    force: tuple[Formula, ...] | None = Field(
+        default=None, description="Expressions of a force on the fluid alone; none if not given [force/volume]"
+    )
     initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
         default="rest",
         description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
@@ -146,7 +149,7 @@ class StrokeTable(_Table):
 
 
 class BoundaryTable(_Table):
-    """What holds on the domain's surfaces; a later entry overrides an earlier one, unnamed surfaces are walls.
+    """Condition on surfaces of the domain; a later entry overrides an earlier one, unnamed surfaces are walls.
 
     Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
     `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
@@ -319,7 +322,7 @@ _RESTITUTION_STOKES = Field(
 
 
 class ContactTable(_OpenTable):
-    """How contacts are found and stepped through, and a force law for all of them; `[[interaction]]` has more laws."""
+    """Detection and time stepping of contacts, and a force law for all of them; `[[interaction]]` has more laws."""
 
     detector: str = Field(
         default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
@@ -384,7 +387,7 @@ class RefineTable(_Table):
 
 
 class MeshTable(_Table):
-    """How fine the mesh is, and when it is made anew."""
+    """Resolution of the mesh, and when it is made again."""
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: SizeBody = Field(
@@ -422,7 +425,7 @@ class MeshTable(_Table):
 
 
 class TimeTable(_Table):
-    """How far and how fast time goes."""
+    """End, steps and tolerance of the simulation."""
 
     end: Positive = Field(description="Time at which the simulation ends [time]")
     step: Positive = Field(description="Size of a step [time]")
@@ -438,7 +441,7 @@ class TimeTable(_Table):
 
 
 class OutputTable(_Table):
-    """What is written, and how often."""
+    """Interval of fields and checkpoints, and points that record the flow."""
 
     every: Positive = Field(description="Time between two written fields and checkpoints [time]")
     probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
@@ -501,25 +504,25 @@ class Scene(_Table):
 
 
 def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
-    """The tables of a TOML file; ``kind`` says in messages what file it should be.
+    """Read the tables of a TOML file; ``kind`` says in messages what file it should be.
 
-    Where a table has a key ``file``, its path is relative to the file it stands in.
+    The path under a key ``file`` is relative to the file it stands in.
     """
     try:
-        return _beside(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
+        return _resolve_files(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
 
 
-def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+def _resolve_files(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     """A table with every ``file`` in it, and in the tables within, as an absolute path, seen from a folder."""
-    found = {key: _each_beside(inner, folder) for key, inner in table.items()}
+    found = {key: _resolve_each_file(inner, folder) for key, inner in table.items()}
     return found | {"file": str(folder / found["file"])} if isinstance(found.get("file"), str) else found
 
 
-def _each_beside(value: Any, folder: Path) -> Any:
+def _resolve_each_file(value: Any, folder: Path) -> Any:
     if isinstance(value, list):
-        return [_each_beside(inner, folder) for inner in value]
-    return _beside(value, folder) if isinstance(value, dict) else value
+        return [_resolve_each_file(inner, folder) for inner in value]
+    return _resolve_files(value, folder) if isinstance(value, dict) else value

@@ -8,18 +8,7 @@ from typing import Any
 
 
 def scene_text(tables: Mapping[str, Any]) -> str:
-    """TOML that reads back to the same tables.
-
-    Parameters
-    ----------
-    tables : mapping
-        From `Scene.to_dict`.
-
-    Returns
-    -------
-    str
-        Without a newline at its end.
-    """
+    """TOML text, without a newline at its end, that reads back to the same tables, those of `Scene.to_dict`."""
     return "\n\n".join(text for name, table in tables.items() for text in _tables(name, table))
 
 

@@ -24,26 +24,9 @@ Location = tuple[int | str, ...]
 
 
 def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
-    """Validate a table.
+    """Validate a table, as TOML gives it, into an instance of ``model``; ``at`` is its place in the scene (``body.0``).
 
-    Parameters
-    ----------
-    model : type
-        The pydantic model that says what is allowed.
-    data : mapping
-        The table, as TOML gives it.
-    at : str
-        Where the table is in the scene, for messages (``body.0``).
-
-    Returns
-    -------
-    BaseModel
-        An instance of ``model``.
-
-    Raises
-    ------
-    SceneError
-        At the first value that is not allowed; unknown keys come first, as they often explain what is missing.
+    Raises SceneError at the first refused value; unknown keys come first, as they often explain what is missing.
     """
     text = _json(data, at)
     try:
@@ -91,29 +74,15 @@ def _aliases(alias: str | AliasPath | AliasChoices | None) -> Iterator[str]:
 
 
 def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
-    """The error for a key that nobody reads.
-
-    Parameters
-    ----------
-    field : str
-        Where it is in the scene (``body.0.raduis``).
-    known : iterable of str
-        The keys that its table may have.
-    hint : str
-        What to do where no known key is near.
-
-    Returns
-    -------
-    SceneError
-        With the nearest known key as remedy.
-    """
+    """Error for a key that nobody reads at the place ``field`` (``body.0.raduis``), with the nearest of the ``known``
+    keys as remedy, or the ``hint`` where none is near."""
     key = field.rpartition(".")[2]
     keys = sorted(known)
     remedy = suggestion(key, keys) or hint or "Remove it."
     return SceneError(field, "a key that nothing reads", ", ".join(keys), remedy)
 
 
-def shown(value: object) -> str:
+def value_text(value: object) -> str:
     """A value for a message, cut short where it is long."""
     text = repr(value)
     return text if len(text) <= _LONG else f"{text[:_LONG]}… ({len(text)} characters)"
@@ -159,11 +128,11 @@ def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at:
         return _missing_key(model, complaint, field)
     if complaint["type"] == "missing":
         return _short_list(model, complaints, at)
-    return SceneError(field or "scene", shown(complaint["input"]), _allowed(complaint), _remedy(model, location))
+    return SceneError(field or "scene", value_text(complaint["input"]), _allowed(complaint), _remedy(model, location))
 
 
 def _keys(model: type[BaseModel], complaint: ErrorDetails) -> Location:
-    """Where it is in the scene; pydantic also names which of a key's types it has tried."""
+    """Location of a complaint in the scene, without the types of a key that pydantic has tried and names in between."""
     keys: list[int | str] = []
     table: type[BaseModel] | None = model
     any_key = False
@@ -186,12 +155,12 @@ def _has_any_key(annotation: Any) -> bool:
 
 
 def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
-    """Of a list that must have a certain length, pydantic says which of its places are empty."""
+    """Error for a list with too few entries: pydantic complains of each place that is empty."""
     place, keys = complaints[0]["loc"][:-1], _keys(model, complaints[0])[:-1]
     field = ".".join([*filter(None, [at]), *map(str, keys)])
     empty = sum(complaint["type"] == "missing" and complaint["loc"][:-1] == place for complaint in complaints)
     given = complaints[0]["input"]
-    return SceneError(field, shown(given), f"{len(given) + empty} entries", _remedy(model, keys))
+    return SceneError(field, value_text(given), f"{len(given) + empty} entries", _remedy(model, keys))
 
 
 def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:

@@ -15,7 +15,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 SAMPLES = 129
-"""A stroke is looked at so often, and at its corners."""
+"""Number of evenly spaced samples of a stroke, besides its corners."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def times_along(mechanism: Mechanism, end: float) -> FloatArray:
 
 
 def corners(moving: Mechanism | Stroke, end: float) -> Iterator[float]:
-    """The times at which its rate jumps, until the ``end``; no more than there are samples."""
+    """Times at which the rate of a mechanism or stroke jumps, until the ``end``; no more than there are samples."""
     time = moving.next_corner(0.0)
     for _ in range(SAMPLES):
         if time > end:
@@ -46,22 +46,8 @@ def corners(moving: Mechanism | Stroke, end: float) -> Iterator[float]:
 
 
 def fastest_given(carried: CarriedBodies, mechanisms: Iterable[Mechanism], end: float) -> FloatArray:
-    """The greatest velocity and angular velocity that mechanisms give their components about their centres of mass.
-
-    Parameters
-    ----------
-    carried : CarriedBodies
-        All bodies.
-    mechanisms : iterable of Mechanism
-        Those in it.
-    end : float
-        Of the simulation [time].
-
-    Returns
-    -------
-    (n, 2) array
-        Of the times looked at; zero of single bodies [length/time], [rad/time].
-    """
+    """Greatest velocity and angular velocity (n, 2) [length/time], [rad/time] that mechanisms give components about
+    their own centres of mass, at the sampled times up to the ``end`` [time]; zero for single bodies."""
     driven = [mechanism for mechanism in mechanisms if mechanism.driven]
     times = [float(time) for mechanism in driven for time in times_along(mechanism, end)]
     given = np.array([carried.kinematics(carried.pose, time).given for time in times or [0.0]])
@@ -70,22 +56,8 @@ def fastest_given(carried: CarriedBodies, mechanisms: Iterable[Mechanism], end: 
 
 
 def nearest_components(mechanism: Mechanism, end: float, detector: type[Detector]) -> Nearest | None:
-    """The nearest approach of two components along the stroke.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        Two components or more.
-    end : float
-        Of the simulation [time].
-    detector : type
-        What finds gaps between the components without a mesh.
-
-    Returns
-    -------
-    Nearest or None
-        Of the times looked at; None of one component.
-    """
+    """Nearest approach of two components at the sampled times of the stroke; None for one component. The ``detector``
+    needs no mesh."""
     shapes = [component.shape for component in mechanism.components]
     if len(shapes) < 2:
         return None

@@ -16,13 +16,10 @@ _DIGITS = 3
 
 
 def auto_size_body(scene: Scene) -> float:
-    """Half of the thinnest boundary layer d/√Re at the speeds that are expected, at most a tenth of the diameter d of
-    the smallest ball of equal volume, and at most the mesh's ``size`` [length].
+    """Edge length on bodies [length]: half of the thinnest boundary layer d/√Re at the expected speeds, at most a tenth
+    of the diameter d of the smallest ball of equal volume, and at most the mesh's ``size``.
 
-    Parameters
-    ----------
-    scene : Scene
-        With a mesh, whose ``size_body`` is not asked.
+    The scene needs a mesh; its ``size_body`` is not read.
     """
     assert scene.mesh is not None
     smallest = min((equal_volume_radius(body) for body in known_parts(scene).bodies), default=np.inf)
@@ -41,6 +38,6 @@ def _half_layer(system: System) -> float:
 
 
 def _rounded(size: float) -> float:
-    """Down to three digits."""
+    """Round down to three digits."""
     unit = 10.0 ** (np.floor(np.log10(size)) - _DIGITS + 1)
     return float(f"{np.floor(size / unit * (1.0 + 1e-12)) * unit:.{_DIGITS}g}")

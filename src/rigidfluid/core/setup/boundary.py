@@ -1,4 +1,4 @@
-"""What the scene says holds on the domain's surfaces."""
+"""Conditions that a scene sets on the domain's surfaces."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def boundary_table(scene: Scene, name: str) -> BoundaryTable | None:
-    """What the scene says of a surface: its last entry for it or for all; None means a wall at rest."""
+    """Last entry of a scene's ``boundary`` for the surface ``name`` or for all; None means a wall at rest."""
     return next((table for table in reversed(scene.boundary) if table.on in (name, "all")), None)
 
 
 def table_key(scene: Scene, table: BoundaryTable) -> str:
-    """Where a table is in the scene, for messages."""
+    """Key of a boundary table in the scene, for messages."""
     return f"boundary.{scene.boundary.index(table)}"
 
 

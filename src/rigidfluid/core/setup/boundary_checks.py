@@ -27,30 +27,19 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BoundaryTable, Scene
 
 ACROSS = 1e-12
-"""A wall may slide with so much of its speed across itself, by rounding [1]."""
+"""Greatest velocity of a sliding flat wall across itself, over its speed, that counts as rounding [1]."""
 
 ACROSS_CURVED = 1e-6
-"""The same where normals are taken by differences of distances [1]."""
+"""Greatest velocity of a sliding curved wall across itself, over its speed, that counts as rounding [1]; its normals
+are differences of distances."""
 
 ROUNDING, EXPRESSIONS = 1e-12, 1e-3
 """Net inflow over all flow through the boundary that is allowed for numbers, by rounding, and for expressions [1]."""
 
 
 def check_boundary(scene: Scene, domain: Domain) -> None:
-    """Refuse names that the domain does not know, and conditions that contradict themselves or a surface's shape.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables ``boundary``, its bodies' names and its probes.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        At the first contradiction.
-    """
+    """Refuse, with SceneError, unknown names, probes outside the domain, and conditions that contradict themselves or a
+    surface's shape."""
     for number, table in enumerate(scene.boundary):
         _check_table(domain, table, f"boundary.{number}")
         if isinstance(table.over_time, tuple):

@@ -26,7 +26,7 @@ _TIMES, _ROWS = 65, 500
 class SampledInflow:
     """A ``velocity`` prescribed on a ``piece``, with ``points`` (N, d) and ``weights`` (N,) of an integral over it.
 
-    Where the section of a flat piece is not known there is one point, and only a uniform velocity has a flux.
+    A flat piece of unknown section has one point, and then only a uniform velocity has a flux.
     """
 
     piece: Piece
@@ -35,20 +35,20 @@ class SampledInflow:
     weights: FloatArray
 
     def flux(self, time: float) -> float | None:
-        """Into the domain, ∫ u·n; None where it is not known [length^d/time]."""
+        """Flux into the domain ∫ u·n [length^d/time]; None where it is not known."""
         plane = self.piece.shape.plane
         if plane is None or (len(self.points) == 1 and not self.velocity.is_uniform):
             return None
         return float(self.weights @ (self.velocity(time, self.points) @ plane.unit_normal))
 
     def speed(self, time: float) -> float:
-        """The greatest at the points, where the profile is 1 [length/time]."""
+        """Greatest speed at the points, where the profile is 1 [length/time]."""
         points = self.points if self.velocity.velocity.names & {"x", "y", "z"} else self.points[:1]
         return max(float(np.linalg.norm(velocity)) for velocity in self.velocity.peak(time, points))
 
 
 def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
-    """All velocities that the scene prescribes on surfaces that are not walls."""
+    """Velocities that the scene prescribes on surfaces that are not walls."""
     inflows = []
     for piece in domain.pieces:
         table = boundary_table(scene, piece.name)
@@ -61,7 +61,7 @@ def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
 def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
     """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady.
 
-    Of a long table some rows, and the one of the greatest value.
+    A long table contributes every n-th row and the row with the greatest value.
     """
     tables = [table.over_time for table in scene.boundary if isinstance(table.over_time, tuple) and table.over_time]
     rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
@@ -72,7 +72,7 @@ def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
 def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:
     """Points (N, d) and weights (N,) of an integral over a piece of the domain.
 
-    Of a curved piece, points all over it; of a flat one whose section is not known, one.
+    A curved piece has points all over it, a flat piece of unknown section a single one.
     """
     shape = section(piece)
     if shape is not None:

@@ -86,32 +86,15 @@ class BoundaryPressure:
 
 
 def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> BoundaryVelocity:
-    """The velocity that a table prescribes on a piece of the boundary.
+    """Velocity that a table with a velocity or flux prescribes on a piece; ``at`` is the table's key, for messages.
 
-    Parameters
-    ----------
-    piece : Piece
-        For its shape.
-    table : BoundaryTable
-        A table with a velocity or a flux.
-    at : str
-        Where it is in the scene, for messages.
-
-    Returns
-    -------
-    BoundaryVelocity
-        A function of time and points.
-
-    Raises
-    ------
-    SceneError
-        If an expression is none, or the piece has not the shape that the profile or a flux is for.
+    Raises SceneError for an invalid expression, or a shape that the profile or a flux does not fit.
     """
     profile = _profile(piece, table.profile, f"{at}.profile")
     if table.flux is not None:
         return BoundaryVelocity(_peak_of_flux(piece, profile, table.flux, f"{at}.flux"), profile, _factor(table))
     assert table.velocity is not None
-    velocity = VectorExpression.of(table.velocity, f"{at}.velocity", f" on {piece.name!r}")
+    velocity = VectorExpression.parse(table.velocity, f"{at}.velocity", f" on {piece.name!r}")
     return BoundaryVelocity(velocity, profile, _factor(table))
 
 
@@ -123,13 +106,14 @@ def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: 
 
 
 def pressure_drop(table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
-    """What the pressure is higher by the periodic surface of a ``table`` at ``at`` than on the opposite one."""
+    """Pressure on the periodic surface of a ``table`` less the pressure on the opposite surface
+    [force/length^(d-1)]."""
     assert table.pressure_drop is not None
     return BoundaryPressure(Expression(table.pressure_drop, f"{at}.pressure_drop", dimension))
 
 
 def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
-    """That of a wall by its ``table``, None where it rests."""
+    """Velocity of a wall's points by its ``table``; None for a wall at rest."""
     if table.velocity is None and table.angular_velocity is None:
         return None
     still = [0.0] * dimension
@@ -149,7 +133,7 @@ def _peak_of_flux(piece: Piece, profile: Profile | None, flux: float | str, at: 
 
 
 def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:
-    """∏ 4 s(1 - s) over a surface's own coordinates s from 0 to 1, (N,), at ``points`` (N, d)."""
+    """Product ∏ 4 s(1 - s) over a surface's own coordinates s from 0 to 1, (N,), at ``points`` (N, d)."""
     s = coordinates(points)
     return np.asarray(np.prod(4 * s * (1 - s), axis=1))
 

@@ -30,6 +30,7 @@ from rigidfluid.core.model.types import (
 )
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
+from rigidfluid.core.setup.body_force import body_force
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, impact_speeds, travel_speeds
@@ -39,8 +40,8 @@ from rigidfluid.core.setup.joints import build_linkage, joined_bodies
 from rigidfluid.core.setup.parts import Parts, Selected, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
-from rigidfluid.core.setup.stacks import stacked
-from rigidfluid.core.setup.window import build_window, opened
+from rigidfluid.core.setup.stacks import stack_loads
+from rigidfluid.core.setup.window import build_window, open_wake_end
 
 _MOST_PAIRS = 1000
 
@@ -48,22 +49,8 @@ _MOST_PAIRS = 1000
 def build_system(scene: Scene, to_run: bool = True) -> System:
     """Build the parts of a simulation and check that they fit together.
 
-    Parameters
-    ----------
-    scene : Scene
-        A validated scene.
-    to_run : bool
-        Whether it is to run; else its backend says what it is and no more, and none of its libraries is loaded.
-
-    Returns
-    -------
-    System
-        Ready for the loop.
-
-    Raises
-    ------
-    SceneError
-        If a body overlaps another body or a surface of the domain, or the mesh is too coarse for the gap between them.
+    A system that is not ``to_run`` has a backend that only describes itself and loads none of its libraries. Raises
+    SceneError if a body overlaps another or a surface of the domain, or the mesh is too coarse for a gap.
     """
     parts = known_parts(scene)
     scene, mechanisms, domain = parts.scene, parts.mechanisms, parts.domain
@@ -75,12 +62,12 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     tables: Tables = (*scene.body[:single], *scene.mechanism)
     start = initial_pose(tables, scene.dimension)
     motion = prescribed_motion(scene, start)
-    started = _started(initial_twist(tables, scene.dimension), controlled[:single], motion(0.0))
+    started = _initial_twist(initial_twist(tables, scene.dimension), controlled[:single], motion(0.0))
     carried = CarriedBodies(mechanisms, mass, inertia, controlled, start, started) if mechanisms else None
     pose = start if carried is None else carried.poses(start, 0.0)
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
-    held = opened(conditions(scene, domain), window)
+    held = open_wake_end(conditions(scene, domain), window)
     creeping = parts.backend.part.needs_mesh and scene.fluid.model == "stokes"
     resistance = creeping_resistances(scene, domain, parts.bodies) if creeping else None
     linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried, resistance)
@@ -90,8 +77,8 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
         carried.twist = started
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
-    moved = _together(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
-    pulled = _together(carried, linkage, weight)
+    moved = _sum_linked(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
+    pulled = _sum_linked(carried, linkage, weight)
     given = None if carried is None else fastest_given(carried, mechanisms.values(), scene.time.end)
     wet = parts.backend.part.needs_mesh
     speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, wet, given)
@@ -151,7 +138,7 @@ def _assemblies(scene: Scene) -> IntArray:
     return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
 
 
-def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
+def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
     """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are controlled."""
     d, held = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
     held[: len(controlled), 0] = controlled
@@ -161,9 +148,9 @@ def _started(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
     )
 
 
-def _together(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
-    """For each body the sum of ``rows`` (n, …) over all that a motion or joints let move with it: at most that is what
-    it meets something with."""
+def _sum_linked(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
+    """Sum, for each body, of ``rows`` (n, …) over all bodies that a motion or joints link with it: an upper bound of
+    what it hits something with."""
     if carried is None and linkage is None:
         return rows
     motion = np.arange(len(rows)) if carried is None else carried.carrier
@@ -193,7 +180,7 @@ def _loads(
     own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
     position = np.array([table.position for table in scene.body])
     radius = np.array([body.bounding_radius for body in parts.bodies])
-    together = stacked(own, weight, position, radius, parts.domain.size)
+    together = stack_loads(own, weight, position, radius, parts.domain.size)
     stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
     mass = np.where(controlled, np.inf, mass)
     return Loads(mass, pull, speed, stacked_weight, stacked_energy, smallest, _film(scene, parts))
@@ -220,13 +207,14 @@ def _problem(
         dynamic_viscosity=fluid.viscosity,
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
+        source=body_force(scene),
         carrier=None if carried is None else tuple(carried.carrier.tolist()),
         initial=initial_flow(scene),
     )
 
 
 def _reach(detector: Detector, law: ForceLaw | None) -> float:
-    """As far as the detector sees, and no further than is worth its while."""
+    """Detection distance [length]: the detector's preferred reach, capped at the largest gap worth measuring."""
     law_range = law.range if law else 0.0
     return min(detector.preferred_reach(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
 

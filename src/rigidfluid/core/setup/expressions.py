@@ -15,7 +15,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 LONGEST, DEEPEST = 1000, 200
-"""A formula has at most so many characters, and operations within one another."""
+"""Greatest number of characters of a formula, and of operations nested within one another."""
 
 _OPERATORS: dict[type[ast.AST], Callable[..., FloatArray]] = {
     ast.Add: np.add,
@@ -56,23 +56,11 @@ Operation = Callable[[Names], FloatArray]
 
 
 class Expression:
-    """A formula f(t, x) of a scene, or a number.
+    """Formula f(t, x) of a scene, or a number: a text such as ``"0.3*sin(pi*t/8)"`` in x, y (z in 3D) [length], t
+    [time] and pi.
 
-    Parameters
-    ----------
-    source : float or str
-        A number, or a text such as ``"0.3*sin(pi*t/8)"`` with the names x, y (z in 3D) [length], t [time], and pi.
-    at : str
-        The key that it stands under, for messages.
-    dimension : int
-        2 or 3.
-    where : str
-        What more messages say of its place (`` on 'left'``).
-
-    Raises
-    ------
-    SceneError
-        Where the text is no formula or says what is not allowed; when called, where a value is not finite.
+    ``at`` is its key and ``where`` its place (`` on 'left'``), for messages. Raises SceneError for an invalid formula
+    and, when called, for a value that is not finite.
     """
 
     def __init__(self, source: float | str, at: str, dimension: int, where: str = "") -> None:
@@ -105,8 +93,8 @@ class VectorExpression:
         return frozenset().union(*(component.names for component in self.components))
 
     @classmethod
-    def of(cls, sources: Sequence[float | str], at: str, where: str = "") -> VectorExpression:
-        """From d numbers or texts under the key ``at``; see `Expression`."""
+    def parse(cls, sources: Sequence[float | str], at: str, where: str = "") -> VectorExpression:
+        """Make a vector from d numbers or formulas under the key ``at``; see `Expression`."""
         return cls(tuple(Expression(source, f"{at}.{i}", len(sources), where) for i, source in enumerate(sources)))
 
     def __call__(self, time: float, points: FloatArray) -> FloatArray:
@@ -115,7 +103,7 @@ class VectorExpression:
 
 
 def _compiled(source: float | str, at: str, dimension: int) -> tuple[Operation, frozenset[str]]:
-    """What a source computes, and the names that it uses."""
+    """Compile a source to a function of its names' values, and collect these names."""
     if not isinstance(source, str):
         return _constant(source), frozenset()
     text = " ".join(source.split())
@@ -140,7 +128,7 @@ class _Reader:
     coordinates: tuple[str, ...]
 
     def operation(self, node: ast.expr, depth: int = 0) -> Operation:
-        """What a node computes."""
+        """Compile a node of the syntax tree to a function of the names' values."""
         if depth > DEEPEST:
             raise self._refusal(node, "nested too deep", "Write it as fewer operations.")
         match node:

@@ -1,4 +1,4 @@
-"""What a scene switches on and off, and why; `rigidfluid check` prints it."""
+"""Features that a scene switches on and off, and why; `rigidfluid check` prints them."""
 
 from __future__ import annotations
 
@@ -27,20 +27,7 @@ class Feature:
 
 
 def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
-    """What is on, what is off, and why.
-
-    Parameters
-    ----------
-    system : System
-        What was built from the scene.
-    mesh : MeshTable or None
-        Of the scene.
-
-    Yields
-    ------
-    Feature
-        One for each thing that a scene may have.
-    """
+    """Yield each feature that a scene may have: whether it is on, and why."""
     problem, backend = system.backend.problem, type(system.backend)
     if problem is None or not backend.needs_mesh:
         yield Feature("fluid", False, f"backend {backend.name!r} has no viscosity to work with")
@@ -59,6 +46,8 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     outlets = [condition.name for condition in problem.conditions if condition.type == "pressure"]
     why = f"pressure is given on {', '.join(outlets)}" if outlets else "no face gives a pressure"
     yield Feature("pressure fixed by a constraint", not outlets, why)
+    given = "not given" if problem.source is None else "given"
+    yield Feature("force on the fluid", problem.source is not None, f"fluid.force is {given}")
     start = problem.initial if isinstance(problem.initial, str) else "given by expressions"
     yield Feature("flow at the start", start != "rest", f"fluid.initial is {start}")
 

@@ -24,26 +24,13 @@ MOST_FACETS_PER_RADIUS = 10**4
 
 
 SMALLEST_BODY = 1e-8
-"""Of the domain's largest coordinate: smaller bodies are lost in rounding, and Netgen may end the whole process."""
+"""Least bounding radius over the domain's largest coordinate [1]: smaller bodies are lost in rounding, and Netgen may
+end the whole process."""
 
 
 def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
-    """Refuse a start that cannot be.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene, for names and mesh sizes.
-    parts : Parts
-        Its bodies and backend.
-    pose : Pose
-        Where the bodies start.
-
-    Raises
-    ------
-    SceneError
-        If bodies overlap each other or a surface of the domain or are lost in it, or the mesh is too coarse for a gap.
-    """
+    """Refuse, with SceneError, bodies that overlap each other or a surface of the domain or are lost in it at their
+    starting ``pose``, and a mesh too coarse for a gap."""
     _check_extent(parts)
     mesh = scene.mesh if parts.backend.part.needs_mesh else None
     reach = _coarsest_gap(mesh, parts) if mesh else 0.0
@@ -57,26 +44,8 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
 def initial_contacts(
     domain: Domain, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
 ) -> Contacts:
-    """Every pair of surfaces at the start, with those that do not repel among them.
-
-    Parameters
-    ----------
-    domain : Domain
-        Its surfaces.
-    detector : type
-        What finds them without a mesh, see `exact_detector`.
-    bodies : sequence of Body
-        Its bodies.
-    pose : Pose
-        Where they are.
-    reach : float
-        Largest gap, may be infinite [length].
-
-    Returns
-    -------
-    Contacts
-        Up to that gap.
-    """
+    """Contacts of all bodies and surfaces of the domain, those that do not repel among them, with gaps up to ``reach``,
+    which may be infinite [length]; the ``detector`` needs no mesh."""
     return detector(detector.Options(), bodies, surfaces_of(domain, len(bodies))).detect(pose, None, reach)
 
 

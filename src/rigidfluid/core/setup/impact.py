@@ -1,4 +1,5 @@
-"""How fast bodies are expected to hit: what gravity can give them on their way, and what the fluid lets them keep."""
+"""Speeds at which bodies are expected to hit: what gravity can give them on their way, and what the fluid lets them
+keep."""
 
 from __future__ import annotations
 
@@ -35,35 +36,14 @@ def impact_speeds(
     wet: bool,
     carried: FloatArray | None = None,
 ) -> FloatArray:
-    """The speed at which each body is expected to hit something.
+    """Speed at which each body is expected to hit something (n,) [length/time].
 
-    v = √(v₀² + 2 (W/m) h), h the free height along the weight to the end of the box around the domain, less the
-    shortest range of a law. In a fluid at most the larger of v₀ and the terminal speed, and on top of that the fastest
-    inflow. For v₀ the surface of a body that is no ball turns with it; v₀ of a component is at least the greatest speed
-    that strokes give it. A driven body has the greatest speed of its prescription. An ``impact_speed`` in the scene
-    takes the place of all that for free bodies, but for v₀, which it cannot lower.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its velocities, its fluid.
-    domain : Domain
-        The room to fall in.
-    bodies : sequence of Body
-        The n shapes.
-    mass : (n,) array
-        What gravity has to set in motion, the added mass with it [mass].
-    weight : (n, d) array
-        Submerged weight W [force].
-    wet : bool
-        Whether a fluid is computed.
-    carried : (n, 2) array, optional
-        Greatest velocity and angular velocity that mechanisms give their components [length/time], [rad/time].
-
-    Returns
-    -------
-    (n,) array
-        Speeds [length/time].
+    v = √(v₀² + 2 (W/m) h), h the free height along the weight W (n, d) [force] to the end of the box around the domain,
+    less the shortest range of a law, and m the ``mass`` (n,) with the added mass. In a fluid (``wet``) at most the
+    larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the surface of a body that is no
+    ball turns with it; v₀ of a component is at least the greatest speed that strokes give it, ``carried`` (n, 2)
+    [length/time], [rad/time]. A driven body has the greatest speed of its prescription. An ``impact_speed`` in the
+    scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
     """
     start, falling = _own_speeds(scene, domain, bodies, mass, weight, wet, carried)
     if wet:
@@ -81,10 +61,10 @@ def travel_speeds(
     weight: FloatArray,
     carried: FloatArray | None = None,
 ) -> FloatArray:
-    """The highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
+    """Highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
 
-    As for `impact_speeds`, but the larger of the body's own and that of the fastest flow, whatever the scene says of
-    impacts.
+    It is the larger of the body's own speed, estimated as in `impact_speeds`, and that of the fastest flow, whatever
+    the scene says of impacts.
     """
     start, falling = _own_speeds(scene, domain, bodies, mass, weight, True, carried)
     held = [table.fixed or table.prescribed is not None for table in scene.body]
@@ -101,7 +81,7 @@ def _own_speeds(
     carried: FloatArray | None,
 ) -> tuple[FloatArray, FloatArray]:
     """v₀, and what it becomes by falling, each (n,) [length/time]."""
-    lever = _by_shape(_lever, bodies)
+    lever = _measure_bodies(_lever, bodies)
     start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
     if carried is not None:
         start = np.maximum(start, carried[:, 0] + lever * carried[:, 1])
@@ -113,38 +93,21 @@ def _own_speeds(
 
 
 def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
-    """The speed at which drag holds a submerged weight, far from walls, from correlations for a ball of equal volume.
+    """Terminal speed (n,) [length/time] of each submerged weight ``pull`` (n,) [force], far from walls, from
+    correlations for the drag of a ball of equal volume.
 
     3D: C = (24/Re)(1 + 0.15 Re^0.687) up to Re = 1000, then 0.44; 2D: C = 1 + 10 Re^(-2/3), with Re = 2 r ρ v/μ.
-    Without inertia F = 6πμ r v in 3D and, since no such law exists in 2D for an unbounded fluid, 4πμ v/ln(L/r) with
-    the longest side L of the box around the domain, less than the drag between its walls. The ball has nearly the least
+    Without inertia F = 6πμ r v in 3D and, since no such law exists in 2D for an unbounded fluid, 4πμ v/ln(L/r) with the
+    longest side L of the box around the domain, less than the drag between its walls. The ball has nearly the least
     drag of all shapes of a volume, so that the speed errs to the fast side.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its fluid, with density and viscosity.
-    domain : Domain
-        For its size.
-    bodies : sequence of Body
-        The n shapes.
-    pull : (n,) array
-        Submerged weights [force].
-
-    Returns
-    -------
-    (n,) array
-        Speeds [length/time].
-
-    Notes
-    -----
-    Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006;
-    Pironneau, J. Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
+    Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006; Pironneau, J.
+    Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
     """
     density, viscosity = scene.fluid.density, scene.fluid.viscosity
     assert density is not None
     assert viscosity is not None
-    radius = _by_shape(equal_volume_radius, bodies)
+    radius = _measure_bodies(equal_volume_radius, bodies)
     if scene.fluid.model == "stokes":
         return np.asarray(pull / creeping_resistances(scene, domain, bodies)[:, 0])
     per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
@@ -153,14 +116,15 @@ def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: 
 
 
 def creeping_resistances(scene: Scene, domain: Domain, bodies: Sequence[Body]) -> FloatArray:
-    """What a fluid without inertia resists each velocity with, (n, d+k) [force·time/length | force·length·time].
+    """Resistance of a fluid without inertia to each velocity of each body (n, d+k) [force·time/length |
+    force·length·time].
 
-    Of a ball of equal volume far from walls, which nearly every shape and place exceeds: 6πμr and 8πμr³ in 3D, 4πμr² of
-    a rotation in 2D and, of a translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
+    It is that of a ball of equal volume far from walls, which nearly every shape and place exceeds: 6πμr and 8πμr³ in
+    3D, 4πμr² for rotation in 2D and, for translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
     """
     viscosity = scene.fluid.viscosity
     assert viscosity is not None
-    radius = _by_shape(equal_volume_radius, bodies)[:, None]
+    radius = _measure_bodies(equal_volume_radius, bodies)[:, None]
     if scene.dimension == 3:
         along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
     else:
@@ -197,7 +161,7 @@ def _free_heights(scene: Scene, domain: Domain, bodies: Sequence[Body], weight: 
     down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
     position = np.array([table.position for table in scene.body])
     ahead = np.where(down > 0.0, upper - position, position - lower)
-    room = ahead - _by_shape(inscribed_radius, bodies)[:, None]
+    room = ahead - _measure_bodies(inscribed_radius, bodies)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
     height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
     shortest = min((table.range for table in law_tables(scene)), default=0.0)
@@ -214,7 +178,7 @@ def _own_speed(table: BodyTable, lever: float) -> float:
 
 
 def fastest_flow(scene: Scene, domain: Domain) -> float:
-    """Of all that is prescribed on the boundary and at the start, at the points and times sampled."""
+    """Greatest speed prescribed on the boundary and at the start, at the points and times sampled [length/time]."""
     inflows = sampled_inflows(scene, domain)
     times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
     sliding = [
@@ -235,8 +199,8 @@ def _length(vector: Vectors) -> float:
     return 0.0 if vector is None else float(np.linalg.norm(vector))
 
 
-def _by_shape(measure: Callable[[Body], float], bodies: Sequence[Body]) -> FloatArray:
-    """``measure`` of each body (n,), asked once for each shape."""
+def _measure_bodies(measure: Callable[[Body], float], bodies: Sequence[Body]) -> FloatArray:
+    """Measure each body (n,), one call for all bodies of one shape."""
     keys = [shape_key(body) for body in bodies]
     known = {key: measure(body) for key, body in dict(zip(keys, bodies, strict=True)).items()}
     return np.array([known[key] for key in keys])

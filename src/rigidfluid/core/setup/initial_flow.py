@@ -21,28 +21,14 @@ _SAMPLES = 17
 
 
 def initial_flow(scene: Scene) -> Literal["rest", "steady"] | VectorExpression:
-    """What `FluidProblem.initial` is for a scene; raises SceneError where an expression is none."""
+    """Initial condition of the fluid, as `FluidProblem.initial` takes it; raises SceneError for an invalid
+    expression."""
     initial = scene.fluid.initial
-    return initial if isinstance(initial, str) else VectorExpression.of(initial, _KEY)
+    return initial if isinstance(initial, str) else VectorExpression.parse(initial, _KEY)
 
 
 def check_initial_flow(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
-    """Refuse a flow at the start that the backend cannot make, or that is not finite in the domain.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its ``fluid.initial`` has a component for each dimension.
-    backend : type
-        The class that its fluid table names.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        Naming the key, and the component.
-    """
+    """Refuse, with SceneError, an initial flow that the backend cannot make, or that is not finite in the domain."""
     if scene.fluid.initial == "rest":
         return
     if not backend.initial_flows:

@@ -25,7 +25,7 @@ SMALLEST_GAP = 0.25
 
 
 class LawTable(NamedTuple):
-    """What a table says that names a ``law``; ``at`` is its place in the scene, ``options`` are keys of its part."""
+    """Keys of a table that names a ``law``; ``at`` is its place in the scene, ``options`` are the keys of its part."""
 
     at: str
     law: str
@@ -52,20 +52,7 @@ def law_tables(scene: Scene) -> tuple[LawTable, ...]:
 
 
 def check_interactions(scene: Scene, domain: Domain) -> None:
-    """Refuse tables of laws that act nowhere, or whose smallest gap is none.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its single keys are valid, and so are its bodies and conditions.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        At the first table.
-    """
+    """Refuse, with SceneError, tables of laws that act nowhere, or whose smallest gap is not below their range."""
     for table in law_tables(scene):
         if table.smallest_gap is not None and table.smallest_gap >= table.range:
             allowed = f"a length above 0 and below {table.at}.range = {table.range}"
@@ -73,32 +60,9 @@ def check_interactions(scene: Scene, domain: Domain) -> None:
         _check_names(scene, domain, table)
 
 
-def build_interactions(
-    scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads
-) -> tuple[Interaction, ...]:
-    """The laws, each with the contacts that it acts in.
-
-    Parameters
-    ----------
-    scene : Scene
-        A validated scene.
-    parts : Parts
-        The classes of its laws.
-    surfaces : sequence of str
-        Names of the bodies, then of the faces.
-    loads : Loads
-        What contacts must hold; the smallest gap is each table's own.
-
-    Returns
-    -------
-    tuple of Interaction
-        In the order of the tables.
-
-    Raises
-    ------
-    SceneError
-        If a law refuses its options or loads.
-    """
+def build_interactions(scene: Scene, parts: Parts, surfaces: Sequence[str], loads: Loads) -> tuple[Interaction, ...]:
+    """Laws, each with the contacts that it acts in, in the order of the tables; ``surfaces`` are the names of bodies
+    and then of faces. Raises SceneError if a law refuses its options or loads."""
     return tuple(
         Interaction(
             field=table.at,

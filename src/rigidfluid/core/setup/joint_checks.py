@@ -20,18 +20,8 @@ DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 
 
 def check_joints(scene: Scene) -> None:
-    """Refuse tables that cannot be, before anything is built.
-
-    Parameters
-    ----------
-    scene : Scene
-        With the components of mechanisms among its bodies; its single keys are valid.
-
-    Raises
-    ------
-    SceneError
-        At the first of them.
-    """
+    """Refuse, with SceneError, invalid tables of joints and of bodies' links to the ground, before anything is
+    built."""
     for number, body in enumerate(scene.body):
         _check_free(body, scene.dimension, f"body.{number}")
         _check_spring(body, scene.dimension, f"body.{number}")
@@ -45,7 +35,7 @@ def check_joints(scene: Scene) -> None:
 
 
 def held_directions(body: BodyTable, dimension: int) -> BoolArray:
-    """In which directions (d+k,) a body is held by its key `free`."""
+    """Directions (d+k,) in which the key `free` of a body's table holds it."""
     names = DIRECTIONS[dimension]
     return np.array([body.free is not None and name not in body.free for name in names])
 

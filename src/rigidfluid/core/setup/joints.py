@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
 
 LONGEST_TURN = 0.5
-"""A spring's frequency times the step is at most that: Verlet's scheme then errs by a hundredth of the frequency. Where
-it relaxes in a fluid without inertia, its rate times the step: half of what is still stable."""
+"""Greatest product of a spring's frequency and the step [1]: Verlet's scheme then errs by a hundredth of the frequency.
+The rate at which a spring relaxes in a fluid without inertia counts as its frequency: half of what is still stable."""
 
 
 def build_linkage(
@@ -36,34 +36,12 @@ def build_linkage(
     mechanisms: Mechanisms | None,
     resistance: FloatArray | None,
 ) -> JointLinkage | None:
-    """What links the motions of a scene, None where nothing does.
+    """Joints and ground links between the motions of a scene at the start, None without any.
 
-    Parameters
-    ----------
-    scene : Scene
-        With the components of mechanisms among its bodies; its tables are checked.
-    pose : Pose
-        Of the n bodies at the start.
-    mass, inertia : (n,), (n, k, k) arrays
-        Of the bodies [mass], [mass·length²].
-    controlled : (n,) array
-        Which bodies have a given motion.
-    controlled_twist : callable
-        Of the N motions (N, d+k) at a time, where they are given.
-    mechanisms : Mechanisms or None
-        The motions that carry the bodies.
-    resistance : (n, d+k) array or None
-        Of a fluid without inertia, at least, to the velocities of each body [force·time/length | force·length·time].
-
-    Returns
-    -------
-    JointLinkage or None
-        As they are at the start.
-
-    Raises
-    ------
-    SceneError
-        If joints hold what is held already, nothing can move in one, or a spring is too stiff for the step.
+    ``pose``, ``mass`` (n,), ``inertia`` (n, k, k) and ``controlled`` (n,) are the bodies', ``controlled_twist`` the
+    prescribed twists (N, d+k) of the N motions by time; ``resistance`` (n, d+k) is a lower bound of that of a fluid
+    without inertia [force·time/length | force·length·time]. Raises SceneError if joints hold what is held already,
+    nothing can move in one, or a spring is too stiff for the step.
     """
     ground = [_ground_link(body, number, scene.dimension) for number, body in enumerate(scene.body) if _is_held(body)]
     if not scene.joint and not ground:
@@ -96,13 +74,13 @@ def _ground_link(body: BodyTable, number: int, dimension: int) -> GroundLink:
         name=body.name,
         body=number,
         held=held_directions(body, dimension),
-        stiffness=_along(dimension, spring.stiffness, spring.angular_stiffness),
-        damping=_along(dimension, spring.damping, spring.angular_damping),
+        stiffness=_join_directions(dimension, spring.stiffness, spring.angular_stiffness),
+        damping=_join_directions(dimension, spring.damping, spring.angular_damping),
         rest=None if spring.rest is None else np.array(spring.rest),
     )
 
 
-def _along(dimension: int, straight: Sequence[float] | None, turning: Sequence[float] | None) -> FloatArray:
+def _join_directions(dimension: int, straight: Sequence[float] | None, turning: Sequence[float] | None) -> FloatArray:
     """Values of all directions (d+k,), zero where none are given."""
     k = 1 if dimension == 2 else 3
     return np.array([*(straight or [0.0] * dimension), *(turning or [0.0] * k)])
@@ -126,12 +104,12 @@ def _joint(scene: Scene, table: JointTable, at: str, pose: Pose) -> Joint:
         stiffness=table.stiffness or 0.0,
         rest_angle=table.rest_angle or 0.0,
         damping=table.damping or 0.0,
-        drive=None if stroke is None else _followed(stroke),
+        drive=None if stroke is None else _value_and_rate(stroke),
         next_corner=None if stroke is None else stroke.next_corner,
     )
 
 
-def _followed(stroke: Stroke) -> Callable[[float], tuple[float, float]]:
+def _value_and_rate(stroke: Stroke) -> Callable[[float], tuple[float, float]]:
     """Its value and rate together."""
     return lambda time: (stroke.value(time), stroke.rate(time))
 

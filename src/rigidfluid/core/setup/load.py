@@ -15,8 +15,8 @@ from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.joint_checks import check_joints
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
-from rigidfluid.core.setup.strokes import with_drives
-from rigidfluid.core.setup.time_factor import with_time_tables
+from rigidfluid.core.setup.strokes import read_drives
+from rigidfluid.core.setup.time_factor import read_time_tables
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 
 
@@ -47,9 +47,9 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
 
 
 def scene_of_results(data: Mapping[str, Any]) -> Scene:
-    """As `scene_from_dict`, for results that may come from where other packages are installed.
+    """Scene of stored results, which may come from a place where other packages are installed.
 
-    Its backend may lack packages here, and then cannot run it.
+    It is read like `scene_from_dict` does, but its backend may lack packages here, and then cannot run it.
     """
     mesh = data.get("mesh")
     if not isinstance(mesh, Mapping) or mesh.get("size_body") != AUTO:
@@ -59,7 +59,7 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
 
 def _checked(data: Mapping[str, Any]) -> Scene:
-    scene = with_drives(with_time_tables(read_table(Scene, data)))
+    scene = read_drives(read_time_tables(read_table(Scene, data)))
     check_tables(scene)
     parts = known_parts(scene)
     check_boundary(parts.scene, parts.domain)

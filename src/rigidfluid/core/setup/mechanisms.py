@@ -21,29 +21,11 @@ from rigidfluid.registry import MECHANISM, Registry
 _ROUNDING = 1e-9
 
 
-def with_components(scene: Scene, registry: Registry | None = None) -> tuple[Scene, dict[str, Mechanism]]:
-    """The scene with the components of its mechanisms after its bodies, and the mechanisms.
+def append_components(scene: Scene, registry: Registry | None = None) -> tuple[Scene, dict[str, Mechanism]]:
+    """Append the components of its mechanisms to a scene's bodies, and return it with the mechanisms by name.
 
-    Parameters
-    ----------
-    scene : Scene
-        As it was read.
-    registry : Registry, optional
-        Loaded where it is not given.
-
-    Returns
-    -------
-    Scene
-        A component is a body named after mechanism and component, ``dumbbell.left``, and a part of the mechanism.
-    dict of str to Mechanism
-        By name, built from their options.
-
-    Raises
-    ------
-    PluginError
-        If a mechanism is not there, or says what cannot be.
-    SceneError
-        If an option is not allowed, or a name is taken.
+    A component is a body named after mechanism and component, ``dumbbell.left``. Raises PluginError for a mechanism
+    that is missing or invalid, SceneError for a refused option or a name that is taken.
     """
     if not scene.mechanism:
         return scene, {}
@@ -79,13 +61,13 @@ def _refuse_components(mechanism: Mechanism, at: str) -> None:
     names = [component.name for component in mechanism.components]
     densities = [component.density for component in mechanism.components]
     if not names or len(set(names)) < len(names):
-        raise _impossible(at, f"components named {names}", "components, each with a name of its own")
+        raise _plugin_error(at, f"components named {names}", "components, each with a name of its own")
     if not all(0.0 < density < np.inf for density in densities):
-        raise _impossible(at, f"components of densities {densities}", "numbers above 0")
+        raise _plugin_error(at, f"components of densities {densities}", "numbers above 0")
 
 
 def _refuse_placement(mechanism: Mechanism, at: str) -> None:
-    """So are places of a wrong shape, and a rate of what is said not to change."""
+    """Raise PluginError for a placement of a wrong shape, and for a rate of components that are not driven."""
     count, d = len(mechanism.components), mechanism.dimension
     k, q = (1, 1) if d == 2 else (3, 4)
     pose, rate = mechanism.placement(0.0), mechanism.rate(0.0)
@@ -97,14 +79,14 @@ def _refuse_placement(mechanism: Mechanism, at: str) -> None:
     ):
         if np.shape(values) != (count, width) or not np.isfinite(values).all():
             allowed = f"finite numbers of shape {(count, width)}, a row for each component"
-            raise _impossible(at, f"{name} of shape {np.shape(values)}", allowed)
+            raise _plugin_error(at, f"{name} of shape {np.shape(values)}", allowed)
     if d == 3 and np.abs(np.linalg.norm(pose.orientation, axis=1) - 1.0).max() > _ROUNDING:
-        raise _impossible(at, f"quaternions {pose.orientation.tolist()}", "quaternions of length 1")
+        raise _plugin_error(at, f"quaternions {pose.orientation.tolist()}", "quaternions of length 1")
     if not mechanism.driven and (rate.velocity.any() or rate.angular_velocity.any()):
-        raise _impossible(at, "a rate of what is not driven", "`driven = True` beside `rate`")
+        raise _plugin_error(at, "a rate of what is not driven", "`driven = True` beside `rate`")
 
 
-def _impossible(at: str, found: str, allowed: str) -> PluginError:
+def _plugin_error(at: str, found: str, allowed: str) -> PluginError:
     return PluginError(at, found, allowed, "Mend the mechanism; MechanismContract in rigidfluid.testing shows more.")
 
 

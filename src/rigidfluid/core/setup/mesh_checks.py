@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import MeshTable, Scene
 
 MOST_CELLS = 10**9
-"""More of them, a cube or square of the edge length each, are a slip of units, and a mesher would never end."""
+"""Greatest number of cells, each a cube or square of the edge length: more are a slip of units, and a mesher would
+never end."""
 
 
 def check_mesh_table(scene: Scene) -> None:

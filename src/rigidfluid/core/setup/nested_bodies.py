@@ -30,26 +30,9 @@ class NestedBodyTable(PartOptions):
 T = TypeVar("T", bound=NestedBodyTable)
 
 
-def by_name(tables: Sequence[T], at: str) -> Mapping[str, T]:
-    """The tables by their names, in order.
-
-    Parameters
-    ----------
-    tables : sequence of NestedBodyTable
-        As they stand in the scene.
-    at : str
-        Where that is; its last word, with a number, names those without a name.
-
-    Returns
-    -------
-    mapping of str to NestedBodyTable
-        By name.
-
-    Raises
-    ------
-    SceneError
-        If a name comes twice.
-    """
+def tables_by_name(tables: Sequence[T], at: str) -> Mapping[str, T]:
+    """Tables by name, in order; one without a name gets the last word of its key ``at`` and its number. Raises
+    SceneError if a name comes twice."""
     found: dict[str, T] = {}
     for number, table in enumerate(tables):
         name = table.name or f"{at.rpartition('.')[2]}{number}"
@@ -61,29 +44,8 @@ def by_name(tables: Sequence[T], at: str) -> Mapping[str, T]:
 
 
 def build_shape(table: NestedBodyTable, at: str, dimension: int) -> Body:
-    """The shape that a table describes.
-
-    Parameters
-    ----------
-    table : NestedBodyTable
-        Its type and the keys of that.
-    at : str
-        Where it is in the scene, for messages.
-    dimension : int
-        2 or 3.
-
-    Returns
-    -------
-    Body
-        In its own frame.
-
-    Raises
-    ------
-    SceneError
-        If a key is unknown, a vector has a wrong length, or the shape cannot be.
-    PluginError
-        If there is no such body type.
-    """
+    """Build the shape, in its own frame, of the table at the key ``at``; raises SceneError for an unknown key, a vector
+    of wrong length or an invalid shape, PluginError for an unknown body type."""
     check_length(table.position, f"{at}.position", dimension)
     check_orientation(table, dimension, at)
     part, options = Registry.load().get(BODY, table.type, f"{at}.type"), dict(table.model_extra or {})

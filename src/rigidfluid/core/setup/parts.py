@@ -15,7 +15,7 @@ from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
@@ -27,11 +27,10 @@ if TYPE_CHECKING:
 P = TypeVar("P", bound=Part)
 
 AUTO = "auto"
-"""What a scene says that leaves the choice of its detector to `choose_detector`."""
-
+"""Value of `contact.detector` that leaves the choice to `choose_detector`."""
 
 _KNOWN: dict[int, Parts] = {}
-"""Of the scenes that exist, by their id."""
+"""Parts of the scenes in memory, by the scenes' `id`."""
 
 
 @dataclass(frozen=True)
@@ -63,28 +62,14 @@ class Parts:
 
 
 def select_plugins(scene: Scene) -> Parts:
-    """Find the parts that a scene names and validate their options.
+    """Find the parts that a scene names, validate their options, and build its bodies and domain, on whose shapes the
+    default detector depends.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its tables hold the options of the parts beside their own keys.
-
-    Returns
-    -------
-    Parts
-        Classes with options; bodies and domain are built, as the default detector depends on their shapes.
-
-    Raises
-    ------
-    PluginError
-        If a part is not there.
-    SceneError
-        If an option is unknown, missing or has a value that is not allowed.
+    Raises PluginError if a part is missing, SceneError for an option that is unknown, missing or not allowed.
     """
     registry = Registry.load()
     domain = _domain(scene, registry)
-    scene, mechanisms = with_components(scene, registry)
+    scene, mechanisms = append_components(scene, registry)
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
     mesh = backend.part.needs_mesh
@@ -102,20 +87,8 @@ def select_plugins(scene: Scene) -> Parts:
 
 
 def known_parts(scene: Scene) -> Parts:
-    """The parts of a scene, selected and built when they are first asked for, and known as long as the scene is.
-
-    They are known of this very object: an equal scene may have been read where other plug-ins were installed.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables hold the options of the parts beside their own keys.
-
-    Returns
-    -------
-    Parts
-        As `select_plugins` gives them, which also raises.
-    """
+    """Parts of a scene by `select_plugins`, selected and built on the first call, and kept as long as this very object:
+    an equal scene may have been read where other plug-ins were installed."""
     if id(scene) not in _KNOWN:
         _KNOWN[id(scene)] = select_plugins(scene.model_copy())  # itself it would live for ever
         weakref.finalize(scene, _KNOWN.pop, id(scene))
@@ -167,7 +140,8 @@ def _refuse_detector(detector: type[Detector], mesh: bool) -> None:
 
 
 def _refuse_contact_keys(table: ContactTable, detector: type[Detector], laws: Sequence[type[ForceLaw]]) -> None:
-    """`[contact]` holds the keys of its detector, and of its law if it names one, which is the first then."""
+    """Refuse keys of `[contact]` that neither its detector nor its law reads; the law is the first of ``laws``, if the
+    table names one."""
     readers: list[type[Part]] = [detector, laws[0]] if table.law else [detector]
     hint = "" if table.law else "Name the law that reads it: `law = …`."
     _refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)

@@ -1,4 +1,4 @@
-"""Which surfaces of the domain are periodic, and with which others."""
+"""Periodic surfaces of the domain, and their opposite ones."""
 
 from __future__ import annotations
 
@@ -20,24 +20,9 @@ _APART = 1e-12
 
 
 def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
-    """The pairs of pieces that a scene makes periodic.
+    """Pairs of numbers of periodic pieces; one with a higher pressure than its opposite comes first.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its tables ``boundary``.
-    domain : Domain
-        Its pieces.
-
-    Returns
-    -------
-    tuple of (int, int)
-        Numbers of pieces; where one of two has a higher pressure it comes first.
-
-    Raises
-    ------
-    SceneError
-        If a surface has no opposite one that is periodic too, or both are to have the higher pressure.
+    Raises SceneError for a surface without an opposite one that is periodic too, or with a higher pressure on both.
     """
     tables = [boundary_table(scene, name) for name in domain.names]
     chosen = [i for i, table in enumerate(tables) if table is not None and table.type == "periodic"]
@@ -64,17 +49,8 @@ def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
 
 
 def check_periodic(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
-    """Raise SceneError where periodic surfaces meet what does not know them.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables.
-    backend : type
-        The class that its fluid table names.
-    domain : Domain
-        With its periodic pieces.
-    """
+    """Refuse, with SceneError, periodic surfaces together with a backend, window, domain or condition that cannot take
+    them."""
     if not domain.periodic:
         return
     table = boundary_table(scene, domain.names[domain.periodic[0][0]])

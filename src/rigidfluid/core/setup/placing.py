@@ -1,4 +1,4 @@
-"""Where the tables of a scene put bodies and mechanisms, and how they start."""
+"""Initial poses and twists of bodies and mechanisms, from the tables of a scene."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ Tables = Sequence[BodyTable | MechanismTable]
 
 
 class Placement(Protocol):
-    """What a table says of a place; an angle in 2D, a quaternion in 3D, or neither."""
+    """Position and orientation keys of a table: an angle in 2D, a quaternion in 3D, or neither."""
 
     @property
     def position(self) -> tuple[float, ...]:
-        """Of the centre of mass [length]."""
+        """Position of the centre of mass [length]."""
 
     @property
     def angle(self) -> float | None:
-        """Counter-clockwise [rad]."""
+        """Angle, counter-clockwise [rad]."""
 
     @property
     def orientation(self) -> tuple[float, float, float, float] | None:
-        """A quaternion, scalar first [1]."""
+        """Quaternion, scalar first [1]."""
 
 
 def check_orientation(table: Placement, dimension: int, at: str) -> None:

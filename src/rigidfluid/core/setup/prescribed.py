@@ -23,7 +23,7 @@ class PrescribedMotion:
     rows: Prescription
 
     def pose_at(self, time: float) -> Pose:
-        """Where the motion leads to by ``time``: evaluated, so that no error of a step adds up."""
+        """Prescribed poses at ``time``, in closed form, so that no errors of steps add up."""
         rows, d = self.rows, self.rows.amplitude.shape[1]
         elapsed = time - rows.start
         phase = np.sin(2 * np.pi * rows.frequency * time) - np.sin(2 * np.pi * rows.frequency * rows.start)
@@ -47,15 +47,15 @@ class PrescribedMotion:
         it goes linearly from what it has at ``time``."""
         rows, now, pose = self.rows, self(time), self.pose_at(time)
         changed = Prescription(
-            twist=_with_row(rows.twist, row, twist),
-            before=_with_row(rows.before, row, now[row]),
-            over=_with_row(rows.over, row, over),
-            amplitude=_with_row(rows.amplitude, row, 0.0),
-            frequency=_with_row(rows.frequency, row, 0.0),
-            start=_with_row(rows.start, row, time),
+            twist=_replace_row(rows.twist, row, twist),
+            before=_replace_row(rows.before, row, now[row]),
+            over=_replace_row(rows.over, row, over),
+            amplitude=_replace_row(rows.amplitude, row, 0.0),
+            frequency=_replace_row(rows.frequency, row, 0.0),
+            start=_replace_row(rows.start, row, time),
             pose=Pose(
-                _with_row(rows.pose.position, row, pose.position[row]),
-                _with_row(rows.pose.orientation, row, pose.orientation[row]),
+                _replace_row(rows.pose.position, row, pose.position[row]),
+                _replace_row(rows.pose.orientation, row, pose.orientation[row]),
             ),
         )
         return PrescribedMotion(changed)
@@ -66,7 +66,7 @@ def _divisor(over: FloatArray) -> FloatArray:
     return np.where(over > 0.0, over, 1.0)
 
 
-def _with_row(rows: FloatArray, row: int, values: FloatArray | float) -> FloatArray:
+def _replace_row(rows: FloatArray, row: int, values: FloatArray | float) -> FloatArray:
     changed = rows.copy()
     changed[row] = values
     return changed

@@ -1,4 +1,4 @@
-"""How a prescribed velocity is spread over a flat piece of the boundary: factors from 0 on its edges to 1."""
+"""Profiles of a prescribed velocity over a flat piece of the boundary: factors from 0 on its edges to 1."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray
 
 _PANELS = 8
-"""A side is integrated in so many panels of three points."""
+"""Number of panels, of three points each, in which a side is integrated."""
 
 _TERMS = 200
-"""Of a duct's series, which then misses its walls by 1e-6 of the peak."""
+"""Number of terms of a duct's series, which then misses its walls by 1e-6 of the peak."""
 
 _SAME = 1e-9
 """A piece of the size of its bounding rectangle, or of the disk in it, is one, by this relative difference."""
@@ -30,7 +30,7 @@ class Rectangle:
     along: FloatArray
 
     def coordinates(self, points: FloatArray) -> FloatArray:
-        """From 0 to 1 along each side, (N, d-1), of ``points`` (N, d)."""
+        """Coordinates of ``points`` (N, d) along each side, from 0 to 1, (N, d-1)."""
         return np.asarray(0.5 + (points - self.centre) @ self.along.T / self.sides)
 
     def points(self, coordinates: FloatArray) -> FloatArray:
@@ -39,7 +39,7 @@ class Rectangle:
 
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
         """Points (N, d) and weights (N,) of an integral over it."""
-        nodes, weights = _composite()
+        nodes, weights = _composite_rule()
         grid = np.meshgrid(*[nodes] * len(self.sides), indexing="ij")
         products = np.prod(np.meshgrid(*[weights] * len(self.sides), indexing="ij"), axis=0)
         points = self.points(np.stack([axis.ravel() for axis in grid], axis=1))
@@ -56,7 +56,7 @@ class Disk:
 
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
         """Points (N, 3) and weights (N,) of an integral over it."""
-        nodes, weights = _composite()
+        nodes, weights = _composite_rule()
         along = np.linalg.svd(self.normal[None, :])[2][1:]
         circle = np.stack([np.cos(2.0 * np.pi * nodes), np.sin(2.0 * np.pi * nodes)], axis=1) @ along
         points = self.centre + self.radius * nodes[:, None, None] * circle
@@ -64,19 +64,8 @@ class Disk:
 
 
 def section(piece: Piece) -> Rectangle | Disk | None:
-    """The shape of a flat piece, as its area and the box around it tell; None of any other.
-
-    Parameters
-    ----------
-    piece : Piece
-        A piece of the boundary.
-
-    Returns
-    -------
-    Rectangle, Disk or None
-        In 2D a segment from the end with the smaller coordinates, for flat pieces; in 3D rectangles across an axis,
-        with sides along the others, and disks.
-    """
+    """Shape of a flat piece, by its area and bounding box: in 2D a segment from the end with the smaller coordinates;
+    in 3D a disk, or a rectangle across an axis with sides along the others. None for any other piece."""
     plane = piece.shape.plane
     if plane is None:
         return None
@@ -93,7 +82,7 @@ def section(piece: Piece) -> Rectangle | Disk | None:
     return Disk(centre, radius, plane.unit_normal) if np.allclose(size, round_size, atol=_SAME * radius) else None
 
 
-def _composite() -> tuple[FloatArray, FloatArray]:
+def _composite_rule() -> tuple[FloatArray, FloatArray]:
     """Gauss' rule of three points in each panel of [0, 1], exact for polynomials of degree 5."""
     nodes, weights = np.polynomial.legendre.leggauss(3)
     panels = np.arange(_PANELS)[:, None]
@@ -109,27 +98,12 @@ def _segment(length: float, plane: Plane, centre: FloatArray, size: FloatArray) 
 
 
 def poiseuille(shape: Rectangle | Disk, points: FloatArray) -> FloatArray:
-    """Fully developed flow through a section over its peak, (N,): the solution of Δu = const with u = 0 on its edge.
+    """Fully developed flow at ``points`` (N, d) of a section over its peak, (N,) from 0 to 1 [1]: the solution of Δu =
+    const with u = 0 on its edge.
 
-    2D: 4 s(1 - s); disk: 1 - r²/R²; rectangle |y| ≤ a ≤ b, |z| ≤ b: 1 - (y/a)² less
-    (32/π³) Σ (-1)^((n-1)/2) n⁻³ cosh(nπz/2a)/cosh(nπb/2a) cos(nπy/2a) over odd n, and all that over its value in
-    the middle.
-
-    Parameters
-    ----------
-    shape : Rectangle or Disk
-        The section.
-    points : (N, d) array
-        Points of it [length].
-
-    Returns
-    -------
-    (N,) array
-        From 0 to 1 [1].
-
-    Notes
-    -----
-    White, Viscous Fluid Flow, McGraw-Hill 2006, section 3-3.
+    2D: 4 s(1 - s); disk: 1 - r²/R²; rectangle |y| ≤ a ≤ b, |z| ≤ b: 1 - (y/a)² less (32/π³) Σ (-1)^((n-1)/2) n⁻³
+    cosh(nπz/2a)/cosh(nπb/2a) cos(nπy/2a) over odd n, and all that over its value in the middle. White, Viscous Fluid
+    Flow, McGraw-Hill 2006, section 3-3.
     """
     if isinstance(shape, Disk):
         return np.asarray(1.0 - np.sum((points - shape.centre) ** 2, axis=1) / shape.radius**2)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SAMPLES = 400
 _FEWEST_STEPS = 8
-"""Motion that does not repeat is looked at for so many steps at least."""
+"""Least number of steps for which motion that does not repeat is sampled."""
 
 
 def refuse_quick_mechanisms(mechanisms: Mapping[str, Mechanism], time: TimeTable) -> None:
@@ -40,14 +40,16 @@ def refuse_quick_drive(stroke: Stroke, joint: str, time: TimeTable) -> None:
 
 
 def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
-    """Of a period, at places that no oscillation in it meets always in the same phase, and its corners (s,)."""
+    """Sample times (s,) of a period [time]: its corners, and points that no oscillation meets always in the same
+    phase."""
     last = moving.period or max(time.end, _FEWEST_STEPS * time.step)
     spread = last * (np.arange(_SAMPLES) * _GOLDEN % 1.0)
     return np.concatenate([spread, np.fromiter(corners(moving, last), dtype=float)])
 
 
 def _refuse(what: str, moving: Mechanism | Stroke, values: FloatArray, rates: FloatArray, time: TimeTable) -> None:
-    """Steps end at corners, so that what has them needs only that the shortest step is short enough."""
+    """Raise SceneError if a step, or with corners, at which steps end, the shortest step, is too long for the motion's
+    way."""
     way, speed = np.ptp(values, axis=0), np.abs(rates).max(axis=0)
     least = float(np.min(way[speed > 0.0] / speed[speed > 0.0], initial=np.inf))
     key = "shortest" if np.isfinite(moving.next_corner(0.0)) else "step"

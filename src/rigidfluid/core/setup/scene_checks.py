@@ -1,4 +1,5 @@
-"""What one key alone cannot show to be wrong: lengths of vectors, doubled names, keys that contradict each other."""
+"""Refuses scenes whose keys are valid one by one but not together: lengths of vectors, doubled names,
+contradictions."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ from collections.abc import Iterator
 from math import pi
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.setup.body_force import check_body_force
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
@@ -26,18 +28,7 @@ MOST_STEPS = 10**9
 
 
 def check_tables(scene: Scene) -> None:
-    """Refuse what contradicts itself in the tables alone.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its single keys are valid.
-
-    Raises
-    ------
-    SceneError
-        At the first contradiction.
-    """
+    """Refuse, with SceneError, tables that contradict themselves or each other."""
     _check_vectors(scene)
     if not (scene.body or scene.mechanism):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
@@ -53,24 +44,10 @@ def check_tables(scene: Scene) -> None:
 
 
 def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
-    """Refuse a scene that lacks what its backend needs, or prescribes a flow that cannot be.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its tables are checked.
-    backend : type
-        The class that its fluid table names.
-    domain : Domain
-        The domain that it names.
-
-    Raises
-    ------
-    SceneError
-        If density, viscosity or the mesh is missing, or if more flows in than out; without a mesh, if there is a
-        tolerance; if the flow at the start is not for this backend.
-    """
+    """Refuse, with SceneError, a scene that lacks the density, viscosity or mesh that its backend needs, has a
+    tolerance for a backend without a mesh, or prescribes an impossible flow."""
     check_initial_flow(scene, backend, domain)
+    check_body_force(scene, backend)
     check_periodic(scene, backend, domain)
     if not backend.needs_mesh:
         if scene.time.tolerance is not None:
@@ -101,6 +78,7 @@ def _vectors(scene: Scene) -> Vectors:
     d = scene.dimension
     k = 1 if d == 2 else 3
     yield "fluid.gravity", scene.fluid.gravity, d
+    yield "fluid.force", scene.fluid.force, d
     yield "fluid.initial", None if isinstance(scene.fluid.initial, str) else scene.fluid.initial, d
     for i, boundary in enumerate(scene.boundary):
         yield f"boundary.{i}.velocity", boundary.velocity, d

@@ -27,18 +27,8 @@ _UNNAMED = {
 
 
 def json_schema() -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of a scene file.
-
-    Returns
-    -------
-    dict
-        Each table that names a part takes that part's keys as well, and no others.
-
-    Raises
-    ------
-    PluginError
-        If a plug-in is not usable.
-    """
+    """JSON Schema (draft 2020-12) of a scene file: each table that names a part takes that part's keys as well, and no
+    others. Raises PluginError if a plug-in is not usable."""
     schema = Scene.model_json_schema()
     for entry in Registry.load().entries:
         _add_part(schema["$defs"], entry)

@@ -7,33 +7,17 @@ import numpy as np
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 
-def stacked(
+def stack_loads(
     own: FloatArray, weight: FloatArray, position: FloatArray, radius: FloatArray, box: FloatArray
 ) -> FloatArray:
-    """The loads of each body together with those of the bodies that may come to press on it.
+    """Loads (n, c) of each body together with those of the bodies that may come to press on it; ``own`` without weight.
 
-    A body presses in the direction of its weight: heavy ones downward, buoyant ones upward. It presses on those that
-    start ahead of it: with all of its load where the two overlap, seen along the weight, and else with 1/N of it, where
-    N of the largest bodies fit side by side into the box. Of what presses from above and from below the larger counts.
-    In a heap of equal disks the bodies that overlap one of them are two columns, so that it gets twice the mean load.
-
-    Parameters
-    ----------
-    own : (n, c) array
-        c loads of each body, zero where it presses on nothing.
-    weight : (n, d) array
-        Submerged weights, all along one line [force].
-    position : (n, d) array
-        Of the centres at the start [length].
-    radius : (n,) array
-        Of the bounding balls [length].
-    box : (d,) array
-        Lengths of the box's sides [length].
-
-    Returns
-    -------
-    (n, c) array
-        Loads, ``own`` where there is no weight.
+    A body presses its ``own`` loads (n, c) in the direction of its submerged ``weight`` (n, d) [force], all weights
+    being along one line: heavy bodies downward, buoyant ones upward. It presses on those that start ahead of it: with
+    all of its load where the two bounding balls overlap, seen along the weight, and else with 1/N of it, where N of the
+    largest bodies fit side by side into the ``box`` of these sides (d,). The larger of the loads from above and from
+    below counts. In a heap of equal disks the bodies that overlap one of them are two columns, so that it gets twice
+    the mean load.
     """
     heaviest = weight[np.argmax(np.linalg.norm(weight, axis=1))]
     if not heaviest.any():
@@ -44,8 +28,8 @@ def stacked(
     for ahead in (direction, -direction):
         pressed = np.where((weight @ ahead > 0.0)[:, None], own, 0.0)
         depth = position @ ahead
-        column = _behind_in_pairs(pressed, depth, pairs)
-        pressing.append(column + share * (_behind(pressed, depth) - column))
+        column = _sum_behind_in_pairs(pressed, depth, pairs)
+        pressing.append(column + share * (_sum_behind(pressed, depth) - column))
     return own + np.maximum(*pressing)
 
 
@@ -60,13 +44,13 @@ def _overlapping(direction: FloatArray, position: FloatArray, radius: FloatArray
 
 
 def _side_by_side(direction: FloatArray, radius: FloatArray, box: FloatArray) -> float:
-    """How many of the largest bodies fit side by side across ``direction`` (d,), at least one."""
+    """Number of the largest bodies that fit side by side across ``direction`` (d,), at least one."""
     across = np.prod(box) * np.sum(np.abs(direction) / box)
     return max(float(across // (2.0 * radius.max()) ** (len(box) - 1)), 1.0)
 
 
-def _behind_in_pairs(load: FloatArray, depth: FloatArray, pairs: IntArray) -> FloatArray:
-    """Of each body the sum of the loads (n, c) of its partners in ``pairs`` (p, 2) at a smaller ``depth`` (n,)."""
+def _sum_behind_in_pairs(load: FloatArray, depth: FloatArray, pairs: IntArray) -> FloatArray:
+    """Sum, for each body, of the loads (n, c) of its partners in ``pairs`` (p, 2) at a smaller ``depth`` (n,)."""
     total = np.zeros_like(load)
     for behind, ahead in (pairs.T, pairs.T[::-1]):
         pressing = depth[behind] < depth[ahead]
@@ -74,8 +58,8 @@ def _behind_in_pairs(load: FloatArray, depth: FloatArray, pairs: IntArray) -> Fl
     return total
 
 
-def _behind(load: FloatArray, depth: FloatArray) -> FloatArray:
-    """Of each body the sum of the loads (n, c) of all at a smaller ``depth`` (n,)."""
+def _sum_behind(load: FloatArray, depth: FloatArray) -> FloatArray:
+    """Sum, for each body, of the loads (n, c) of all bodies at a smaller ``depth`` (n,)."""
     order = np.argsort(depth)
     sums = np.vstack([np.zeros_like(load[:1]), np.cumsum(load[order], axis=0)])
     return np.asarray(sums[np.searchsorted(depth[order], depth, side="left")])

@@ -11,27 +11,12 @@ _ROUNDING = 1e-9
 
 
 def build_stroke(table: StrokeTable, at: str) -> Stroke:
-    """The function of time that a table describes.
+    """Function of time that the table at the key ``at`` describes, repeated unless the table says no.
 
-    Parameters
-    ----------
-    table : StrokeTable
-        Its rows, or a file of them.
-    at : str
-        Where it is in the scene, for messages.
-
-    Returns
-    -------
-    Stroke
-        Repeated unless the table says no.
-
-    Raises
-    ------
-    SceneError
-        If there are no rows or they do not rise in time from 0, or a period is too short or ends with a jump.
+    Raises SceneError unless rows rise in time from 0, and for a period that is too short or ends with a jump.
     """
     key = _key(table, at)
-    rows: Rows = getattr(with_rows(table, at), key)
+    rows: Rows = getattr(read_stroke_rows(table, at), key)
     if len(rows) < 2:
         raise SceneError(f"{at}.{key}", f"{len(rows)} rows", "two rows or more", "Add rows of [time, value].")
     if rows[0][0] != 0.0:
@@ -40,7 +25,7 @@ def build_stroke(table: StrokeTable, at: str) -> Stroke:
     return Stroke(rows, key == "smooth", _period(table, rows, f"{at}.{key}", at))
 
 
-def with_rows(table: StrokeTable, at: str) -> StrokeTable:
+def read_stroke_rows(table: StrokeTable, at: str) -> StrokeTable:
     """A table with the rows of its file in the place of that, so that a checkpoint needs no file; raises SceneError
     where it cannot be read."""
     key = _key(table, at)
@@ -50,12 +35,12 @@ def with_rows(table: StrokeTable, at: str) -> StrokeTable:
     return table.model_copy(update={key: read_rows(given.file, f"{at}.{key}.file")})
 
 
-def with_drives(scene: Scene) -> Scene:
+def read_drives(scene: Scene) -> Scene:
     """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file."""
     tables = [
         table
         if table.drive is None
-        else table.model_copy(update={"drive": with_rows(table.drive, f"joint.{number}.drive")})
+        else table.model_copy(update={"drive": read_stroke_rows(table.drive, f"joint.{number}.drive")})
         for number, table in enumerate(scene.joint)
     ]
     return scene.model_copy(update={"joint": tuple(tables)})

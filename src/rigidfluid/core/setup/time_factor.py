@@ -1,4 +1,4 @@
-"""How prescribed values change as a whole in time: a table, and a smooth rise from zero."""
+"""Common factor of prescribed values in time: a table, and a smooth rise from zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rigidfluid.errors import SceneError
 Rows = tuple[tuple[float, float], ...]
 
 MOST_ROWS = 100_000
-"""A table has at most so many, since it is kept with the scene in every checkpoint."""
+"""Greatest number of rows of a table: it is kept with the scene in every checkpoint."""
 
 
 @dataclass(frozen=True)
@@ -51,22 +51,8 @@ UNCHANGED = TimeFactor()
 
 
 def check_rows(rows: Rows, end: float, at: str) -> None:
-    """Refuse a table that does not rise in time, or does not reach from 0 to the end: nothing is held beyond it.
-
-    Parameters
-    ----------
-    rows : sequence of pairs
-        Times [time] and values.
-    end : float
-        When the simulation ends [time].
-    at : str
-        The table's key, for the message.
-
-    Raises
-    ------
-    SceneError
-        Naming the row.
-    """
+    """Refuse, with SceneError, rows whose times do not rise, or do not reach from 0 to the ``end`` [time]: nothing is
+    extrapolated."""
     for number, (before, after) in enumerate(pairwise(rows), start=1):
         if not after[0] > before[0]:
             found = f"time {after[0]:g} after {before[0]:g}"
@@ -76,7 +62,7 @@ def check_rows(rows: Rows, end: float, at: str) -> None:
         raise SceneError(at, found, f"times from 0 to time.end = {end:g}", "Add rows, or end the simulation earlier.")
 
 
-def with_time_tables(scene: Scene) -> Scene:
+def read_time_tables(scene: Scene) -> Scene:
     """A scene with the rows of all files of tables over time in their place, so that a checkpoint needs no file."""
     tables = [
         table.model_copy(update={"over_time": read_rows(table.over_time.file, f"boundary.{number}.over_time.file")})
@@ -88,25 +74,8 @@ def with_time_tables(scene: Scene) -> Scene:
 
 
 def read_rows(file: str, at: str) -> Rows:
-    """The rows of a text file, each of a time and a value with a comma between; lines that start with # are skipped.
-
-    Parameters
-    ----------
-    file : str
-        Its path.
-    at : str
-        The key that names it, for messages.
-
-    Returns
-    -------
-    sequence of pairs
-        Times [time] and values.
-
-    Raises
-    ------
-    SceneError
-        If it cannot be read, is too long, or a row is not two finite numbers.
-    """
+    """Read a text file with a time and a value in each row, a comma between; lines that start with # are skipped.
+    Raises SceneError if it cannot be read, is too long, or a row is not two finite numbers."""
     allowed, remedy = "a file of lines 'time, value'", "Correct it; start lines of words with #."
     try:
         with warnings.catch_warnings():

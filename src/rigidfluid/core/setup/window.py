@@ -23,33 +23,16 @@ if TYPE_CHECKING:
 
 
 def build_window(scene: Scene, parts: Parts, pose: Pose) -> Window | None:
-    """The window of a scene, None where it has none.
+    """Window of a scene at the start, None for a scene without one.
 
-    Parameters
-    ----------
-    scene : Scene
-        With the components of mechanisms among its bodies.
-    parts : Parts
-        Its domain, backend and detector.
-    pose : Pose
-        Of the bodies at the start.
-
-    Returns
-    -------
-    Window or None
-        Where it is at the start.
-
-    Raises
-    ------
-    SceneError
-        If there is no such body or axis, the window does not fit into the domain, or the ends' conditions, the domain,
-        the detector or the backend allow none.
+    Raises SceneError for an unknown body or axis, a window that does not fit into the domain, or conditions, a domain,
+    detector or backend that allow none.
     """
     table = scene.domain.window
     if table is None:
         return None
     _check_parts(parts)
-    body = _followed(scene, table)
+    body = _followed_body(scene, table)
     axis, sign = "xyz".index(table.direction[-1]), -1.0 if table.direction[0] == "-" else 1.0
     if axis >= scene.dimension:
         remedy = f"The scene has {scene.dimension} dimensions."
@@ -66,7 +49,7 @@ def build_window(scene: Scene, parts: Parts, pose: Pose) -> Window | None:
     return window
 
 
-def opened(conditions: Sequence[BoundaryCondition], window: Window | None) -> tuple[BoundaryCondition, ...]:
+def open_wake_end(conditions: Sequence[BoundaryCondition], window: Window | None) -> tuple[BoundaryCondition, ...]:
     """The conditions on the pieces of the boundary, with that of the end behind a window: a wall there is far away, and
     the wake leaves through the end at zero pressure."""
     if window is None:
@@ -78,7 +61,7 @@ def opened(conditions: Sequence[BoundaryCondition], window: Window | None) -> tu
     )
 
 
-def _followed(scene: Scene, table: WindowTable) -> int:
+def _followed_body(scene: Scene, table: WindowTable) -> int:
     names = [body.name for body in scene.body]
     if table.follow not in names:
         allowed = f"a body: {', '.join(names)}"

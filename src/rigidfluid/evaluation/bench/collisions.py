@@ -47,20 +47,7 @@ class CollisionRow:
 
 
 def collision_rows(most_bodies: int = 125, repeats: int = 5) -> Iterator[CollisionRow]:
-    """Measure every arrangement of the paper's tables.
-
-    Parameters
-    ----------
-    most_bodies : int
-        Arrangements of more are left out.
-    repeats : int
-        How often each is run; the fastest counts.
-
-    Yields
-    ------
-    CollisionRow
-        In 2D, then in 3D.
-    """
+    """Measure the paper's arrangements of at most ``most_bodies``, 2D first; the fastest of ``repeats`` runs counts."""
     for dimension, table in PAPER.items():
         for bodies, counts in table.items():
             if bodies <= most_bodies:
@@ -82,7 +69,7 @@ def _row(dimension: int, bodies: int, counts: tuple[int, int], repeats: int) -> 
 
 
 def count_contacts(contacts: Contacts, bodies: int) -> tuple[int, int]:
-    """Pairs of bodies in contact, and bodies in contact with the boundary, of so many ``bodies``."""
+    """Number of body pairs in contact, and of bodies in contact with the boundary, among so many ``bodies``."""
     at_wall = contacts.body_b >= bodies
     return int(np.count_nonzero(~at_wall)), len(np.unique(contacts.body_a[at_wall]))
 

@@ -26,20 +26,7 @@ FILLED = {2: 0.6, 3: 0.6}
 
 
 def balls_in_a_box(dimension: int, count: int) -> tuple[list[Sphere], Pose, Box, tuple[Wall, ...]]:
-    """A grid of balls, their pose, the unit box and its walls.
-
-    Parameters
-    ----------
-    dimension : int
-        2 or 3.
-    count : int
-        How many balls: a square number, or a cube.
-
-    Returns
-    -------
-    list of Sphere, Pose, Box, tuple of Wall
-        All walls of the box repel.
-    """
+    """Build a grid of ``count`` (a square, or a cube) balls, their pose, the unit box and its walls."""
     side = round(count ** (1 / dimension))
     radius = FILLED[dimension] / (2 * max(side, 4))
     centres = np.array([[0.5] * (dimension - 1) + [radius + NEAR]]) if side == 1 else _grid(dimension, side, radius)

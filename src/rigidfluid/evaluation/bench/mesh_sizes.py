@@ -20,21 +20,9 @@ EDGES = {
 
 
 def mesh_sizes(dimension: int, bodies: int, coarseness: float = 1.0) -> Sizes:
-    """The same size everywhere but in the gaps, where cells in 3D need half of it.
+    """Build uniform cell sizes for ``bodies`` balls in the unit box; cells in gaps are half as long in 3D.
 
-    Parameters
-    ----------
-    dimension : int
-        2 or 3.
-    bodies : int
-        How many balls there are in the unit box.
-    coarseness : float
-        Edge lengths over those of a mesh as fine as the paper's; gaps stay as fine [1].
-
-    Returns
-    -------
-    Sizes
-        For :func:`~rigidfluid.core.mesh.remesh.initial_mesh`.
+    ``coarseness`` [1] is edge length over that of a mesh as fine as the paper's; cells in gaps stay as fine.
     """
     size = coarseness * EDGES[dimension][bodies]
     return Sizes(size, 0.98 * size, refinements=ceil(log2(coarseness)) + (dimension == 3))

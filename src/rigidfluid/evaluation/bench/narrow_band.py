@@ -70,25 +70,15 @@ class BandRow:
 
 
 def band_rows(refinement: float = 1.0, repeats: int = 20) -> Iterator[BandRow]:
-    """Measure every band of the paper's table.
+    """Measure each band of the paper's table, 2D first, the widest band last; the fastest of ``repeats`` counts.
 
-    Parameters
-    ----------
-    refinement : float
-        Vertices per length, relative to the paper's meshes [1].
-    repeats : int
-        How often each band is marched; the fastest counts.
-
-    Yields
-    ------
-    BandRow
-        In 2D, then in 3D, the widest band last.
+    ``refinement`` [1] is vertices per length, relative to the paper's meshes.
     """
     for dimension, table in PAPER.items():
         size = SIZES[dimension] / refinement
         mesh, mesh_seconds = timed(partial(shell, dimension, INNER_RADIUS, OUTER_RADIUS, size))
-        Topology.of(shell(dimension, INNER_RADIUS, 2 * INNER_RADIUS, INNER_RADIUS / 2))  # compiles
-        topology, adjacency_seconds = timed(partial(Topology.of, mesh))
+        Topology.from_mesh(shell(dimension, INNER_RADIUS, 2 * INNER_RADIUS, INNER_RADIUS / 2))  # compiles
+        topology, adjacency_seconds = timed(partial(Topology.from_mesh, mesh))
         parts, partition_seconds = timed(partial(split, mesh, _halves(mesh)))
         work = new_workspace(len(mesh.points))
         true = nearest_facet_distances(mesh.points, mesh.points[mesh.facets[mesh.markers == INNER]])

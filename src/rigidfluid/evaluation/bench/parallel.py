@@ -64,28 +64,10 @@ class ParallelRow:
 def parallel_rows(
     ranks: Sequence[int] = (1, 2), most_bodies: int = 125, coarseness: float = 1.0
 ) -> Iterator[ParallelRow]:
-    """Measure every arrangement of the paper's tables on each number of ranks, one after the other.
+    """Measure each of the paper's arrangements of at most ``most_bodies`` on each number of ``ranks``, 2D first.
 
-    Parameters
-    ----------
-    ranks : sequence of int
-        How many processes share a run; speed-ups are against one.
-    most_bodies : int
-        Arrangements of more are left out.
-    coarseness : float
-        Edge lengths over those of meshes as fine as the paper's [1].
-
-    Yields
-    ------
-    ParallelRow
-        In 2D, then in 3D.
-
-    Raises
-    ------
-    PluginError
-        If DOLFINx is not installed.
-    LaunchError
-        If there is no `mpirun`, or a run fails.
+    ``coarseness`` [1] is edge length over that of meshes as fine as the paper's. Raises PluginError without DOLFINx,
+    LaunchError without `mpirun` or if a run fails.
     """
     Registry.load().get(FLUID_BACKEND, BACKEND)
     for dimension, table in PAPER.items():
@@ -101,7 +83,7 @@ def parallel_rows(
 def row(
     dimension: int, bodies: int, ranks: int, measured: Mapping[str, Any], alone: Mapping[str, Any] | None
 ) -> ParallelRow:
-    """What was ``measured`` on some ranks beside the same ``alone`` on one, and beside the paper's figures."""
+    """Build the row of an arrangement ``measured`` on some ranks; speed-ups are against ``alone``, on one rank."""
     pairs, at_wall = PAPER[dimension][bodies]
     on_4, on_16, on_24 = PAPER_SPEEDUP[dimension][bodies]
     collision, step = measured["seconds_collision"], measured["seconds_step"]

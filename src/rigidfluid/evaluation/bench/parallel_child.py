@@ -21,10 +21,10 @@ from rigidfluid.evaluation.bench.grids import RANGE, balls_in_a_box
 from rigidfluid.evaluation.bench.mesh_sizes import mesh_sizes
 
 STEPS = 10
-"""As many as in the paper."""
+"""Number of steps, the same as in the paper."""
 
 _COLLISION = ("contact", "detect")
-"""What the run's stopwatch calls the bodies' way through their contacts, with forces and wrenches, and detection."""
+"""Stopwatch stages of the collision algorithm: contact path with forces and wrenches; detection."""
 
 
 def scene(dimension: int, bodies: int, coarseness: float, backend: str = "dolfinx") -> Scene:

@@ -15,26 +15,10 @@ from rigidfluid.evaluation.python_process import environment, failure, python
 
 
 def measured_apart(program: Sequence[str], ranks: int = 1, threads: int = 1) -> Any:
-    """Run a Python program in new processes, wait for its end, and read what it has measured.
+    """Run a Python ``program`` in new processes, wait for its end, and read the JSON that it has written.
 
-    Parameters
-    ----------
-    program : sequence of str
-        What comes after `python`; the name of a file is added, where the program writes JSON.
-    ranks : int
-        How many processes share it; more than one are started by `mpirun`.
-    threads : int
-        How many threads each may use for linear algebra.
-
-    Returns
-    -------
-    object
-        What the file holds.
-
-    Raises
-    ------
-    LaunchError
-        If there is no `mpirun`, or a process fails.
+    ``program`` is what follows `python`; a file to write is added. More than one rank is started by `mpirun`; each has
+    ``threads`` for linear algebra. Raises LaunchError without `mpirun` or if a process fails.
     """
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "measured.json"
@@ -67,7 +51,7 @@ def _failed(program: Sequence[str], ranks: int, code: int, said: str) -> LaunchE
     found, remedy = _last_error(said) or failure(code, said), "Run the program by hand to see all that it says."
     if "--allow-run-as-root" in said:
         found = "an mpirun that does not run as root"
-        remedy = "Be another user, or set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1."
+        remedy = "Run as a non-root user, or set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1."
     return LaunchError(f"{' '.join(program)} on {ranks} ranks", found, "a run to the end", remedy)
 
 

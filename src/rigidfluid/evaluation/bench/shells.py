@@ -18,21 +18,9 @@ LAYER = 0.85
 
 
 def shell(dimension: int, inner: float, outer: float, size: float) -> Mesh:
-    """Delaunay cells between vertices on concentric layers, {x : inner < |x| < outer}.
+    """Build the Delaunay mesh of {x : inner < |x| < outer}, vertices on concentric layers ``size`` [length] apart.
 
-    Parameters
-    ----------
-    dimension : int
-        2 or 3.
-    inner, outer : float
-        Radii of the surfaces [length].
-    size : float
-        Distance of vertices in a layer [length].
-
-    Returns
-    -------
-    Mesh
-        In 3D with the flat cells that Delaunay's leaves; they are kept, so that bad cells are measured too.
+    In 3D it keeps Delaunay's flat cells, so that bad cells are measured too.
     """
     from scipy.spatial import Delaunay
 

@@ -1,4 +1,4 @@
-"""How long calls take."""
+"""Durations of calls."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Result = TypeVar("Result")
 
 
 def timed(call: Callable[[], Result]) -> tuple[Result, float]:
-    """What a call returns, and how long it takes [s]."""
+    """Result of a call, and its duration [s]."""
     start = perf_counter()
     result = call()
     return result, perf_counter() - start

@@ -17,30 +17,10 @@ _GRACE = 5.0
 
 
 def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Callable[[], None]) -> str:
-    """Run ``rigidfluid run`` and wait for its end.
+    """Run ``rigidfluid run`` and wait for its end; return why it failed, or "".
 
-    Parameters
-    ----------
-    scene : Path
-        Scene file.
-    folder : Path
-        Where the run writes.
-    log : Path
-        What it prints goes there.
-    resume : bool
-        Go on from the checkpoint in ``folder``.
-    watch : callable
-        Called about once a second.
-
-    Returns
-    -------
-    str
-        Why it failed; empty where it did not.
-
-    Raises
-    ------
-    OutputError
-        Where the log cannot be written.
+    ``watch`` is called about once a second; the output goes to ``log``; ``resume`` from the checkpoint in ``folder``.
+    Raises OutputError if the log cannot be written.
     """
     command = python("-m", "rigidfluid", "run", str(scene), "--out", str(folder))
     with writing(log), log.open("wb") as output:

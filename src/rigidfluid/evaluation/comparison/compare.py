@@ -21,7 +21,7 @@ TABLE = "comparison.json"
 
 @dataclass(frozen=True, slots=True)
 class CompareProgress:
-    """Where a comparison is: runs ``done``, a fraction of the present one included, of ``total``; its ``backend``."""
+    """Progress of a comparison: runs ``done``, a part of the present one included, of ``total``; the ``backend``."""
 
     done: float
     total: int
@@ -37,34 +37,12 @@ def compare(
     fresh: bool = False,
     progress: Callable[[CompareProgress], None] | None = None,
 ) -> tuple[Comparison, list[Path]]:
-    """Run a scene once with each fluid backend, each in a process of its own, and compare the results.
+    """Run a scene once with each of the ``backends``, in processes of their own, and compare the results.
 
-    Parameters
-    ----------
-    path : str or Path
-        A scene file.
-    backends : sequence of str
-        Names of at least two fluid backends; the first is the reference.
-    overrides : sequence of str
-        As for `load_scene`.
-    out : Path or None
-        Folder for the runs, each in ``<out>/<backend>``, and for the page; ``out/<scene name>_compare`` if None.
-    fresh : bool
-        Run everything, also what is in ``out``.
-    progress : callable or None
-        Called about once a second.
-
-    Returns
-    -------
-    tuple
-        The comparison, and the files that were written. A run that failed has its error, and is in no pair.
-
-    Raises
-    ------
-    SceneError, PluginError
-        Before anything runs.
-    OutputError
-        Where the disk refuses.
+    The first backend is the reference. Runs go to ``<out>/<backend>``, ``out/<scene name>_compare`` without ``out``;
+    ``fresh`` repeats runs that are there already. Returns the comparison, in which a failed run has its error and is in
+    no pair, and the files written. Raises SceneError or PluginError before anything runs, OutputError if the disk
+    refuses.
     """
     scenes = backend_scenes(path, backends, overrides)
     name = scenes[backends[0]].name

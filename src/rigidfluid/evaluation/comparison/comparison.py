@@ -1,4 +1,4 @@
-"""What a comparison has found."""
+"""Runs of a comparison, pairwise differences, and their JSON."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Comparison:
 
     @property
     def failed(self) -> list[Run]:
-        """The runs that did."""
+        """The runs that failed."""
         return [run for run in self.runs if run.results is None]
 
     @property
@@ -46,7 +46,7 @@ class Comparison:
 
     def place(self, pair: Pair, difference: Difference) -> tuple[float, str | None]:
         """Time [time] and body of the largest difference; no body where the quantity is that of all together."""
-        time, body = difference.where
+        time, body = difference.largest_at
         return float(pair.time[time]), None if difference.is_global else self.bodies[body]
 
     def _pair_entry(self, pair: Pair) -> dict[str, Any]:

@@ -21,15 +21,15 @@ UNITS = {
     "hydrodynamic_force": "force",
     ENERGY: "energy",
 }
-"""What is compared, and its unit. Energy is the kinetic of fluid and bodies and what is stored in contacts."""
+"""Compared quantities and their units; energy is the kinetic of fluid and bodies plus that stored in contacts."""
 
 Histories = dict[str, FloatArray]
-"""By quantity, (s, n, c): c components of n bodies at s times. Energy has one entry in place of bodies."""
+"""Quantity → history (s, n, c): c components of n bodies at s times; energy has n = 1."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of one quantity: ``values`` (s, n) at s times for n bodies, or (s, 1) where it ``is_global``.
+    """Difference of one quantity: ``values`` (s, n) at s times for n bodies, or (s, 1) if it ``is_global``.
 
     The ``range`` is how much the quantity changes in the reference's run: the diagonal of the box that holds a body's
     values, of orientations the largest angle from that at the start; the largest of all bodies.
@@ -41,12 +41,12 @@ class Difference:
 
     @property
     def largest(self) -> float:
-        """Over time and bodies."""
+        """Largest difference over time and bodies."""
         return float(self.values.max())
 
     @property
     def final(self) -> float:
-        """Over the bodies, at the last time."""
+        """Largest difference over the bodies, at the last time."""
         return float(self.values[-1].max())
 
     @property
@@ -55,7 +55,7 @@ class Difference:
         return self.largest / self.range if self.range > 0.0 else None
 
     @property
-    def where(self) -> tuple[int, int]:
+    def largest_at(self) -> tuple[int, int]:
         """Numbers of the time and of the body of the largest difference."""
         time, body = np.unravel_index(int(np.argmax(self.values)), self.values.shape)
         return int(time), int(body)
@@ -81,18 +81,7 @@ def label(name: str) -> str:
 
 
 def pair(reference: tuple[str, Results], other: tuple[str, Results]) -> Pair:
-    """Compare two runs.
-
-    Parameters
-    ----------
-    reference, other : (str, Results)
-        Names of the backends, and their results.
-
-    Returns
-    -------
-    Pair
-        At the times of the reference's steps that lie within both runs.
-    """
+    """Compare two runs, each a backend's name and results, at the reference's steps that lie within both."""
     (first, ours), (second, theirs) = reference, other
     common = (ours.time >= theirs.time[0]) & (ours.time <= theirs.time[-1])
     time = ours.time[common]
@@ -105,7 +94,7 @@ def pair(reference: tuple[str, Results], other: tuple[str, Results]) -> Pair:
 
 
 def histories(results: Results) -> Histories:
-    """What is compared of a run."""
+    """Histories of the quantities that a comparison of runs takes."""
     named = columns(results.scene.dimension)["bodies"]
     orientation = [name for name in ("angle", "qw", "qx", "qy", "qz") if name in named]
     spin = [name for name in ("w", "wx", "wy", "wz") if name in named]
@@ -121,22 +110,7 @@ def histories(results: Results) -> Histories:
 
 
 def interpolated(values: Mapping[str, FloatArray], time: FloatArray, at: FloatArray) -> Histories:
-    """Histories at other times, linearly between steps.
-
-    Parameters
-    ----------
-    values : mapping
-        Histories at ``time``.
-    time : (s,) array
-        Increasing [time].
-    at : (m,) array
-        Within it [time].
-
-    Returns
-    -------
-    dict
-        Histories at ``at``; at a step exactly its values. Quaternions are normalised.
-    """
+    """Histories, linear between the steps ``time`` (s,), ``at`` times (m,) within; quaternions are normalised."""
     before = np.searchsorted(time, at, side="right") - 1
     after = np.minimum(before + 1, len(time) - 1)
     gap = time[after] - time[before]

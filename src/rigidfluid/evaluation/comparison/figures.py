@@ -22,20 +22,7 @@ _NARROWEST = 0.1
 
 
 def body_plot(runs: Sequence[Run], body: int) -> Figure:
-    """Position, velocity and the fluid's force on one body over time, by component.
-
-    Parameters
-    ----------
-    runs : sequence of Run
-        The complete ones, the reference first.
-    body : int
-        Its number.
-
-    Returns
-    -------
-    Figure
-        A row for each component, a column for each quantity.
-    """
+    """Plot position, velocity and fluid force of a body over time, by component; ``runs[0]`` is the reference."""
     results = [run.results for run in runs if run.results is not None]
     axes_names = results[0].axes
     figure = new_figure(11.0, 2.0 * len(axes_names) + 0.6)
@@ -56,18 +43,7 @@ def body_plot(runs: Sequence[Run], body: int) -> Figure:
 
 
 def difference_plot(pairs: Sequence[Pair]) -> Figure:
-    """The largest difference of any body over time, logarithmic, a panel for each quantity.
-
-    Parameters
-    ----------
-    pairs : sequence of Pair
-        At least one.
-
-    Returns
-    -------
-    Figure
-        A line for each backend that is not the reference.
-    """
+    """Plot the largest difference of any body over time, on a log scale: a panel per quantity, a line per pair."""
     figure = new_figure(11.0, 6.5)
     panels = figure.subplots(2, 3, sharex=True)
     for axes, (name, unit) in zip(panels.flat, UNITS.items(), strict=True):

@@ -27,26 +27,9 @@ _SECONDS = (
 
 
 def write_page(comparison: Comparison, name: str, out: Path) -> list[Path]:
-    """Write the plots and the page.
+    """Write the plots, if two runs are complete, as PNG and SVG, and the page, into the existing folder ``out``.
 
-    Parameters
-    ----------
-    comparison : Comparison
-        With any number of complete runs.
-    name : str
-        Of the scene.
-    out : Path
-        A folder that exists.
-
-    Returns
-    -------
-    list of Path
-        What was written: the plots as PNG and SVG, if two runs are complete, and the page.
-
-    Raises
-    ------
-    OutputError
-        Where the disk refuses.
+    Returns the files written; raises OutputError if the disk refuses.
     """
     with matplotlib.rc_context(STYLE), writing(out / PAGE):
         shown, written = [], []

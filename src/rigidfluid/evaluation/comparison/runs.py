@@ -1,4 +1,4 @@
-"""The runs of a comparison: what is in the folder is kept, what was interrupted is gone on with, the rest is run."""
+"""The runs of a comparison: complete ones are kept, interrupted ones resumed, the rest started."""
 
 from __future__ import annotations
 
@@ -33,30 +33,10 @@ class Run:
 def backend_run(
     backend: str, scene: Scene, out: Path, *, fresh: bool = False, progress: Callable[[float], None] = lambda _: None
 ) -> Run:
-    """Run a scene, unless its results are there already.
+    """Run the scene in ``<out>/<backend>``, unless its results are there already; an error is part of the result.
 
-    Parameters
-    ----------
-    backend : str
-        Name of its backend, and of the folder in ``out``.
-    scene : Scene
-        What to run.
-    out : Path
-        Folder of the comparison; the scene is written there as ``<backend>.toml``.
-    fresh : bool
-        Neither keep nor resume what is there.
-    progress : callable
-        Called with the fraction that is done.
-
-    Returns
-    -------
-    Run
-        With results, or the error of the run.
-
-    Raises
-    ------
-    OutputError
-        Where the disk refuses.
+    The scene is written as ``<out>/<backend>.toml``; a ``fresh`` run neither keeps nor resumes an earlier one;
+    ``progress`` is called with the fraction done. Raises OutputError if the disk refuses.
     """
     folder = out / backend
     if not fresh and (earlier := _earlier(scene, folder)) is not None:

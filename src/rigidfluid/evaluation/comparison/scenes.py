@@ -19,28 +19,10 @@ _COMMON = set(FluidTable.model_fields)
 
 
 def backend_scenes(path: str | Path, backends: Sequence[str], overrides: Iterable[str] = ()) -> dict[str, Scene]:
-    """The scenes to run.
+    """Build the scene of each backend from a scene file and overrides, as `load_scene` takes them.
 
-    Parameters
-    ----------
-    path : str or Path
-        A scene file.
-    backends : sequence of str
-        Names of the backends, at least two.
-    overrides : iterable of str
-        As for `load_scene`.
-
-    Returns
-    -------
-    dict
-        By backend. Each has of ``[fluid]`` the common keys and those that its backend reads.
-
-    Raises
-    ------
-    SceneError
-        If the scene or the choice of backends is not allowed.
-    PluginError
-        If a backend or another part is not there.
+    Each has of ``[fluid]`` the common keys and those that its backend reads. Raises SceneError if the scene or the
+    choice of backends is not allowed, PluginError if a part is not there.
     """
     registry = Registry.load()
     parts = _parts(registry, backends)

@@ -12,7 +12,7 @@ HEADER = ("quantity", "unit", "largest", "over its range", "at time", "of", "at 
 
 
 def meaning(pair: Pair) -> str:
-    """At which times two runs are compared, and how they have values there."""
+    """Sentence that says at which times two runs are compared, and at how many values are interpolated."""
     count, between = len(pair.time), int(pair.interpolated.sum())
     where = f"At the {count} times of {pair.reference} from {pair.time[0]:.5g} to {pair.time[-1]:.5g}"
     if not between:

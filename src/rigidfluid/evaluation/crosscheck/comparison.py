@@ -1,4 +1,4 @@
-"""How far two answers are apart, until chaos parts them, and in the mean."""
+"""Differences between two programs' samples, until chaos parts them, and of their means."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PARTED = 0.01
 
 @dataclass(frozen=True)
 class Means:
-    """Over all samples, of ``energy`` [energy], |``momentum``| and ``pressure`` on the walls [force/length^(d-1)]."""
+    """Means over all samples: ``energy`` [energy], |``momentum``|, ``pressure`` on the walls [force/length^(d-1)]."""
 
     energy: float
     momentum: float
@@ -56,22 +56,7 @@ class Comparison:
 
 
 def compared(system: System, steps: Sequence[float], pairs: Sequence[tuple[Samples, Samples]]) -> Comparison:
-    """Compare answers.
-
-    Parameters
-    ----------
-    system : System
-        The bodies.
-    steps : sequence of float
-        The steps, the longest first [time].
-    pairs : sequence of (Samples, Samples)
-        Ours and LAMMPS' for each step, at the same times.
-
-    Returns
-    -------
-    Comparison
-        A row for each step.
-    """
+    """Compare pairs of samples, ours and LAMMPS' at the same times, one pair for each step, longest first [time]."""
     finest = pairs[-1][1]
     rows = [_row(system, step, ours, theirs, finest) for step, (ours, theirs) in zip(steps, pairs, strict=True)]
     return Comparison(tuple(rows), *pairs[-1])

@@ -17,30 +17,13 @@ SAMPLES = 200
 def crosscheck(scene: Scene, steps: int = 3, samples: int = SAMPLES) -> Comparison:
     """Run a dry scene of balls here and in LAMMPS, with the same velocity Verlet steps, and compare.
 
-    Parameters
-    ----------
-    scene : Scene
-        From `load_scene` or `scene_from_dict`; the first step is its ``time.step`` over ``contact.substeps``.
-    steps : int
-        How many steps to run with, each half of the one before.
-    samples : int
-        Times at which the programs are compared.
-
-    Returns
-    -------
-    Comparison
-        A row for each step, the longest first.
-
-    Raises
-    ------
-    CrosscheckError
-        If LAMMPS is missing, fails, or has no exact counterpart of something in the scene.
-    StepError
-        If bodies overlap.
+    It runs with as many ``steps`` lengths, from ``time.step`` over ``contact.substeps``, each half of the one before; a
+    row for each, the longest first. Raises CrosscheckError if LAMMPS is missing, fails, or has no exact counterpart of
+    something in the scene, StepError if bodies overlap.
     """
     system = build_system(scene)
     refuse_foreign(scene, system)
-    timings = [Timing.of(scene, samples).divided(2**halvings) for halvings in range(steps)]
+    timings = [Timing.choose(scene, samples).divided(2**halvings) for halvings in range(steps)]
     # LAMMPS first: if it is missing, nothing has been computed in vain.
     pairs = [(run_theirs(system, timing), run_ours(scene, timing)) for timing in timings]
     return compared(system, [timing.step for timing in timings], [(ours, theirs) for theirs, ours in pairs])

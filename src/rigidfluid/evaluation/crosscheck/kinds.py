@@ -16,9 +16,9 @@ MOST_KINDS = 12
 
 @dataclass(frozen=True)
 class Kinds:
-    """``of`` (n,) the kind of each body, from 1 on, and ``first`` (K,) the first body of each kind."""
+    """Kinds of balls: ``number`` (n,), the kind of each ball, from 1 on; ``first`` (K,), the first ball of a kind."""
 
-    of: IntArray
+    number: IntArray
     first: IntArray
 
     def __len__(self) -> int:
@@ -31,18 +31,12 @@ def radii(system: System) -> FloatArray:
 
 
 def kinds(system: System) -> Kinds:
-    """Sort the balls by radius, mass, weight, and what a law knows of their loads.
-
-    Raises
-    ------
-    CrosscheckError
-        If there are more than `MOST_KINDS`.
-    """
+    """Sort the balls by radius, mass, weight and loads of the law; raises CrosscheckError above `MOST_KINDS` kinds."""
     features = [radii(system), system.mass, *system.weight.T]
     loads = None if system.law is None else system.law.loads
     if loads is not None:
         features += [loads.mass, loads.weight, loads.speed]
-    _, first, of = np.unique(np.column_stack(features), axis=0, return_index=True, return_inverse=True)
+    _, first, number = np.unique(np.column_stack(features), axis=0, return_index=True, return_inverse=True)
     if len(first) > MOST_KINDS:
         raise CrosscheckError(
             "body",
@@ -50,4 +44,4 @@ def kinds(system: System) -> Kinds:
             f"at most {MOST_KINDS}, since a law needs a table for each pair of them",
             "Let more balls be alike.",
         )
-    return Kinds(of.reshape(-1).astype(np.int64) + 1, first)
+    return Kinds(number.reshape(-1).astype(np.int64) + 1, first)

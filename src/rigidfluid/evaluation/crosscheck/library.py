@@ -19,17 +19,9 @@ _QUIET = ["-log", "none", "-screen", "none"]
 
 @contextmanager
 def lammps_session() -> Iterator[Any]:
-    """An instance of LAMMPS that prints and writes nothing, closed at the end.
+    """Open an instance of LAMMPS that prints and writes nothing, and close it at the end.
 
-    Yields
-    ------
-    lammps.lammps
-        Ready for commands.
-
-    Raises
-    ------
-    CrosscheckError
-        If it is not installed, cannot be loaded, or refuses what it is told in the ``with`` block.
+    Raises CrosscheckError if it is not installed, cannot be loaded, or refuses a command in the ``with`` block.
     """
     engine = _started()
     try:

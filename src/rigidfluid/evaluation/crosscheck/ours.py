@@ -17,30 +17,15 @@ from rigidfluid.evaluation.crosscheck.timing import Timing
 
 
 def run_ours(scene: Scene, timing: Timing) -> Samples:
-    """Run a dry scene: a block is a step of the run, and a step here is one substep.
+    """Run a dry scene, a block being a step of the run and a step one substep; samples at its start and block ends.
 
-    Parameters
-    ----------
-    scene : Scene
-        What to run.
-    timing : Timing
-        Steps and blocks.
-
-    Returns
-    -------
-    Samples
-        At the ends of the blocks, and at the start.
-
-    Raises
-    ------
-    StepError
-        If bodies overlap.
+    Raises StepError if bodies overlap.
     """
     simulation = Simulation(_timed(scene, timing), None, False)
     samples = [_sample(simulation.system, simulation.state)]
     simulation.observe(lambda now: samples.append(_sample(now.system, now.state)))
     simulation.go()
-    return Samples.of(timing.times, samples)
+    return Samples.stack(timing.times, samples)
 
 
 def _timed(scene: Scene, timing: Timing) -> Scene:

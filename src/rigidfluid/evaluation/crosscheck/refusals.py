@@ -1,4 +1,4 @@
-"""What LAMMPS cannot run as we do is refused, with the reason."""
+"""Refusal of scenes that LAMMPS cannot run exactly as we do, with the reason."""
 
 from __future__ import annotations
 
@@ -13,19 +13,9 @@ from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 def refuse_foreign(scene: Scene, system: System) -> None:
     """Raise CrosscheckError if LAMMPS has no exact counterpart for something in the scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    system : System
-        Its parts.
-
-    Raises
-    ------
-    CrosscheckError
-        For a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
-        articulated bodies, joints, springs, held directions, several laws or one for some contacts alone, and laws that
-        take energy out, but for ``spring-dashpot``.
+    Refused are a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
+    articulated bodies, joints, springs, held directions, several laws or one for some contacts alone, and laws that
+    take energy out, but for ``spring-dashpot``.
     """
     if system.backend.needs_mesh:
         raise CrosscheckError(

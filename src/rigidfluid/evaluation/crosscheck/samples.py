@@ -1,4 +1,4 @@
-"""What both programs say of the bodies at common times, and what follows from it."""
+"""Samples of both programs' bodies at common times, and the energy and momentum of those."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class Samples:
-    """One program's answer: ``time`` (s,) and the samples' arrays, with s as the first axis."""
+    """Samples of one program: ``time`` (s,) and the arrays of `Sample`, with s as the first axis."""
 
     time: FloatArray
     position: FloatArray
@@ -37,7 +37,7 @@ class Samples:
     wall_force: FloatArray
 
     @classmethod
-    def of(cls, time: FloatArray, samples: Sequence[Sample]) -> Samples:
+    def stack(cls, time: FloatArray, samples: Sequence[Sample]) -> Samples:
         """The samples at these times (s,) [time]."""
         return cls(time, *(np.array(values, dtype=float) for values in zip(*samples, strict=True)))
 

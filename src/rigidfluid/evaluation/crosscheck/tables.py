@@ -14,7 +14,7 @@ POINTS = 10_001
 """In each table, joined by cubic splines: the force is then right to 1e-9 of its largest value."""
 
 CLOSEST = 0.01
-"""Where the table of a law that is unbounded at contact begins, over the range."""
+"""Least gap in the table of a law that is unbounded at contact, over the range."""
 
 
 @dataclass(frozen=True)
@@ -32,22 +32,7 @@ class Pair:
 
 
 def write_table(path: Path, law: ForceLaw, pair: Pair) -> float:
-    """Write one table, for ``pair_style table`` or ``fix wall/table``; its keyword is ``LAW``.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    law : ForceLaw
-        Conservative.
-    pair : Pair
-        Two balls, or a ball and a wall.
-
-    Returns
-    -------
-    float
-        The distance where the force ends [length].
-    """
+    """Write a conservative law for ``pair_style table`` or ``fix wall/table`` (``LAW``); return its cutoff [length]."""
     first = CLOSEST * law.range if law.overlap == "unbounded" else 0.0
     low, high = pair.touching + first, pair.touching + law.range
     distance = _squares(low, high) if np.isfinite(pair.radii[1]) else np.linspace(low, high, POINTS)

@@ -33,24 +33,9 @@ _VECTOR, _ARRAY = 1, 2
 
 
 def run_theirs(system: System, timing: Timing) -> Samples:
-    """Run the bodies in LAMMPS.
+    """Run balls without a fluid in LAMMPS, one ``run`` for each block; samples at the start and at block ends.
 
-    Parameters
-    ----------
-    system : System
-        Of balls, without a fluid.
-    timing : Timing
-        Steps and blocks; each block is a ``run`` of its own.
-
-    Returns
-    -------
-    Samples
-        At the ends of the blocks, and at the start.
-
-    Raises
-    ------
-    CrosscheckError
-        If LAMMPS is missing or fails.
+    Raises CrosscheckError if LAMMPS is missing or fails.
     """
     sorts = kinds(system)
     with TemporaryDirectory(prefix="rigidfluid-") as name, lammps_session() as engine:
@@ -61,7 +46,7 @@ def run_theirs(system: System, timing: Timing) -> Samples:
         for _ in range(timing.blocks):
             engine.command(f"run {timing.steps}")
             samples.append(_sample(engine, system, sorts))
-    return Samples.of(timing.times, samples)
+    return Samples.stack(timing.times, samples)
 
 
 def build(engine: Any, system: System, sorts: Kinds, folder: Path) -> None:
@@ -81,7 +66,7 @@ def _create_bodies(engine: Any, system: System, sorts: Kinds) -> None:
     ballast = np.flatnonzero(~system.controlled) if rubs(system.law) else np.zeros(0, dtype=np.int64)
     bodies = np.concatenate([np.arange(count), ballast])
     numbers = np.concatenate([np.arange(count), count + ballast]) + 1
-    types = np.concatenate([sorts.of, np.full(len(ballast), ballast_type(sorts))])
+    types = np.concatenate([sorts.number, np.full(len(ballast), ballast_type(sorts))])
     size = np.concatenate([radii(system) + shell(system.law), np.zeros(len(ballast))])
     position, velocity, spin = np.zeros((3, len(bodies), 3))
     position[:, :d], velocity[:, :d] = system.pose.position[bodies], system.twist.velocity[bodies]

@@ -1,4 +1,4 @@
-"""Which steps both programs take, and at which of them they are compared."""
+"""Steps that both programs take, and times at which they are compared."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Timing:
     step: float
 
     @classmethod
-    def of(cls, scene: Scene, samples: int) -> Timing:
-        """Of a scene: its step over its substeps, and about as many samples as wanted."""
+    def choose(cls, scene: Scene, samples: int) -> Timing:
+        """Choose a scene's substep as the step, and at most ``samples`` blocks up to its end."""
         step = scene.time.step / (scene.contact.substeps or 1)
         count = ceil(scene.time.end / step - 1e-6)
         blocks = min(samples, count)

@@ -26,7 +26,7 @@ def wall_fix(number: int, kind: int = 0) -> str:
 
 
 def shell(law: ForceLaw | None) -> float:
-    """By how much LAMMPS' balls are larger [length]: a spring there begins at contact, ours at range."""
+    """Increase of ball radii in LAMMPS [length]: its springs begin at contact, ours at range."""
     return 0.5 * law.range if isinstance(law, SpringDashpotLaw) else 0.0
 
 
@@ -78,9 +78,9 @@ def forces(system: System, kinds: Kinds, folder: Path) -> Iterator[str]:
 def motion(system: System, kinds: Kinds, bodies_file: Path | None) -> Iterator[str]:
     """Commands that let the free bodies move, and hold the others.
 
-    Spins that nothing changes need no inertia. Where contacts rub, each ball is a rigid body with the inertia that
-    ``bodies_file`` holds, as LAMMPS would take that of the enlarged ball; since it refuses rigid bodies of one
-    particle, each has a point without force inside it, its ballast.
+    Without friction spins are constant and need no inertia. With friction each ball is a rigid body with the inertia
+    that ``bodies_file`` holds, since LAMMPS would take that of the enlarged ball; it refuses rigid bodies of one
+    particle, so each has a point without force inside it, its ballast.
     """
     held = np.flatnonzero(system.controlled) + 1
     if len(held):

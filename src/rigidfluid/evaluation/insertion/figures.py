@@ -1,4 +1,4 @@
-"""How well bodies came into a mesh: facets and corners kept, distances from the shapes, areas, volumes, cells."""
+"""Quality of the insertion of bodies into a mesh: facets and corners kept, distances, areas, volumes, cells."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 
 BINS = 20
-"""Of the histogram of cells over their quality, from 0 to 1."""
+"""Number of classes of the histogram of cell quality, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class SurfaceFigures:
-    """Of one surface of the mesh.
+    """Figures of one surface of the mesh.
 
-    ``kind``: "smooth", or "facets", or "flat" of a flat piece of the domain, whose facets may be made anew in their
-    plane. ``given_facets``, ``kept_facets``, ``given_corners``, ``kept_corners``: of a shape made of facets, and how
+    ``kind``: "smooth", or "facets", or "flat" for a flat piece of the domain, whose facets may be re-meshed in their
+    plane. ``given_facets``, ``given_corners``: number in a shape made of facets; ``kept_facets``, ``kept_corners``: how
     many of them are in the mesh to the last bit (a facet that is not has been halved); else None. ``facets`` in the
     mesh; ``vertices_off``, ``middles_off``: farthest vertex, and middle of a facet, from the shape [length].
     ``area`` of the facets, ``exact_area`` of the shape where it is known [length^(d-1)]; ``volume`` that a body's
@@ -48,8 +48,8 @@ class SurfaceFigures:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """Of a mesh: counts, its worst cell's quality [1], how many cells have a quality in each of BINS classes, its
-    volume and that of the domain less the bodies [length^d], seconds of each phase, and its surfaces."""
+    """Figures of a mesh: counts, the worst cell's quality [1], cells in each of BINS classes of quality, volume of the
+    mesh and of the domain less the bodies [length^d], seconds of each phase, and its surfaces."""
 
     name: str
     dimension: int
@@ -64,7 +64,7 @@ class Figures:
     surfaces: tuple[SurfaceFigures, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """Dictionary for JSON, surfaces included."""
         return asdict(self)
 
 
@@ -163,5 +163,5 @@ def _sides(mesh: Mesh) -> FloatArray:
 
 
 def _enclosed(corners: FloatArray, sides: FloatArray) -> float:
-    """What facets with ``corners`` (F, d, d), about a point of the body, enclose, ``sides`` (F,) as by `_sides`."""
+    """Volume enclosed by facets, ``corners`` (F, d, d) about a point of the body, ``sides`` (F,) as in `_sides`."""
     return float(sides @ np.linalg.det(corners)) / factorial(corners.shape[1])

@@ -1,4 +1,4 @@
-"""Meshes a scene and writes the mesh, its pictures, and a report of how well the bodies came into it."""
+"""Meshes a scene and writes the mesh, its pictures, and a report of the quality of the insertion."""
 
 from __future__ import annotations
 
@@ -28,30 +28,11 @@ _WAYS = {
 def insert(
     scene: Scene, out: Path | None = None, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Figures, list[Path]]:
-    """Make the first mesh of a scene, and say how well the bodies came into it.
+    """Make the first mesh of a scene with a [mesh] table; return the insertion's figures and the files written.
 
-    Parameters
-    ----------
-    scene : Scene
-        With a [mesh] table.
-    out : Path, optional
-        Folder for mesh, pictures and report; ``out/<scene name>_mesh`` if None.
-    progress : callable
-        Called with what is being done, in words, as it begins.
-
-    Returns
-    -------
-    tuple
-        The figures, and the files that were written.
-
-    Raises
-    ------
-    SceneError, PluginError
-        Where the scene cannot be built, or has no mesh.
-    MeshError
-        Where no mesh can be made.
-    OutputError
-        Where the disk refuses.
+    They go to ``out``, else to ``out/<scene name>_mesh``; ``progress`` is called with the name of each phase as it
+    begins. Raises SceneError or PluginError if the scene cannot be built or has no mesh, MeshError if none can be made,
+    OutputError if the disk refuses.
     """
     table = scene.mesh
     if table is None:

@@ -1,4 +1,4 @@
-"""The page of an insertion: what it is like, surface by surface, with pictures."""
+"""The page of an insertion: figures of each surface, and pictures."""
 
 from __future__ import annotations
 
@@ -45,10 +45,11 @@ def write_page(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[
 
 
 def surface_row(figures: SurfaceFigures) -> tuple[object, ...]:
-    """What HEADER names."""
+    """Cells of one surface, in the order of HEADER."""
     f = figures
     return (
-        f.name, f.kind, f.facets, _of(f.kept_facets, f.given_facets), _of(f.kept_corners, f.given_corners),
+        f.name, f.kind, f.facets,
+        _kept_share(f.kept_facets, f.given_facets), _kept_share(f.kept_corners, f.given_corners),
         f"{f.vertices_off:.1e}", f"{f.middles_off:.1e}",
         f.area, _known(f.exact_area), _known(f.volume), _known(f.exact_volume),
     )  # fmt: skip
@@ -65,7 +66,7 @@ def _summary(figures: Figures) -> Iterator[tuple[str, object]]:
         yield f"{phase} [s]", seconds
 
 
-def _of(kept: int | None, given: int | None) -> str:
+def _kept_share(kept: int | None, given: int | None) -> str:
     return "" if given is None else f"{kept} of {given}"
 
 

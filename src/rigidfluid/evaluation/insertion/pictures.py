@@ -60,7 +60,7 @@ def space_picture(mesh: Mesh, system: System) -> Figure:
 
 
 def _add_slice(figure: Figure, mesh: Mesh, system: System) -> None:
-    """Across the domain's shortest side, through the middle of the bodies."""
+    """Add a slice across the domain's shortest side, through the middle of the bodies."""
     lower, upper = system.meshed(system.pose).extent
     axis = int(np.argmin(upper - lower))
     centres = system.pose.position if len(system.bodies) else 0.5 * (lower + upper)[None]
@@ -77,7 +77,7 @@ def _add_slice(figure: Figure, mesh: Mesh, system: System) -> None:
 
 
 def sliced(mesh: Mesh, axis: int, height: float) -> tuple[list[FloatArray], FloatArray]:
-    """Where a plane across an axis cuts cells: polygons of 3 or 4 corners in space, and the quality of their cells."""
+    """Polygons, of 3 or 4 corners in space, in which a plane across an axis cuts cells, and those cells' quality."""
     above = mesh.points[:, axis] > height
     cut = np.flatnonzero(above[mesh.cells].any(axis=1) & ~above[mesh.cells].all(axis=1))
     polygons = [_section(mesh.points[cell], axis, height) for cell in mesh.cells[cut]]

@@ -15,7 +15,7 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.tables import KINDS
 from rigidfluid.core.run.summary import ENERGIES, FIGURES
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.mechanisms import with_components
+from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.studies.model import FigureTable
 from rigidfluid.registry import suggestion
@@ -24,20 +24,7 @@ _FIELD = "error.figure"
 
 
 def check_figure(figure: FigureTable, scene: Scene) -> None:
-    """Refuse, before anything runs, a figure that this scene's runs will not have.
-
-    Parameters
-    ----------
-    figure : FigureTable
-        From the study file.
-    scene : Scene
-        The scene of one run.
-
-    Raises
-    ------
-    SceneError
-        Naming the nearest name that there is.
-    """
+    """Raise SceneError, with the nearest name that exists, for a figure that this scene's runs will not have."""
     if figure.key is not None:
         table, _, rest = figure.key.partition(".")
         _refuse_unknown("", table, [name for name in FIGURES if name != "cycles" or scene.mechanism])
@@ -52,39 +39,21 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
             f"{_FIELD}.probe", figure.probe or 0, allowed, "Correct it, or add output.probes to the scene."
         )
     if figure.body is not None:
-        _refuse_unknown(".body", figure.body, [body.name for body in with_components(scene)[0].body])
+        _refuse_unknown(".body", figure.body, [body.name for body in append_components(scene)[0].body])
     if figure.at is not None and not 0 <= figure.at <= scene.time.end:
         allowed = f"a time from 0 to time.end, {scene.time.end:g}"
         raise SceneError(f"{_FIELD}.at", figure.at, allowed, "Correct it, or run for longer.")
 
 
 def read_figure(figure: FigureTable, history: History) -> float:
-    """The figure of a run that is complete.
-
-    Parameters
-    ----------
-    figure : FigureTable
-        Which.
-    history : History
-        The run's tables and summary.
-
-    Returns
-    -------
-    float
-        Always finite.
-
-    Raises
-    ------
-    SceneError
-        Where the run has no such number.
-    """
-    value = _of_summary(figure.key, history.summary) if figure.key is not None else _of_table(figure, history)
+    """Figure of a complete run, finite; raises SceneError if the run has no such number."""
+    value = _summary_value(figure.key, history.summary) if figure.key is not None else _table_value(figure, history)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise SceneError(f"{_FIELD}", f"{value!r} for {figure}", "a number", "Choose a figure that this run has.")
     return float(value)
 
 
-def _of_summary(path: str, summary: dict[str, Any]) -> Any:
+def _summary_value(path: str, summary: dict[str, Any]) -> Any:
     value: Any = summary
     for key in path.split("."):
         if isinstance(value, list) and key.isdecimal() and int(key) < len(value):
@@ -96,7 +65,7 @@ def _of_summary(path: str, summary: dict[str, Any]) -> Any:
     return value
 
 
-def _of_table(figure: FigureTable, history: History) -> float:
+def _table_value(figure: FigureTable, history: History) -> float:
     table = history.table(str(figure.table))
     rows = _rows(figure, table)
     values: FloatArray = table[str(figure.column)][rows]
@@ -108,7 +77,7 @@ def _of_table(figure: FigureTable, history: History) -> float:
 
 
 def _rows(figure: FigureTable, table: dict[str, NDArray[Any]]) -> BoolArray:
-    """Those of one body or one probe; of the contacts those of one body or all."""
+    """Rows (s,) of one body or one probe; in the table of contacts, rows of one body or of all."""
     if figure.table == "bodies":
         return np.asarray(table["body"] == (figure.body or table["body"][0]))
     if figure.table == "probes":

@@ -1,4 +1,4 @@
-"""A kernel as what a study runs."""
+"""Subject of a study that runs a kernel."""
 
 from __future__ import annotations
 
@@ -19,17 +19,7 @@ from rigidfluid.registry import suggestion
 class KernelSubject:
     """Runs of the study's kernel.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-
-    Raises
-    ------
-    SceneError
-        If there is no such kernel, or if no run reads a knob.
-    SceneError, PluginError
-        If no setting is valid: then the study is wrong, not a setting.
+    Raises SceneError if there is no such kernel or no run reads a knob, and the first error if no setting is valid.
     """
 
     def __init__(self, study: Study) -> None:
@@ -58,7 +48,7 @@ class KernelSubject:
         return json.dumps([self._name, self.read(self._fixed | settings)], sort_keys=True, default=str)
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
-        """One run; what its seconds are, the kernel says."""
+        """Run the kernel once; it decides what its seconds measure."""
         return self._made(settings).run(progress)
 
     def _made(self, settings: Settings) -> Kernel:

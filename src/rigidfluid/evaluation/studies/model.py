@@ -1,4 +1,4 @@
-"""What a study file may say, and how a file becomes a `Study`."""
+"""Tables of a study file, and the `Study` that they give."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class _Table(BaseModel):
 
 
 class StudyTable(_Table):
-    """What is run, and how the settings are put together."""
+    """Subject of a study, and the combination of its settings."""
 
     name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the study; results go to `out/<name>` by default")
     scene: str | None = Field(default=None, description="Path of the scene file, relative to the study file")
@@ -57,7 +57,7 @@ class StudyTable(_Table):
 
     @property
     def clock(self) -> str:
-        """What the seconds are."""
+        """Name of the clock that measures the seconds."""
         return "CPU time" if self.seconds == "cpu" else "wall time"
 
 
@@ -108,7 +108,7 @@ class FigureTable(_Table):
 
 
 class ErrorTable(_Table):
-    """What the error is."""
+    """Figure, reference and scaling of the error."""
 
     figure: FigureTable = Field(description="The figure whose error is studied")
     reference: Annotated[float | None, BeforeValidator(lambda value: None if value == "finest" else value)] = Field(
@@ -161,22 +161,9 @@ class Study:
 
 
 def load_study(path: str | Path) -> Study:
-    """Read a study file.
+    """Read a study file (TOML), validated but for its scene or kernel.
 
-    Parameters
-    ----------
-    path : str or Path
-        A TOML file.
-
-    Returns
-    -------
-    Study
-        Validated but for its scene or kernel.
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read, is no TOML, or says something that is not allowed.
+    Raises SceneError if it cannot be read, is no TOML, or has a value that is not allowed.
     """
     path = Path(path)
     tables = read_table(StudyFile, read_toml(path, "study"))

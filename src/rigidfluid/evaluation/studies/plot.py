@@ -22,19 +22,9 @@ CROWDED = 300.0
 
 
 def error_plot(results: Results) -> Figure:
-    """A line for each value of the group, through its runs in the order of the study file, and the Pareto front.
+    """Plot a line for each value of the group, through its runs in the order of the study file, and the Pareto front.
 
-    Of a group of two keys the first gives the colour, the second the marker.
-
-    Parameters
-    ----------
-    results : Results
-        With at least one point.
-
-    Returns
-    -------
-    Figure
-        One panel.
+    With two keys in the group the first gives the colour, the second the marker. ``results`` has at least one point.
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
@@ -56,13 +46,13 @@ def error_plot(results: Results) -> Figure:
 
 
 def error_label(results: Results) -> str:
-    """What the error is of, and against what."""
+    """Label of the error axis: the quantity and its reference."""
     kind = "relative error" if results.is_relative else "error"
     return f"{kind} of {results.target.of}\nagainst {results.target.against}"
 
 
 def _draw_lines(axes: Axes, results: Results) -> list[Artist]:
-    """The lines, and what stands for them in the legend."""
+    """Draw the lines; return the artists that stand for them in the legend."""
     series = _series(results)
     colours = dict(zip(dict.fromkeys(words[0] for words in series), cycle(PALETTE)))
     markers = dict(zip(dict.fromkeys(words[-1] for words in series), cycle(_MARKERS)))

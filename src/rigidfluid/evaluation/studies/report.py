@@ -21,24 +21,9 @@ PLOT, PAGE = "study", "study.html"
 
 
 def write_report(results: Results, out: Path) -> list[Path]:
-    """Write the plot and the page.
+    """Write the plot, if a run has an error to draw, as PNG and SVG, and the page, into the existing folder ``out``.
 
-    Parameters
-    ----------
-    results : Results
-        Of a study that is at its end.
-    out : Path
-        A folder that exists.
-
-    Returns
-    -------
-    list of Path
-        What was written: the plot as PNG and SVG, if a run has an error to draw, and the page.
-
-    Raises
-    ------
-    OutputError
-        Where the disk refuses.
+    Returns the files written; raises OutputError if the disk refuses.
     """
     with matplotlib.rc_context(STYLE), writing(out / PAGE):
         plots = save(error_plot(results), out, PLOT, ("png", "svg")) if results.points else []

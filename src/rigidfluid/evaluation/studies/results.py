@@ -1,4 +1,4 @@
-"""What a study has found so far: the error of each run, and which runs are worth their time."""
+"""Results of a study so far: the error of each run, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Results:
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
-        """Of the runs that did not fail, by fingerprint."""
+        """Outcomes of the runs that did not fail, by fingerprint."""
         done = {key: self.rows[key].outcome for key in self.prints if key in self.rows}
         return {key: outcome for key, outcome in done.items() if outcome is not None}
 
@@ -45,7 +45,7 @@ class Results:
 
     @property
     def reference(self) -> float | None:
-        """What the figure should be; None if that is not known yet."""
+        """Reference value of the figure; None if it is not known yet."""
         return self.target.reference if self.finest is None else self.outcomes[self.finest].figure
 
     @property
@@ -74,18 +74,7 @@ class Results:
 
 
 def most_expensive(outcomes: Mapping[K, Outcome]) -> K:
-    """The run with the most unknowns times steps, among equals the most steps, among equals the longest.
-
-    Parameters
-    ----------
-    outcomes : mapping
-        At least one.
-
-    Returns
-    -------
-    key
-        Of that run.
-    """
+    """Key of the run with the most unknowns times steps, among equals the most steps, among equals the longest."""
     return max(outcomes, key=lambda key: _work(outcomes[key]))
 
 
@@ -94,18 +83,9 @@ def _work(outcome: Outcome) -> tuple[int, int, float]:
 
 
 def pareto_front(points: Mapping[K, tuple[float, float]]) -> list[K]:
-    """The points that no other beats.
+    """Keys of the non-dominated (seconds, error) points, by seconds.
 
-    Parameters
-    ----------
-    points : mapping
-        (seconds, error) of each run.
-
-    Returns
-    -------
-    list
-        Keys of the runs than which none is both no slower and no less accurate, and better in one; by seconds. Of runs
-        whose errors differ by round-off, as those of several backends, the fastest.
+    Errors that differ by round-off alone, as between backends, count as equal, and the fastest run is kept.
     """
     front: list[K] = []
     for key in sorted(points, key=lambda key: points[key]):

@@ -1,4 +1,4 @@
-"""The rows of a study: what was run, what came out, and the CSV that holds them."""
+"""Rows of a study, the settings and outcome of each run, and the CSV that holds them."""
 
 from __future__ import annotations
 
@@ -63,27 +63,10 @@ def write_rows(
     rows: Mapping[str, Row],
     errors: Mapping[str, float],
 ) -> None:
-    """Write the rows there are, in the order of the settings; a kill at any time leaves the old file or the new one.
+    """Write the rows there are, in the order of the plan; a kill at any time leaves the old file or the new one.
 
-    Parameters
-    ----------
-    path : Path
-        The CSV.
-    knobs : sequence of str
-        Names of the first columns.
-    plan : sequence of dict
-        The knobs that each planned run reads.
-    prints : sequence of str
-        The fingerprint of each planned run.
-    rows : mapping
-        Rows by fingerprint.
-    errors : mapping
-        Errors by fingerprint.
-
-    Raises
-    ------
-    OutputError
-        Where the disk refuses.
+    ``plan`` holds the knobs that each planned run reads, ``prints`` its fingerprint; ``rows`` and ``errors`` are by
+    fingerprint. Raises OutputError if the disk refuses.
     """
     fresh = path.with_suffix(".part")
     with writing(path), fresh.open("w", newline="", encoding="utf-8") as file:
@@ -104,23 +87,7 @@ def _results(row: Row, error: float | None) -> list[object]:
 
 
 def read_rows(path: Path) -> dict[str, Row]:
-    """Rows by fingerprint; none if there is no such file.
-
-    Parameters
-    ----------
-    path : Path
-        The CSV.
-
-    Returns
-    -------
-    dict
-        Rows of this study and of earlier versions of its file.
-
-    Raises
-    ------
-    OutputError
-        Where the file cannot be read.
-    """
+    """Rows of this study and of earlier versions, by fingerprint; none without the file. Raises OutputError."""
     if not path.exists():
         return {}
     try:

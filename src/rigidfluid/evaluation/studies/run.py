@@ -1,4 +1,4 @@
-"""Runs what a study has not run yet, and reports on all of it."""
+"""Runs the missing runs of a study, and reports on all of it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TABLE = "study.csv"
 
 @dataclass(frozen=True, slots=True)
 class StudyProgress:
-    """Where a study is: runs ``done``, a fraction of the present one included, of ``total``; its ``settings``."""
+    """Progress of a study: runs ``done``, a fraction of the present one included, of ``total``; the ``settings``."""
 
     done: float
     total: int
@@ -31,30 +31,10 @@ class StudyProgress:
 def run_study(
     study: Study, out: Path, *, fresh: bool = False, progress: Callable[[StudyProgress], None] | None = None
 ) -> tuple[Results, list[Path]]:
-    """Run a study to its end, going on where an earlier one was stopped.
+    """Run a study to its end, resuming one in ``out`` unless ``fresh``; return the results and the files written.
 
-    Parameters
-    ----------
-    study : Study
-        From `load_study`.
-    out : Path
-        Folder for the table, the plots and the page.
-    fresh : bool
-        Run everything, also what the table in ``out`` holds.
-    progress : callable or None
-        Called as the study goes on.
-
-    Returns
-    -------
-    tuple
-        The results, and the files that were written.
-
-    Raises
-    ------
-    SceneError, PluginError
-        If the study cannot be run at all. The failure of one run is put into the table instead.
-    OutputError
-        Where the disk refuses, or the table there cannot be read.
+    Raises SceneError or PluginError if the study cannot be run at all (one run's failure goes into the table),
+    OutputError if the disk refuses or the table cannot be read.
     """
     subject: Subject = SceneSubject(study) if study.scene is not None else KernelSubject(study)
     results = _results(study, subject, out, fresh, progress or (lambda _: None))

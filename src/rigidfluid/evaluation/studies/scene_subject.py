@@ -1,4 +1,4 @@
-"""A scene as what a study runs."""
+"""Subject of a study that runs a scene."""
 
 from __future__ import annotations
 
@@ -17,19 +17,9 @@ from rigidfluid.evaluation.studies.subject import Outcome, Target, tried
 
 
 class SceneSubject:
-    """Runs of the study's scene, kept in memory.
+    """Runs of the study's scene, kept in memory; the scene file is read once.
 
-    Parameters
-    ----------
-    study : Study
-        The study; its scene file is read once.
-
-    Raises
-    ------
-    SceneError
-        If the scene cannot be read, or has no such figure.
-    SceneError, PluginError
-        If no setting gives a valid scene: then the study is wrong, not a setting.
+    Raises SceneError if the scene cannot be read or has no such figure, and the first error if no setting is valid.
     """
 
     def __init__(self, study: Study) -> None:
@@ -45,7 +35,7 @@ class SceneSubject:
         self.target = _target(study.tables.study.label, study.tables.error)
 
     def read(self, settings: Settings) -> Settings:
-        """All: a scene refuses what it does not read."""
+        """All settings: a scene refuses what it does not read."""
         return settings
 
     def identity(self, settings: Settings) -> str:

@@ -1,4 +1,4 @@
-"""What a study runs."""
+"""Interface of what a study runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one run gives: the ``figure``, ``seconds`` by the study's clock, ``unknowns`` of a step and ``steps``."""
+    """Outcome of one run: the ``figure``, ``seconds`` by the study's clock, ``unknowns`` of a step and ``steps``."""
 
     figure: float
     seconds: float
@@ -24,9 +24,9 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Target:
-    """What the ``figure`` is, and what it should be: the ``reference``, or None for its value in the finest run.
+    """Name of the ``figure``, and its ``reference`` value, or None for its value in the finest run.
 
-    ``of`` says what an error is of, ``against`` what it is against; with ``relative`` it is divided by the reference.
+    ``of`` names the quantity with the error, ``against`` its reference, which divides the error with ``relative``.
     """
 
     figure: str
@@ -42,10 +42,10 @@ class Subject(Protocol):
     target: Target
 
     def read(self, settings: Settings) -> Settings:
-        """Those of the settings that change what a run with them does; of equal ones, one run is enough."""
+        """Settings that have an effect on the run; one run is enough for equal ones."""
 
     def identity(self, settings: Settings) -> str:
-        """All that decides the outcome with these settings."""
+        """Text that determines the outcome with these settings."""
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
         """Run it, and tell ``progress`` how much is done, from 0 to 1; raises RigidfluidError where it fails."""
@@ -54,24 +54,9 @@ class Subject(Protocol):
 def tried(
     all_settings: Iterable[Settings], make: Callable[[Settings], Made]
 ) -> tuple[list[Made], list[RigidfluidError]]:
-    """What can be made of the settings of a study.
+    """Subjects that ``make`` builds from the settings of a study, at least one, and the errors of invalid settings.
 
-    Parameters
-    ----------
-    all_settings : iterable of dict
-        The settings of each run.
-    make : callable
-        Makes what is run, or raises RigidfluidError.
-
-    Returns
-    -------
-    list, list
-        What was made, at least one, and the errors of the settings that are not valid.
-
-    Raises
-    ------
-    RigidfluidError
-        The first, if nothing can be made of any: then the study is wrong, not a setting.
+    Raises the first error if no setting is valid: then the study is wrong, not a setting.
     """
     made: list[Made] = []
     errors: list[RigidfluidError] = []

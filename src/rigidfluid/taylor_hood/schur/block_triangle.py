@@ -13,13 +13,13 @@ from rigidfluid.taylor_hood.schur.two_levels import TwoLevels, mean_of_component
 
 
 class BlockTriangle:
-    """S by Cahouet and Chabard; A, of velocities and twists, by components, in which bodies move without turning, and
-    by how bodies turn.
+    """Inverse of [[A, Bᵀ], [0, S]]: S by Cahouet and Chabard; A, of velocities and twists, by components, in which
+    bodies move without turning, and by how bodies turn.
 
     Parameters
     ----------
     parts : Parts
-        Of the coupled matrix.
+        Ingredients of the coupled matrix.
     """
 
     def __init__(self, parts: Parts) -> None:

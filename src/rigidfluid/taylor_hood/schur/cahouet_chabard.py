@@ -16,13 +16,13 @@ class CahouetChabard:
     """S⁻¹ ≈ -(M⁻¹ + inertia L⁻¹), M the pressures' mass matrix weighted by 1/(2 μ + γ), L their Laplace matrix.
 
     Exact for A = inertia I - (2 μ + γ) ∇∇· on a whole space: what ∇u + ∇uᵀ and grad-div make of gradients (Cahouet and
-    Chabard 1988, doi:10.1002/fld.1650080802). At open faces, where the pressure is nearly given, L is but its diagonal.
+    Chabard 1988, doi:10.1002/fld.1650080802). L is but its diagonal at open faces, where the pressure is nearly given.
     Both have as many rows as the mesh has vertices, a twentieth of the unknowns in 3D, and are factorised.
 
     Parameters
     ----------
     parts : Parts
-        Of the coupled matrix.
+        Ingredients of the coupled matrix.
     """
 
     def __init__(self, parts: Parts) -> None:
@@ -69,7 +69,7 @@ def _pressures(constraint: Constraint) -> tuple[IntArray, int]:
 
 
 def _open_vertices(constraint: Constraint) -> IntArray:
-    """Where a pressure is prescribed."""
+    """Vertices (v,) at which a pressure is prescribed."""
     vertices = constraint.surfaces.numbering.vertices
     on = [face.nodes for face in constraint.surfaces.faces if face.condition.type == "pressure"]
     nodes = np.concatenate([np.empty(0, np.int64), *on])

@@ -15,7 +15,7 @@ from rigidfluid.taylor_hood.schur.block_triangle import BlockTriangle
 
 @final
 class LaggedSchur(LaggedSolver[Parts]):
-    """By a `BlockTriangle`, whose memory and cost grow with the unknowns."""
+    """Solver preconditioned by a `BlockTriangle`, whose memory and cost grow in proportion to the unknowns."""
 
     rebuild_cost: ClassVar[Mapping[int, int]] = {2: 12, 3: 12}
     fresh_iterations: ClassVar[int] = 20

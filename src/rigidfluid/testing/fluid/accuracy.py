@@ -17,14 +17,14 @@ UNEVEN = np.array([1.0, 0.5, 0.5, 1.0, 1.0])
 """Steps that halve and double, in units of the longest."""
 
 END = 0.5
-"""When the test of the order in time compares [time]."""
+"""Time at which the test of the order in time compares [time]."""
 
 
 class AccuracyContract(FluidContract):
     """Patch tests, on meshes at rest and in motion, and orders in space and time."""
 
     lowest_orders: ClassVar[tuple[float, float, float]] = (2.9, 1.9, 1.9)
-    """What must be observed: of the velocity in space, of the pressure in space, of both in time."""
+    """Lowest observed orders allowed: velocity in space, pressure in space, both in time."""
 
     def test_a_linear_flow_is_exact(self, dimension: int) -> None:
         """u = A x + b and p = c·x: a Stokes step from rest, and the Navier–Stokes step after it."""
@@ -61,7 +61,7 @@ class AccuracyContract(FluidContract):
             self.assert_close(pressure, 0.0, scale=10.0)
 
     def test_an_enclosed_flow_does_not_depend_on_the_numbering(self, dimension: int) -> None:
-        """What flows in flows out, but not as interpolated on the faces: no single vertex may take the difference."""
+        """Inflow equals outflow, but not as interpolated on the faces: no single vertex may take the difference."""
 
         def through(_time: float, points: FloatArray) -> FloatArray:
             velocity, across = np.zeros_like(points), points[:, 1:]
@@ -99,7 +99,7 @@ class AccuracyContract(FluidContract):
         self.assert_close(pressure, exact.pressure(flow.time, points), scale=10.0)
 
     def _errors(self, dimension: int, divisions: int) -> FloatArray:
-        """Of velocity and pressure in L², the advecting velocity that of a Stokes solution with an error of order 3."""
+        """L² errors (2,) of velocity and pressure; the advecting velocity is a Stokes solution, itself of order 3."""
         exact, mesh = Waves(dimension), box(dimension, divisions)
         flow = self.empty(enclosed(dimension, exact.velocity, exact.source), mesh).after(None)
         flow = flow.after(1e9)

@@ -25,7 +25,7 @@ from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Value
 from rigidfluid.testing.fluid.flow import Bodies, components
 
 DROP, BACK = 2.0, 0.4
-"""Of the pressure from the first to the second face, and at that one."""
+"""Pressure drop from the first to the second face, and pressure at the second one."""
 
 
 class BalancesContract(FluidContract):
@@ -68,7 +68,7 @@ class BalancesContract(FluidContract):
 
     def test_rest_stays_rest(self, dimension: int) -> None:
         """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
-        bodies = Bodies(np.ones(2), Bodies.of(balls_pose(dimension)).inertia, np.array([True, False]))
+        bodies = Bodies(np.ones(2), Bodies.uniform(balls_pose(dimension)).inertia, np.array([True, False]))
         faces = {"x0": "pressure", "x1": "pressure"}
         flow = self.with_balls(problem(dimension, faces, dict.fromkeys(faces, _constant(BACK)), bodies=2), bodies)
         sway = np.full(dimension, 0.01)  # with 0.02 it could fold cells next to the balls
@@ -114,7 +114,7 @@ class BalancesContract(FluidContract):
 
         pose = _off_centre(dimension)
         twist = np.column_stack([turning(0.0, pose.position), np.tile(spin, (2, 1))])
-        bodies = Bodies.of(pose, controlled=not free)
+        bodies = Bodies.uniform(pose, controlled=not free)
         flow = self.with_balls(enclosed(dimension, turning, bodies=2, inertia=False), bodies, pose)
         flow = flow.after(None, twist=None if free else twist)
         _, pressure = flow.probe(samples(dimension))
@@ -132,7 +132,7 @@ class BalancesContract(FluidContract):
         volume, centroid = np.array([v for v, _ in moments]), np.array([c for _, c in moments])
         start = balls_pose(dimension)
         start = Pose(centroid if free else _off_centre(dimension).position, start.orientation)
-        inertia = Bodies.of(start).inertia
+        inertia = Bodies.uniform(start).inertia
         bodies = Bodies(DENSITY * volume, inertia, np.full(2, not free))
 
         def rising(time: float, points: FloatArray) -> FloatArray:
@@ -165,7 +165,7 @@ class BalancesContract(FluidContract):
         Which one is free changes on the way.
         """
         pose, size = balls_pose(dimension), 3 if dimension == 2 else 6
-        inertia = Bodies.of(pose, mass=0.02).inertia
+        inertia = Bodies.uniform(pose, mass=0.02).inertia
         flow = self.with_balls(problem(dimension, bodies=2), Bodies(np.full(2, 0.02), inertia, np.array([True, False])))
         rng, shift, mesh = np.random.default_rng(1), np.zeros((2, dimension)), box_with_balls(dimension)
         for number, length in enumerate((0.02, 0.02, 0.01, 0.02)):
@@ -202,11 +202,12 @@ class BalancesContract(FluidContract):
         given = float(weights @ np.sum(velocity * exact.source(1.0, points), axis=1))
         self.assert_close(flow.advance.dissipation, dissipated, scale=10.0)
         self.assert_close(flow.advance.boundary_power, dissipated - given, scale=10.0)
+        self.assert_close(flow.advance.source_power, given, scale=10.0)
         kinetic = 0.5 * DENSITY * float(weights @ np.sum(velocity**2, axis=1))
         self.assert_close(flow.advance.kinetic_energy, kinetic, scale=10.0)
 
     def test_a_prediction_error_is_kinetic_energy(self, dimension: int) -> None:
-        """Of what moves otherwise than extrapolated: all of it from nothing, and none from itself."""
+        """Kinetic energy of velocity minus extrapolation: all of it if that is zero, none if that is the velocity."""
         flow = self.stir(self.stirred(dimension, steps=2))
         backend = flow.backend
         if type(backend).prediction_error is FluidBackend.prediction_error:
@@ -235,7 +236,7 @@ def _lid(_time: float, points: FloatArray) -> FloatArray:
 
 
 def _channel(dimension: int, inertia: bool, wall: str = "") -> FluidProblem:
-    """From left to right by pressures; the other faces are planes of symmetry but for one."""
+    """Flow in a box from left to right, driven by pressures; the other faces are slip planes but for a ``wall``."""
     types = dict.fromkeys(("y0", "y1", "z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
     if wall:
         types[wall] = "wall"

@@ -1,4 +1,4 @@
-"""What all parts of the contract share: how a backend is made, its tolerances, how results are compared."""
+"""Base of all parts of the contract: makes a backend, holds its tolerances, compares results."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class FluidContract:
 
     def stirred(self, dimension: int, steps: int) -> Flow:
         """One ball driven and turned, the other one free, light and pushed, after some steps."""
-        bodies = replace(Bodies.of(balls_pose(dimension), mass=0.05), controlled=np.array([True, False]))
+        bodies = replace(Bodies.uniform(balls_pose(dimension), mass=0.05), controlled=np.array([True, False]))
         flow = self.with_balls(problem(dimension, bodies=2), bodies)
         for _ in range(steps):
             flow = self.stir(flow)

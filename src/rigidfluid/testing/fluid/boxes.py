@@ -44,7 +44,7 @@ def finer_box_with_balls(dimension: int, shift: FloatArray) -> Mesh:
 
 
 def balls_pose(dimension: int) -> Pose:
-    """Where the balls of `box_with_balls` are."""
+    """Positions and orientations of the balls of `box_with_balls`."""
     return Pose(CENTRES[:, :dimension].copy(), np.tile(np.eye(1, 1 if dimension == 2 else 4), (2, 1)))
 
 

@@ -14,7 +14,7 @@ from rigidfluid.testing.fluid.exact import problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 
 STEP = 0.02
-"""Of all steps here [time]."""
+"""Length of each step [time]."""
 
 
 class CarriedContract(FluidContract):
@@ -43,7 +43,7 @@ class CarriedContract(FluidContract):
         assert np.abs(pulled).min() > 1e-4 * scale
 
     def test_answers_are_those_of_the_whole(self, dimension: int) -> None:
-        """Two steps, one with an impulse on the motion in its load, differ by the answer that was told."""
+        """Two steps, one with an impulse on the motion in its load, differ by the impulse response."""
         flow, step = self._pushed(dimension, given=0.3)
         impulse = 0.01 * np.random.default_rng(5).normal(size=step.load.shape)
         pushed = replace(step, load=step.load + step.derivative[0] * impulse, impulse=impulse)
@@ -60,7 +60,7 @@ class CarriedContract(FluidContract):
         pose, carrier = balls_pose(dimension), np.zeros(2, dtype=np.int64)
         posed = replace(problem(dimension, bodies=2), carrier=(0, 0))
         started = 0.2 * np.random.default_rng(7).normal(size=(2, size(pose)))
-        flow = self.with_balls(posed, Bodies.of(pose, mass=0.05), twist=started)
+        flow = self.with_balls(posed, Bodies.uniform(pose, mass=0.05), twist=started)
         centre = pose.position.mean(axis=0, keepdims=True)
         relative = np.zeros((2, size(pose)))
         relative[1] = given

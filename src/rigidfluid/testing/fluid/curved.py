@@ -18,14 +18,14 @@ from rigidfluid.testing.fluid.exact import VISCOSITY, Value, enclosed
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components
 
 RADIUS, CENTRE = 0.2, 0.5
-"""Of the ball, in the middle of the box [length]."""
+"""Radius of the ball and each coordinate of its centre, in the middle of the box [length]."""
 
 
 class CurvedContract(FluidContract):
-    """What cells with curved edges must not spoil, and what they are there for."""
+    """Exact flows that cells with curved edges keep, and orders of convergence that they raise."""
 
     lowest_orders_at_a_ball: ClassVar[tuple[float, float]] = (2.8, 2.8)
-    """What must be observed: of the velocity round a ball that turns, and of its torque. Straight facets give 2."""
+    """Lowest observed orders allowed: velocity round a turning ball, and its torque. Straight facets give 2."""
 
     def test_orders_at_a_turning_ball(self, dimension: int) -> None:
         """u = ω × r (R/r)^d, Stokes flow without a pressure; the torque is -2 d Ω μ R^d ω, Ω = π in 2D, 4π/3 in 3D."""
@@ -97,7 +97,7 @@ class CurvedContract(FluidContract):
         dimension = mesh.points.shape[1]
         pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
         posed = enclosed(dimension, velocity, bodies=1, inertia=inertia)
-        return Flow.start(self.make_backend(posed), self.make_mesh(mesh), pose, Bodies.of(pose))
+        return Flow.start(self.make_backend(posed), self.make_mesh(mesh), pose, Bodies.uniform(pose))
 
 
 @cache

@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProb
 DENSITY, VISCOSITY = 1.3, 0.7
 
 FACES = ("x0", "x1", "y0", "y1", "z0", "z1")
-"""Of the unit box: the axis across a face, and its coordinate there."""
+"""Names of the unit box's faces: the axis across a face, and its coordinate there."""
 
 Value = Callable[[float, FloatArray], FloatArray]
 
@@ -42,7 +42,7 @@ def problem(
 def enclosed(
     dimension: int, velocity: Value, source: Value | None = None, bodies: int = 0, inertia: bool = True
 ) -> FluidProblem:
-    """Velocity prescribed on all faces."""
+    """Problem in a box with the velocity prescribed on all faces."""
     every = FACES[: 2 * dimension]
     return problem(dimension, dict.fromkeys(every, "velocity"), dict.fromkeys(every, velocity), bodies, inertia, source)
 
@@ -56,7 +56,7 @@ def inward_normal(face: int, dimension: int) -> FloatArray:
 class LinearFlow:
     """u = g(t) (A x + b), p = k(t) c · (x - middle of the box), with A without trace: P2–P1 has it exactly.
 
-    At time 0 the source leaves out the inertia, so that a steady step from rest, where u* = 0, gives this flow.
+    The source has no inertia at time 0, so that a steady step from rest, where u* = 0, gives this flow.
     """
 
     gradient: FloatArray

@@ -17,14 +17,14 @@ from rigidfluid.core.model.types import Advance, BoolArray, FloatArray, FluidSta
 
 @dataclass(frozen=True)
 class Bodies:
-    """What the n bodies are: ``mass`` (n,), ``inertia`` (n, k, k), and which twists are given, ``controlled`` (n,)."""
+    """Masses of n bodies: ``mass`` (n,), ``inertia`` (n, k, k); ``controlled`` (n,), whether a twist is prescribed."""
 
     mass: FloatArray
     inertia: FloatArray
     controlled: BoolArray
 
     @classmethod
-    def of(cls, pose: Pose, mass: float = 1.0, controlled: bool = True) -> Bodies:
+    def uniform(cls, pose: Pose, mass: float = 1.0, controlled: bool = True) -> Bodies:
         """Bodies of one mass, with an inertia that couples the axes in 3D."""
         count, dimension = pose.position.shape
         inertia = np.eye(1) if dimension == 2 else np.array([[1.0, 0.2, 0.1], [0.2, 1.5, 0.3], [0.1, 0.3, 2.0]])
@@ -60,9 +60,9 @@ class Flow:
         twist: FloatArray | None = None,
     ) -> Flow:
         """Fluid at rest until bodies are set in motion with ``twist`` (n, d+k)."""
-        moving = as_twist(np.zeros((len(pose.position), size(pose))) if twist is None else twist, pose)
+        moving = twist_from_components(np.zeros((len(pose.position), size(pose))) if twist is None else twist, pose)
         fluid, _ = backend.initial(mesh, pose, moving)
-        return cls(backend, mesh, mesh, fluid, bodies or Bodies.of(pose), pose, moving)
+        return cls(backend, mesh, mesh, fluid, bodies or Bodies.uniform(pose), pose, moving)
 
     def after(self, length: float | None, **changes: Any) -> Flow:
         """The flow a step later; see `step_after` for what may be given."""
@@ -94,7 +94,7 @@ class Flow:
 
     @property
     def advance(self) -> Advance:
-        """What the backend returned for it."""
+        """Result of the step that led here, as the backend returned it."""
         assert self.latest is not None, "no step was taken"
         return self.latest[1]
 
@@ -114,15 +114,15 @@ class Flow:
         length : float or None
             Its length [time]; None for a steady flow, all weights of the time derivative zero.
         points : (N, d) array, optional
-            Where it takes the mesh [length].
+            Points of the mesh at its end [length]; without them the mesh is at rest.
         pose : Pose, optional
-            Where it takes the bodies.
+            Pose of the bodies at its end; without it they stay.
         twist : (n, d+k) array, optional
-            Of the controlled bodies; else they rest.
+            Twist of the controlled bodies; without it they rest.
         push : (n, d+k) array, optional
             Force and torque on the bodies besides the fluid's [force | force·length].
         impulse : (n, d+k) array, optional
-            Of contacts, which give it at once [force·time | force·length·time].
+            Impulse of contacts, given at once [force·time | force·length·time].
         """
         pose = pose or self.pose
         before = None if self.past is None else self.past[2]
@@ -169,7 +169,7 @@ def size(pose: Pose) -> int:
     return 3 if pose.position.shape[1] == 2 else 6
 
 
-def as_twist(components: FloatArray, pose: Pose) -> Twist:
+def twist_from_components(components: FloatArray, pose: Pose) -> Twist:
     """A twist from its components (n, d+k)."""
     d = pose.position.shape[1]
     return Twist(components[:, :d].copy(), components[:, d:].copy())

@@ -34,7 +34,7 @@ class GalileanContract(FluidContract):
         self.assert_close(moving, still, scale=100.0 * np.abs(still).max())
 
     def _wrenches(self, translation: FloatArray) -> FloatArray:
-        """Of all steps, (s, 2, d+k)."""
+        """Hydrodynamic wrenches of all steps, (s, 2, d+k), in a container with a constant ``translation`` (d,)."""
         dimension = len(translation)
 
         def uniform(_time: float, points: FloatArray) -> FloatArray:
@@ -46,7 +46,7 @@ class GalileanContract(FluidContract):
         start = balls_pose(dimension)
         twist = np.zeros((2, size(start)))
         twist[:, :dimension] = translation
-        flow, found = self.with_balls(posed, Bodies.of(start), twist=twist), []
+        flow, found = self.with_balls(posed, Bodies.uniform(start), twist=twist), []
         for _ in range(STEPS):
             time = flow.time + LENGTH
             way = SPEED * np.outer([1.0, -1.0], np.ones(dimension))

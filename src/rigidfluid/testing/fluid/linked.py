@@ -14,14 +14,14 @@ from rigidfluid.testing.fluid.exact import problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 
 STEP = 0.02
-"""Of all steps here [time]."""
+"""Length of each step [time]."""
 
 
 class LinkedContract(FluidContract):
     """Two free balls, joined at a point, driven about it with some slip, and one of them held in a direction."""
 
     link_tolerance: ClassVar[float] = 1e-8
-    """Of velocities in links, relatively."""
+    """Error of the links' velocity equations, relative to the largest component of a twist."""
 
     def test_links_hold_at_the_end_of_a_step(self, dimension: int) -> None:
         """C u + compliance · force = rate."""
@@ -55,12 +55,12 @@ class LinkedContract(FluidContract):
         pose = balls_pose(dimension)
         width, random = size(pose), np.random.default_rng(11)
         started = 0.2 * np.random.default_rng(7).normal(size=(2, width))
-        flow = self.with_balls(problem(dimension, bodies=2), Bodies.of(pose, mass=0.05), twist=started)
+        flow = self.with_balls(problem(dimension, bodies=2), Bodies.uniform(pose, mass=0.05), twist=started)
         rows = np.zeros((dimension + 2, 2, width))
         point = pose.position.mean(axis=0)
         for axis in range(dimension):
             for body, sign in enumerate((1.0, -1.0)):
-                rows[axis, body] = sign * _of_point(point - pose.position[body], axis, width)
+                rows[axis, body] = sign * _velocity_row(point - pose.position[body], axis, width)
         rows[dimension, :, -1] = 1.0, -1.0
         rows[dimension + 1, 0, 1] = 1.0
         compliance: FloatArray = np.zeros(dimension + 2)
@@ -71,8 +71,8 @@ class LinkedContract(FluidContract):
         return flow, step, links
 
 
-def _of_point(arm: FloatArray, axis: int, width: int) -> FloatArray:
-    """What takes a twist (d+k,) to the velocity along an axis of the point at ``arm``."""
+def _velocity_row(arm: FloatArray, axis: int, width: int) -> FloatArray:
+    """Row (d+k,) that takes a body's twist to the velocity along an axis of its point at ``arm`` (d,)."""
     dimension = len(arm)
     row: FloatArray = np.eye(width)[axis]
     for turn, about in enumerate(np.eye(3)[3 - (width - dimension) :]):

@@ -1,4 +1,4 @@
-"""What a backend remembers: all of it in the state, none of it in what it is given or in itself."""
+"""Memory of a backend: all of it is in the state, none in its arguments or in itself."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class MemoryContract(FluidContract):
     """State in, candidate out; a checkpoint holds the state, and going on from it is as if nothing had happened."""
 
     def test_the_state_is_a_flat_mapping_of_float_arrays(self, dimension: int) -> None:
-        """At the start and after a step, with the same names."""
+        """The names are the same at the start and after a step."""
         flow = self.stirred(dimension, steps=0)
         for state in (flow.fluid, self.stir(flow).fluid):
             assert state.keys() == flow.fluid.keys()
@@ -59,7 +59,7 @@ class MemoryContract(FluidContract):
         self._assert_close_figures(flow.backend.advance(flow.fluid, flow.mesh, step), first)
 
     def test_one_step_from_another_state_is_another_one(self, dimension: int) -> None:
-        """As a backend takes it that has not seen the step before."""
+        """It equals that of a new backend, which has not seen the step before."""
         flow = self.stirred(dimension, steps=2)
         step, other = self.stirring(flow), self.stir(flow).fluid
         flow.backend.advance(flow.fluid, flow.mesh, step)

@@ -16,11 +16,11 @@ from rigidfluid.testing.fluid.exact import FACES, VISCOSITY, Value, problem
 from rigidfluid.testing.fluid.flow import Flow, figures
 
 DRIFT = 0.7
-"""Of a uniform flow [length/time]."""
+"""Speed of a uniform flow [length/time]."""
 
 
 class ObliqueContract(FluidContract):
-    """What holds of faces in any direction; for backends that take ``oblique_faces``."""
+    """Slip and pressure on faces in any direction; for backends that take ``oblique_faces``."""
 
     @pytest.mark.parametrize("side", ["wall", "slip"])
     def test_a_channel_that_is_turned_is_the_same_channel(self, dimension: int, side: str) -> None:

@@ -1,4 +1,4 @@
-"""What a backend shows of its state: fields, probes, the number of unknowns; and what it extends over a mesh."""
+"""Output of a backend: fields, probes and the number of unknowns of a state; and its extension over a mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class OutputContract(FluidContract):
     """Different views of one state agree."""
 
     def test_fields_are_what_probes_find(self, dimension: int) -> None:
-        """At every node."""
+        """Probes at the nodes give the nodal values."""
         flow = self.stirred(dimension, steps=2)
         fields = flow.backend.fields(flow.fluid, flow.mesh)
         assert np.abs(fields.velocity).max() > 0.1
@@ -39,7 +39,7 @@ class OutputContract(FluidContract):
             self.assert_close(fields.points[fields.cells[:, node]], middle)
 
     def test_probes_outside_give_what_is_near(self, dimension: int) -> None:
-        """By round-off outside, the value on the face; further out, one that the nearest cell has."""
+        """A point outside by round-off has the value on the face; one further out, a value in the nearest cell."""
         exact = LinearFlow.steady(dimension)
         flow = self.empty(enclosed(dimension, exact.velocity, exact.source), box(dimension, 3)).after(None)
         for distance in (1e-9, 3.0):

@@ -1,4 +1,4 @@
-"""Periodic faces: what leaves by one comes in by the other, and a pressure may be lost on the way."""
+"""Periodic faces: outflow through one is inflow through the other, and a pressure may drop between them."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, Value, problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, figures
 
 DROP = 2.0
-"""Of the pressure from x0 to x1."""
+"""Pressure drop from x0 to x1."""
 
 
 class PeriodicContract(FluidContract):
-    """What holds of periodic faces; for backends that take ``periodic_faces``."""
+    """Exact flows and balances between periodic faces; for backends that take ``periodic_faces``."""
 
     def test_the_flow_that_a_pressure_drop_drives_is_exact(self, dimension: int) -> None:
         """u = G y(1 - y)/2μ and a linear pressure of zero mean, periodic also across z in 3D."""
@@ -76,7 +76,7 @@ class PeriodicContract(FluidContract):
         posed = self._periodic(problem(dimension, sides, bodies=1, inertia=False), (0,))
         pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
         mesh = self.make_mesh(ball_in_a_box(dimension, 2))
-        flow = Flow.start(self.make_backend(posed), mesh, pose, Bodies.of(pose)).after(None)
+        flow = Flow.start(self.make_backend(posed), mesh, pose, Bodies.uniform(pose)).after(None)
         self.assert_close(flow.advance.hydrodynamic_wrench.force[0, 0], DROP, scale=10.0)
         if dimension == 2:  # in 3D dissipation on curved cells depends on the rule of its integral
             self.assert_close(flow.advance.boundary_power, flow.advance.dissipation)

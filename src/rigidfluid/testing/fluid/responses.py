@@ -1,4 +1,4 @@
-"""How bodies answer to impulses: with the mass of the fluid about them at once, with its viscosity in a step."""
+"""Impulse responses of bodies: at once, with added mass alone; within a step, with viscosity as well."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rigidfluid.testing.fluid.exact import DENSITY, problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 
 STEP = 0.01
-"""Of what is asked with the mass alone, where none counts [time]."""
+"""Length of the step in most tests; responses by mass do not depend on it [time]."""
 
 IMPACT = 1e-3
 """A step so short that viscosity does little in it [time]."""
@@ -27,14 +27,14 @@ SHORT = 10.0 ** -np.arange(2.0, 6.0)
 """Steps in which viscosity does less and less [time]."""
 
 RADII, GAP = np.array([1.0, 0.6]), 0.2
-"""Of two disks near each other [length]."""
+"""Radii (2,) of two disks, and the gap between them [length]."""
 
 
 class ResponsesContract(FluidContract):
     """Added masses that are known, and what the same backend's steps do."""
 
     answer_tolerance: ClassVar[float] = 1e-4
-    """Accuracy of answers to impulses by the discrete equations, relative to the largest."""
+    """Accuracy of impulse responses, relative to the largest entry."""
 
     def test_a_disk_takes_its_own_volume_of_fluid_along(self) -> None:
         """Mass m + ρπr² along, and none of the fluid's as it turns (Lamb 1932, §68)."""
@@ -69,14 +69,14 @@ class ResponsesContract(FluidContract):
         _assert_near(_mass(flow)[:3, :3], 3.5 * DENSITY * volume * np.eye(3), 0.05)
 
     def test_answers_are_reciprocal(self, dimension: int) -> None:
-        """As one body answers to the other, so does the other to it, by mass and, but for convection, by a step."""
+        """Impulse responses are symmetric and positive definite: by mass and, without convection, by a step."""
         by_mass, _ = _answers(self._stirred_free(dimension), STEP)
         for found in (by_mass, *_answers(self._free_balls(dimension), STEP)):
             self._assert_answers(found, found.T)
             assert np.linalg.eigvalsh(0.5 * (found + found.T)).min() > 0.0
 
     def test_answers_add_up(self, dimension: int) -> None:
-        """In a stirred flow the answer to several impulses is the sum of those to each."""
+        """In a stirred flow impulse responses are linear in the impulse."""
         flow = self._stirred_free(dimension)
         step = flow.step_after(STEP)
         impulses = np.random.default_rng(4).normal(size=(2, *step.load.shape))
@@ -87,7 +87,7 @@ class ResponsesContract(FluidContract):
             self._assert_answers(found[2], 2.0 * found[0] - found[1])
 
     def test_in_a_short_step_masses_alone_count(self) -> None:
-        """Viscosity makes answers smaller, by less and less as the step gets shorter."""
+        """Viscosity makes responses smaller, by less and less as the step gets shorter."""
         flow, apart = self._free_balls(2), []
         for length in SHORT:
             by_mass, by_step = _answers(flow, length)
@@ -99,7 +99,7 @@ class ResponsesContract(FluidContract):
         assert apart[-1] < 0.02 < 0.05 < apart[0], apart
 
     def test_a_step_answers_as_was_told(self, dimension: int) -> None:
-        """Two steps of a stirred flow, one with an impulse in its load, differ by the answer to it."""
+        """Two steps of a stirred flow, one with an impulse in its load, differ by the response to it."""
         flow = self.stirred(dimension, steps=2)
         step = self.stirring(flow)
         impulse = 0.01 * np.random.default_rng(5).normal(size=step.load.shape)
@@ -161,7 +161,7 @@ class ResponsesContract(FluidContract):
 
     def _free_balls(self, dimension: int, inertia: bool = True) -> Flow:
         """Two light balls in fluid at rest."""
-        bodies = Bodies.of(balls_pose(dimension), mass=0.05, controlled=False)
+        bodies = Bodies.uniform(balls_pose(dimension), mass=0.05, controlled=False)
         return self.with_balls(problem(dimension, bodies=2, inertia=inertia), bodies)
 
     def _stirred_free(self, dimension: int) -> Flow:
@@ -182,19 +182,19 @@ class ResponsesContract(FluidContract):
 
 
 def _answers(flow: Flow, length: float) -> tuple[FloatArray, FloatArray]:
-    """By mass and by a step, the matrices from all components of the impulses to those of the twists."""
+    """Impulse response matrices by mass and by a step, (n·(d+k), n·(d+k)) each, from impulses to twists."""
     units = _units(flow)
     response = flow.backend.response(flow.fluid, flow.mesh, flow.step_after(length), units)
     return response.by_mass.reshape(len(units), -1).T, response.by_step.reshape(len(units), -1).T
 
 
 def _mass(flow: Flow) -> FloatArray:
-    """The mass matrix of bodies and fluid that the answers by mass tell."""
+    """Mass matrix of bodies and fluid, (n·(d+k), n·(d+k)): the inverse of the response by mass."""
     return np.asarray(np.linalg.inv(_answers(flow, STEP)[0]))
 
 
 def _units(flow: Flow) -> FloatArray:
-    """Each component by itself, (n·(d+k), n, d+k)."""
+    """Unit impulses, one for each component, (n·(d+k), n, d+k)."""
     count, width = len(flow.pose.position), size(flow.pose)
     return np.eye(count * width).reshape(-1, count, width)
 
@@ -205,7 +205,7 @@ def _assert_near(found: FloatArray, expected: FloatArray, part: float) -> None:
 
 
 def _added_to_two_disks(across: bool) -> FloatArray:
-    """What the fluid adds, over its density, to motions along or ``across`` the line of centres, (2, 2) [length²].
+    """Added mass over density, of motions along or ``across`` the line of centres, (2, 2) [length²].
 
     A disk of radius a that moves with speed 1 is a doublet of strength a²; its image in a circle of radius b, at a
     distance f from there, is one of ∓(b/f)² times the strength at b²/f (Milne-Thomson 1968, Theoretical Hydrodynamics,
@@ -213,10 +213,10 @@ def _added_to_two_disks(across: bool) -> FloatArray:
     all doublets in it less the area times its velocity.
     """
     added = -np.diag(np.pi * RADII**2)
-    for mesh_updater in range(2):
-        body, strength, inside = mesh_updater, RADII[mesh_updater] ** 2, 0.0
+    for moving in range(2):
+        body, strength, inside = moving, RADII[moving] ** 2, 0.0
         for _ in range(100):
-            added[body, mesh_updater] += 2.0 * np.pi * strength
+            added[body, moving] += 2.0 * np.pi * strength
             body, away = 1 - body, RADII.sum() + GAP - inside
             strength *= (1.0 if across else -1.0) * (RADII[body] / away) ** 2
             inside = RADII[body] ** 2 / away

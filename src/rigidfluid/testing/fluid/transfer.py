@@ -67,7 +67,7 @@ class TransferContract(FluidContract):
         assert np.abs(wrench).max() < 10.0 * before
 
     def test_the_energy_lost_is_told(self, dimension: int) -> None:
-        """What is told is the difference of ½ ρ ∫ |u|² on the two meshes, of waves that the new one cannot hold."""
+        """The loss is the difference of ½ ρ ∫ |u|² on the two meshes, for waves that the new one cannot resolve."""
         old, new = box(dimension, 4), box(dimension, 2)
         flow = self.empty(enclosed(dimension, _nothing, _short_waves), old).after(0.1)
         before = _energy(flow, old)
@@ -106,7 +106,7 @@ class TransferContract(FluidContract):
         moments = [ball_moments(whole, ball) for ball in range(2)]
         pose = Pose(np.array([centroid for _, centroid in moments]), balls_pose(dimension).orientation)
         mass = DENSITY * np.array([volume for volume, _ in moments])
-        bodies = Bodies(mass, Bodies.of(pose).inertia, np.full(2, not free))
+        bodies = Bodies(mass, Bodies.uniform(pose).inertia, np.full(2, not free))
         twist = np.column_stack([[drift, drift], np.zeros((2, 2 * dimension - 3))])
         drifting = enclosed(dimension, lambda _, points: np.tile(drift, (len(points), 1)), bodies=2)
         flow = self.with_balls(drifting, bodies, pose)

@@ -7,4 +7,4 @@ from rigidfluid.evaluation.studies.kernels.kernel import Kernel
 from rigidfluid.evaluation.studies.kernels.ring_distance import RingDistance
 
 KERNELS: dict[str, type[Kernel]] = {"distance-field": RingDistance, "detector": DetectorGaps}
-"""By the name that a study gives."""
+"""Kernel by its name in a study."""

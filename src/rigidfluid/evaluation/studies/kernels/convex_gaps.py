@@ -13,21 +13,10 @@ FINEST = 1e-9
 
 
 def true_gap(semi_axes: FloatArray, pose: Pose, a: int, b: int) -> float:
-    """gap = max over unit n of (c_a - c_b)·n - |D_a R_aᵀ n| - |D_b R_bᵀ n|, of balls |c_a - c_b| - r_a - r_b.
+    """gap = max over unit n of (c_a - c_b)·n - |D_a R_aᵀ n| - |D_b R_bᵀ n|, for balls |c_a - c_b| - r_a - r_b [length].
 
-    Parameters
-    ----------
-    semi_axes : (n, d) array
-        Of all bodies, the diagonals of D [length].
-    pose : Pose
-        Where they are: centres c, rotations R.
-    a, b : int
-        Two bodies apart from each other; then the maximum is the only one.
-
-    Returns
-    -------
-    float
-        To rounding [length].
+    ``semi_axes`` (n, d) of all bodies are the diagonals of D [length], centres c and rotations R their ``pose``. The
+    bodies a and b must be disjoint, so that the maximum is the only one; the result is exact to rounding.
     """
     offset = pose.position[a] - pose.position[b]
     pair = [a, b]
@@ -38,7 +27,7 @@ def true_gap(semi_axes: FloatArray, pose: Pose, a: int, b: int) -> float:
 
 
 def _highest_separation(offset: FloatArray, shapes: FloatArray) -> float:
-    """Search over directions: to the best around, and twice as close around where none is better."""
+    """Search over directions: move to the best of those around, and halve their spread if none is better."""
     around = unit_sphere_points(8 if len(offset) == 2 else 40, len(offset))
     directions = unit_sphere_points(200, len(offset))
     best, width = -np.inf, 0.1

@@ -31,7 +31,7 @@ LONGEST = 0.3, 0.45
 JITTER = 0.04
 """How far a body is from the middle of its cell of side 1, along each axis, so that no two overlap [length]."""
 ROUNDING = float(np.finfo(float).eps)
-"""The least error: the true gaps are no better [length]."""
+"""Least error, that of the true gaps [length]."""
 FAR_SIZE = 0.3
 """Edge length of the mesh away from the bodies [length]."""
 
@@ -95,7 +95,7 @@ class DetectorGaps(Kernel):
         return read_table(self._part.Options, self.options.get(self.detector, {}), f"options.{self.detector}")
 
     def _errors(self, semi_axes: FloatArray, pose: Pose, contacts: Contacts) -> list[float]:
-        """Of the pairs that are within reach, in truth or as the detector finds."""
+        """|gap - true gap| of each pair within reach, by its true or its detected gap [length]."""
         found: dict[tuple[int, int], float] = {}
         for a, b, gap in zip(contacts.body_a.tolist(), contacts.body_b.tolist(), contacts.gap.tolist(), strict=True):
             found[a, b] = min(gap, found.get((a, b), self.reach))
@@ -108,7 +108,7 @@ class DetectorGaps(Kernel):
         return errors
 
     def _semi_axes(self, rng: np.random.Generator) -> FloatArray:
-        """From the longest to the shortest evenly in proportion, for bodies of different size."""
+        """Semi-axes (n, d) in geometric progression, the longest of each body at random [length]."""
         shape = self.aspect ** -np.linspace(0.0, 1.0, self.dimension)
         return rng.uniform(*LONGEST, (self.bodies, 1)) * shape
 

@@ -1,4 +1,4 @@
-"""What every kernel of a study is."""
+"""Base class of the kernels of a study."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rigidfluid.evaluation.studies.subject import Outcome
 class Kernel(BaseModel, ABC):
     """A calculation with an exact answer; its fields are the knobs of a study, unknown ones are refused.
 
-    ``figure`` says what its error is of, ``against`` what the exact answer is.
+    ``figure`` names the quantity with the error, ``against`` the exact answer.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

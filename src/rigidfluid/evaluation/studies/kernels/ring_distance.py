@@ -62,7 +62,7 @@ class RingDistance(Kernel):
         if self.threads > 1 and self.accuracy == "exact":
             return partial(field_in_threads, split(mesh, _sectors(mesh, self.threads)), mesh.points, [INNER], width)
         work = new_workspace(len(mesh.points))
-        return partial(distance_field, Topology.of(mesh), mesh.points, [INNER], width, self.accuracy, work)
+        return partial(distance_field, Topology.from_mesh(mesh), mesh.points, [INNER], width, self.accuracy, work)
 
 
 def _sectors(mesh: Mesh, count: int) -> IntArray:
