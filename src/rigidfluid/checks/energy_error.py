@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.stepping import ACCURATE
-from rigidfluid.core.contact.loads import of_both
+from rigidfluid.core.contact.loads import pair_values
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.types import FloatArray, FluidProblem
 from rigidfluid.core.run.impacts import HALVINGS, TOLERATED
@@ -68,7 +68,7 @@ def _layer_rate(met: DesignContacts, fluid: FluidProblem) -> FloatArray:
     """ρ √ν Σ S/m² over Σ 1/m, both sums over the two bodies (m,) [time^-1/2]."""
     bodies = met.system.bodies
     surface = np.array([body.dimension * body.volume / equal_volume_radius(body) for body in bodies])
-    drawn = of_both(surface / met.system.loads.mass**2, met.contacts).sum(axis=0)
+    drawn = pair_values(surface / met.system.loads.mass**2, met.contacts).sum(axis=0)
     shear = float(np.sqrt(fluid.density * fluid.dynamic_viscosity))
     return np.asarray(_LAYER_FACTOR * shear * drawn / met.inverse_mass)
 
@@ -76,7 +76,7 @@ def _layer_rate(met: DesignContacts, fluid: FluidProblem) -> FloatArray:
 def _fall_rate(met: DesignContacts) -> FloatArray:
     """The larger W/m of the two bodies over the speed of the impact, zero without speed (m,) [1/time]."""
     loads = met.system.loads
-    fastest = of_both(loads.weight / loads.mass, met.contacts).max(axis=0)
+    fastest = pair_values(loads.weight / loads.mass, met.contacts).max(axis=0)
     rate: FloatArray = np.divide(fastest, met.speed, out=np.zeros(len(fastest)), where=met.speed > 0.0)
     return rate
 

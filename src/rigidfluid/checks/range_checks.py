@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.loads import impact_energy
-from rigidfluid.core.contact.proximity import of_separate_bodies
+from rigidfluid.core.contact.proximity import are_separate
 from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
 from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.core.model.contacts import select
@@ -26,7 +26,7 @@ def start_findings(system: System, interaction: Interaction, start: Contacts) ->
     repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
     law = interaction.law
     near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
-    near = select(near, of_separate_bodies(system, near) & interaction.acts_in(near))
+    near = select(near, are_separate(system, near) & interaction.acts_in(near))
     if len(near) == 0:
         return
     stored, impact = law.energy(near), impact_energy(near, system.loads)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.representative_contacts import at_gaps
+from rigidfluid.core.contact.representative_contacts import contacts_at_gaps
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray
 
@@ -19,13 +19,13 @@ _FRACTIONS = np.concatenate([np.logspace(-9, -2, 36), np.linspace(0.02, 1.0, 99)
 
 def force_along(law: ForceLaw, contacts: Contacts, gaps: FloatArray) -> FloatArray:
     """Force on a along the normal at the gaps (m, G) of each contact, (m, G) [force]."""
-    many = at_gaps(contacts, gaps)
+    many = contacts_at_gaps(contacts, gaps)
     return np.asarray(np.sum(law.force(many) * many.normal, axis=1).reshape(gaps.shape))
 
 
 def energy_along(law: ForceLaw, contacts: Contacts, gaps: FloatArray) -> FloatArray:
     """Energy at the gaps (m, G) of each contact, (m, G) [energy]."""
-    return law.energy(at_gaps(contacts, gaps)).reshape(gaps.shape)
+    return law.energy(contacts_at_gaps(contacts, gaps)).reshape(gaps.shape)
 
 
 def largest_force(law: ForceLaw, contacts: Contacts) -> tuple[FloatArray, FloatArray]:

@@ -1,1 +1,1 @@
-"""From pairs to impulses."""
+"""Contacts, from pairs of bodies to impulses."""

@@ -1,5 +1,4 @@
-"""Asks the backend how bodies near contacts answer to impulses, and no more often than their surroundings
-change."""
+"""Update the reduced impulse–response model; re-evaluate only bodies whose gap or motion changed."""
 
 from __future__ import annotations
 
@@ -12,17 +11,18 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Step
 
 CHANGED, CHANGED_SHARED = 0.01, 0.05
-"""A body is asked again when the tightness of its contacts, or its way in a step over its radius, has changed by so
-much; among many that share questions, by the other."""
+"""Relative change of the tightness of a body's contacts, or of its way in a step over its radius, above which its
+response is evaluated anew; the second one where many bodies share questions."""
 
 _FILM = 0.1
-"""Of the radius: films thinner than that are heavy beside the body."""
+"""Thickness of a film, over the radius, below which its resistance outweighs the body's own."""
 
 ALONE = 12
-"""Up to so many bodies are asked one by one; more share questions with others far away."""
+"""Largest number of bodies whose responses are evaluated one by one; more share questions with others far away."""
 
 FAR = 3.0
-"""So many of their diameters apart, bodies answer next to nothing to each other's impulses: as r⁻², in 3D as r⁻³."""
+"""Distance of two bodies, over the sum of their radii, beyond which they hardly respond to each other's impulses: the
+response falls as r⁻², in 3D as r⁻³."""
 
 
 def updated_model(
@@ -34,29 +34,11 @@ def updated_model(
     velocities: IntArray,
     known: ReducedModel | None,
 ) -> ReducedModel:
-    """The model of some velocities; the backend is asked for bodies alone whose contacts or motion have changed.
+    """Reduced model of ``velocities`` (c,), numbers among the components (N, d+k) of all motions' twists; the backend
+    is asked for bodies alone whose contacts or motion have changed.
 
-    Parameters
-    ----------
-    system : System
-        Bodies and backend.
-    state : State
-        At the start of the step.
-    step : Step
-        Whose matrix and mesh the answers are of.
-    contacts : Contacts
-        Where the bodies are in the step.
-    twist : (N, d+k) array
-        How the motions that carry them go there: friction depends on the flow that it meets.
-    velocities : (c,) array
-        Numbers among the components (N, d+k) of all motions' twists.
-    known : ReducedModel or None
-        An earlier one, of these velocities or others.
-
-    Returns
-    -------
-    ReducedModel
-        Of the velocities.
+    ``step`` has the matrix and mesh of the response, ``contacts`` and ``twist`` (N, d+k) are those of the bodies in it,
+    as friction depends on the flow; ``known`` is an earlier model, of these velocities or others, or None.
     """
     if len(velocities) == 0:
         return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Asked(np.zeros(0), np.zeros(0)), False)
@@ -78,7 +60,8 @@ def updated_model(
 def _changes(
     system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
 ) -> FloatArray:
-    """Of each velocity's body the change of tightness, or of its way in a step over its radius, (c,) [1]."""
+    """Relative change of the tightness of each velocity's body, or of the body's way in a step over its radius,
+    whichever is more, (c,) [1]."""
     reach, arm = reaches(system)[0], twist_arms(system)[bodies, components]
     way = np.zeros(len(reach))
     turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
@@ -87,9 +70,10 @@ def _changes(
 
 
 def _tightness(system: System, contacts: Contacts) -> FloatArray:
-    """1 + Σ R/(10 gap) over the contacts of each motion with bodies of radius R, (N,) [1].
+    """Tightness 1 + Σ R/(10 gap) over the contacts of each motion with bodies of radius R, (N,) [1].
 
-    Films are as heavy as they are thin; those thicker than a tenth of the body weigh little beside it.
+    The resistance of a film is in inverse proportion to its thickness; films thicker than a tenth of the radius matter
+    little beside the body's own.
     """
     reach, carrier = reaches(system)[0], carriers(system)
     total = np.ones(len(reach))
@@ -101,7 +85,8 @@ def _tightness(system: System, contacts: Contacts) -> FloatArray:
 
 
 def _remembered(known: ReducedModel | None, velocities: IntArray, d0: float) -> tuple[FloatArray, FloatArray, Asked]:
-    """W_i and W_s (c, c) as far as they are known, zero elsewhere, and how it was then, elsewhere NaN."""
+    """Known responses W_i and W_s (c, c), zero where unknown, and the conditions of their evaluation, NaN where
+    unknown."""
     by_mass, by_step = np.zeros((2, len(velocities), len(velocities)))
     before = Asked(*np.full((2, len(velocities)), np.nan))
     if known is not None:
@@ -114,7 +99,8 @@ def _remembered(known: ReducedModel | None, velocities: IntArray, d0: float) -> 
 
 
 def _take_over(matrix: FloatArray, answers: FloatArray, fresh: BoolArray) -> None:
-    """Put the columns of ``answers`` (c, f) in place, and as rows too; what was not answered is NaN."""
+    """Replace the columns and rows ``fresh`` of ``matrix`` by the mean of ``answers`` (c, f) and their transpose; NaN
+    entries do not count."""
     of_rows = np.full_like(matrix, np.nan)
     of_rows[:, fresh] = answers
     both = np.stack([of_rows, of_rows.T])
@@ -128,7 +114,7 @@ def _take_over(matrix: FloatArray, answers: FloatArray, fresh: BoolArray) -> Non
 def _asked(
     system: System, state: State, step: Step, velocities: IntArray, fresh: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
-    """W_i and W_s (c, f) of the ``fresh`` velocities; NaN where another body of the same question is nearer."""
+    """Responses W_i and W_s (c, f) to the ``fresh`` velocities; NaN where another body of a question is nearer."""
     assert state.mesh is not None
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
@@ -148,7 +134,8 @@ def _asked(
 
 
 def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
-    """The group of each of ``bodies`` (f,), whose members are far apart; each is alone where few are asked."""
+    """Group of each of ``bodies`` (f,), whose members are far apart; each body is a group of its own where they are
+    few."""
     each, place = np.unique(bodies, return_inverse=True)
     if len(each) <= ALONE:
         return place
@@ -163,7 +150,7 @@ def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
 
 
 def _nearest_of(position: FloatArray, answering: IntArray, asked: IntArray, question: IntArray) -> BoolArray:
-    """Whether of all bodies in a question the one that was ``asked`` (f,) is nearest to the one ``answering`` (c,)."""
+    """Whether of all bodies in a question the ``asked`` one (f,) is nearest to the one ``answering`` (c,), (c, f)."""
     apart = np.linalg.norm(position[answering][:, None] - position[asked][None, :], axis=2)
     nearest = np.full((len(answering), int(question.max()) + 1), np.inf)
     for column, number in enumerate(question):

@@ -1,4 +1,4 @@
-"""What laws of curved surfaces ask of contacts: that the radii are known."""
+"""Precondition of laws of curved surfaces: contacts with known radii."""
 
 from __future__ import annotations
 
@@ -9,20 +9,8 @@ from rigidfluid.errors import SceneError
 
 
 def require_balls(contacts: Contacts, law: str) -> None:
-    """Refuse surfaces whose radius is not known.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    law : str
-        Name of the law that needs the radii.
-
-    Raises
-    ------
-    SceneError
-        At the first contact of a surface that is neither round nor flat.
-    """
+    """Raise SceneError at the first contact of a surface that is neither round nor flat; ``law`` is the name of the
+    law."""
     unknown = np.isnan(contacts.radius_a) | np.isnan(contacts.radius_b)
     if not np.any(unknown):
         return

@@ -1,4 +1,4 @@
-"""Leaves out what cannot be near: pairs of bodies and body–wall pairs whose bounding balls are too far apart."""
+"""Broad phase: pairs of bodies and body–wall pairs whose bounding balls are near each other."""
 
 from __future__ import annotations
 
@@ -11,22 +11,9 @@ from rigidfluid.core.model.wall import Wall
 
 
 def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
-    """Pairs a < b of balls with |x_a - x_b| - r_a - r_b ≤ ``reach``, from all pairs or a search tree.
-
-    Parameters
-    ----------
-    position : (n, d) array
-        Centres [length].
-    radii : (n,) array
-        Radii [length].
-    reach : float
-        Largest gap, may be infinite [length].
-
-    Returns
-    -------
-    (m,) array, (m,) array
-        Numbers a and b, in no particular order; pairs that rounding puts just beyond are among them.
-    """
+    """Pairs a < b of balls with |x_a - x_b| - r_a - r_b ≤ ``reach``, from all pairs or a search tree: numbers a and b
+    (m,) each, in no particular order; pairs that rounding puts just beyond are among them. ``position`` (n, d),
+    ``radii`` (n,) and ``reach``, which may be infinite [length]."""
     first, second = _candidates(position, radii, reach)
     gap = np.linalg.norm(position[first] - position[second], axis=1) - radii[first] - radii[second]
     near = gap <= reach + _rounding(radii, reach)
@@ -34,48 +21,16 @@ def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[I
 
 
 def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], reach: float) -> list[tuple[int, Wall]]:
-    """Bodies and walls with d(x) - r ≤ ``reach``, d the distance to the wall.
-
-    Parameters
-    ----------
-    position : (n, d) array
-        Centres [length].
-    radii : (n,) array
-        Radii [length].
-    walls : sequence of Wall
-        Of any shape.
-    reach : float
-        Largest gap, may be infinite [length].
-
-    Returns
-    -------
-    list of (int, Wall)
-        Sorted by body; pairs that rounding puts just beyond are among them.
-    """
+    """Bodies and walls with d(x) - r ≤ ``reach``, d the distance to the wall, sorted by body; pairs that rounding puts
+    just beyond are among them. ``position`` (n, d), ``radii`` (n,) and ``reach``, which may be infinite [length]."""
     slack = reach + _rounding(radii, reach)
     near = [wall.shape.signed_distance(position) - radii <= slack for wall in walls]
     return [(body, wall) for body in range(len(radii)) for wall, close in zip(walls, near, strict=True) if close[body]]
 
 
 def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -> FloatArray:
-    """Lower bound of each ball's nearest gap, min(|x - x'| - r - max r, d(x) - r), d to walls.
-
-    x' is the nearest neighbour.
-
-    Parameters
-    ----------
-    position : (n, d) array
-        Centres [length].
-    radii : (n,) array
-        Radii [length].
-    walls : sequence of Wall
-        Of any shape.
-
-    Returns
-    -------
-    (n,) array
-        May be negative, is infinite for a ball alone without walls [length].
-    """
+    """Lower bound of each ball's nearest gap (n,), min(|x - x'| - r - max r, d(x) - r), x' the nearest neighbour, d the
+    distance to walls; it may be negative, and is infinite for a ball alone without walls [length]."""
     from scipy.spatial import cKDTree
 
     least = np.full(len(radii), np.inf)

@@ -1,4 +1,4 @@
-"""The contact forces of one implicit step, found by Newton's method where gaps depend on them linearly."""
+"""Contact forces of one implicit step by Newton's method, where gaps depend on them linearly."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rigidfluid.core.model.types import Contacts, FloatArray
 from rigidfluid.errors import StepRejected
 
 MOST_ITERATIONS = 100
-"""A law that no iteration tames by then asks for a shorter step."""
+"""Largest number of Newton iterations; more reject the step."""
 
 MOST_DENSE = 200
-"""Up to so many contacts a full matrix is faster than a sparse one."""
+"""Largest number of contacts with a full matrix; a sparse one is faster for more."""
 
 _ROUNDING = 1e-13
 _NARROW = 2e-5
@@ -27,7 +27,7 @@ _HALVINGS = 30
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Find f = s φ(g) - c (g + o), where the gaps at the end of the step are g = ``free`` + ``compliance`` f.
+    """Problem f = s φ(g) - c (g + o) for f, where the gaps at the end of the step are g = ``free`` + ``compliance`` f.
 
     φ is the discrete gradient -[U(g) - U(g₀)]/(g - g₀) of the law's energy, with g₀ the gaps of the contacts at
     ``start`` of the step. ``free`` (m,) [length], ``compliance`` (m, m), dense or sparse [length/force], ``scale`` s
@@ -43,31 +43,17 @@ class Problem:
     offset: FloatArray
 
     def push(self, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What f should be at this gap (m,) [force], and by how much it falls with the gap (m,) [force/length]."""
+        """Force f of the law and the drag at this gap (m,) [force], and -df/dg (m,) [force/length]."""
         force, slope = discrete_gradient(self.law, self.start, gap)
         return self.scale * force - self.drag * (gap + self.offset), self.scale * slope + self.drag
 
 
 def discrete_gradient(law: ForceLaw, start: Contacts, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The force that does the work -ΔU on the way from one gap to another, φ = -[U(g) - U(g₀)]/(g - g₀), F if g ≈ g₀.
+    """Discrete gradient φ = -[U(g) - U(g₀)]/(g - g₀) (m,), the force whose work from g₀ to g is -ΔU, F if g ≈ g₀
+    [force], and -dφ/dg (m,), not below zero [force/length].
 
-    Parameters
-    ----------
-    law : ForceLaw
-        Gives U and F.
-    start : Contacts
-        The m contacts at g₀.
-    gap : (m,) array
-        g, positive [length].
-
-    Returns
-    -------
-    force, slope : (m,) array
-        φ [force], and -dφ/dg, not below zero [force/length].
-
-    Notes
-    -----
-    Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162.
+    ``start`` are the m contacts at g₀, ``gap`` is g (m,), positive [length]. Gonzalez, J. Nonlinear Sci. 6 (1996) 449,
+    doi:10.1007/BF02440162.
     """
     end, middle = replace(start, gap=gap), replace(start, gap=0.5 * (gap + start.gap))
     change = gap - start.gap
@@ -79,30 +65,12 @@ def discrete_gradient(law: ForceLaw, start: Contacts, gap: FloatArray) -> tuple[
 
 
 def contact_forces(problem: Problem, force: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Newton's method with a line search that keeps all gaps open.
+    """Forces f (m,) [force] and positive gaps g (m,) [length] of a ``problem``, by Newton's method with a line search
+    that keeps all gaps open; raises StepRejected if it does not converge.
 
-    With a law that grows steadily the solution is the minimum of a convex function of the bodies' ways: so there is one
-    only, and the search follows that function's slope. The start may be any force with any open gaps: what they lack to
-    fit each other is taken back bit by bit.
-
-    Parameters
-    ----------
-    problem : Problem
-        What is to be solved.
-    force : (m,) array
-        First guess [force].
-    gap : (m,) array
-        Positive gaps to start from [length].
-
-    Returns
-    -------
-    force, gap : (m,) array
-        f [force] and g, positive [length].
-
-    Raises
-    ------
-    StepRejected
-        If there is none, or it is not found.
+    The solution for a law that grows steadily is the minimum of a convex function of the bodies' ways: so there is one
+    only, and the search follows that function's slope. The start may be any ``force`` with any open ``gap``: their
+    mismatch is reduced with each part of a step.
     """
     lacking = gap - (problem.free + problem.compliance @ force)
     lacking = np.where(np.abs(lacking) <= _tolerance(problem), 0.0, lacking)
@@ -136,7 +104,7 @@ def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
 
 
 def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray:
-    """(1 + slope · compliance)⁻¹ right."""
+    """Solution of (1 + slope · compliance) x = right, (m,)."""
     if isinstance(compliance, np.ndarray):
         return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
     from scipy.sparse.linalg import spsolve
@@ -146,7 +114,7 @@ def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray
 
 
 def _open_part(gap: FloatArray, moved: FloatArray) -> float:
-    """The most of a move, all of it if that may be, that leaves a tenth of each gap."""
+    """Largest part of a move, at most 1, that leaves a tenth of each gap."""
     closing = moved < 0.0
     return float(np.min((1.0 - _SHRINK) * gap[closing] / -moved[closing], initial=1.0))
 
@@ -154,7 +122,7 @@ def _open_part(gap: FloatArray, moved: FloatArray) -> float:
 def _searched(
     problem: Problem, force: FloatArray, gap: FloatArray, step: FloatArray, moved: FloatArray, part: float
 ) -> float:
-    """The part of a step at which the convex function no longer rises half as steeply as it falls at the start."""
+    """Part of a step at which the convex function no longer rises half as steeply as it falls at the start."""
 
     def slope(part: float) -> float:
         return float(moved @ (force + part * step - problem.push(gap + part * moved)[0]))

@@ -1,4 +1,4 @@
-"""The bodies' way through one step: where their contacts take them between two solutions of the fluid."""
+"""Path of the bodies through one step: their motion by contacts between two fluid solves."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rigidfluid.core.mechanics.motions import (
     outer_load,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, together
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, wrench_sum
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling, uncoupled
@@ -38,25 +38,26 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, T
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
-"""More of them in one step are refused."""
+"""Largest number of substeps in one step; more reject it."""
 
 HOPELESS = 1_000 * MOST_SUBSTEPS
-"""If a plan asks for more than this, none is walked: what flies apart needs fewer in the end, but not by so much."""
+"""A planned substep count above this rejects the step at once; separating bodies need fewer in the end, but not by so
+much."""
 
 IMPLICIT_PARTS = 8
-"""Of a step in a fluid, each an implicit step of the bodies."""
+"""Number of implicit steps of the bodies in one step of a fluid."""
 
 RESOLVED = 8.0
-"""A step of so many substeps, or less, resolves its contacts: all forces then vary within it."""
+"""Largest number of substeps with which a step resolves its contacts: all forces then vary within it."""
 
 MOST_ALIKE = 1_000
-"""After so many substeps of one length they are planned anew: what flies apart from a contact needs ever fewer."""
+"""Re-plan the substep length after this many equal substeps; separating bodies need fewer."""
 
 SPRING_RESOLUTION = 0.2
 """A substep times the highest frequency of springs in joints: some thirty substeps in a period."""
 
 ROUNDING = 1e-9
-"""What is left of a step below this part of it is the rounding of sums."""
+"""Remainder of a step, over the step, that is taken for the rounding of sums."""
 
 
 M = TypeVar("M", bound=BodyDynamics)
@@ -64,14 +65,14 @@ M = TypeVar("M", bound=BodyDynamics)
 
 @dataclass(frozen=True, slots=True)
 class BodyStep(CarriedState):
-    """Where the bodies are at the end of a step, and what the contacts did to them on the way.
+    """Result of a path: the bodies at the end of a step, and the contacts' impulse and work in it.
 
     ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them, ``friction`` that the fluid's own solutions do not see, and ``actuator_work`` against them by what drives
-    bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None
-    without contacts. ``free``: what carries the bodies, None where each moves by itself. ``link``: what joints did;
-    None without any, and in a fluid, which says so itself. ``drag_loss``: in a fluid without inertia ``friction`` is
-    known for certain, and is told here instead.
+    them, ``friction`` unresolved by the fluid solves, and ``actuator_work`` against contacts of prescribed bodies and
+    walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without
+    contacts. ``free``: motions that carry the bodies, None where each moves by itself. ``link``: mean loads of joints;
+    None without any, and in a fluid, whose solution has them. ``drag_loss``: in a fluid without inertia ``friction`` is
+    known for certain, and is given here instead.
     """
 
     pose: Pose
@@ -88,38 +89,19 @@ class BodyStep(CarriedState):
 
     @property
     def free_impulse(self) -> Wrench:
-        """Of contacts, on the motions that carry the bodies."""
+        """Impulse of contacts on the motions that carry the bodies."""
         return self.impulse if self.free is None else self.free.contact
 
 
 def advance_bodies(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
-    """Follow the bodies through one step, kicked by their contacts in velocity Verlet substeps.
+    """Follow the bodies through one step, from ``start`` over ``size`` [time], kicked by their contacts in velocity
+    Verlet substeps, or with ``implicit`` contacts in implicit steps.
 
-    Without a fluid the substeps are the whole motion. In a fluid they take the place of the fluid's own small steps:
-    the bodies near contacts answer with the mass and the friction that the fluid has shown, and the fluid then answers
-    to the impulse. Where nothing can touch in the step, poses come from Adams–Bashforth 2 as one formula.
-    With ``implicit`` contacts implicit steps take the place of the substeps.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, law, detector.
-    state : State
-        At the start of the step.
-    start, size : float
-        When it starts and how long it is [time].
-    coupling : Coupling or None
-        With the fluid in this step; None where nothing can touch, see `near_contacts`.
-
-    Returns
-    -------
-    BodyStep
-        Of all bodies.
-
-    Raises
-    ------
-    StepRejected
-        If bodies overlap on the way, or a contact is too stiff to be followed.
+    The substeps are the whole motion without a fluid. Substeps in a fluid take the place of the fluid's own small
+    steps: the bodies near contacts respond with the mass and the friction of the ``coupling``, and the fluid then
+    responds to the impulse. Poses come from Adams–Bashforth 2 as one formula where the coupling is None, as nothing can
+    touch (see `near_contacts`). StepRejected is raised if bodies overlap on the way, or a contact is too stiff to be
+    followed.
     """
     if not system.backend.needs_mesh:
         return _advance_free(system, state, start, size)
@@ -130,22 +112,22 @@ def advance_bodies(system: System, state: State, start: float, size: float, coup
 
 
 def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:
-    """The first step of bodies that touch nothing, once more: by the mean of the motions' twists at its start and its
+    """First step of bodies that touch nothing, repeated with the mean of the motions' twists at its start and its
     ``end`` [time]."""
     pose = start_pose(state.free_pose, state.free_twist, end_twist, size)
     return _undisturbed(system, pose, end_twist, end)
 
 
 def _undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodyStep:
-    """Along the way of the motions alone."""
+    """Result of a step of the motions alone, without contacts."""
     bodies = carried_bodies(system, pose, twist, end)
     free = None if system.mechanisms is None else FreeMotions(pose, twist, nothing(pose), nothing(pose))
     return BodyStep(*bodies, nothing(bodies[0]), 0.0, 0.0, 1, free=free)
 
 
 def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
-    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: at twice the speed of
-    their surfaces now, and all that acceleration can add."""
+    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: by twice the present
+    speed of their surfaces and the greatest acceleration."""
     contacts = state.contacts
     if system.law is None or len(contacts) == 0:
         return select(contacts, np.zeros(len(contacts), dtype=bool))
@@ -174,16 +156,16 @@ def _advance_free(system: System, state: State, start: float, size: float) -> Bo
 
 
 def _dry(system: System, state: State, start: float) -> BodyDynamics:
-    """The bodies, on motions that joints may link."""
+    """Dynamics of the bodies without a fluid, on motions that joints may link."""
     free, mechanisms = _dry_motions(system, state, start), system.mechanisms
     motions: MotionDynamics = free if system.linkage is None else JointedDynamics(free, system.linkage, start)
     return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, _body_load(system, state))
 
 
 def _body_load(system: System, state: State) -> Wrench:
-    """Weight and wrenches from outside on the bodies, n rows."""
+    """Weight and applied wrenches on the bodies, n rows."""
     weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
-    return weight if state.applied is None else together(weight, state.applied)
+    return weight if state.applied is None else wrench_sum(weight, state.applied)
 
 
 def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
@@ -229,7 +211,7 @@ def _advance_coupled(
 
 
 def _implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
-    """One implicit step, or as many as springs need, and the movement at the end."""
+    """Advance by one implicit step, or as many as springs need; return also the movement at the end."""
     parts = _parts(system, size)
     path, movement = _implicit_or_free(system, law, movement, size / parts)
     for _ in range(1, parts):
@@ -255,9 +237,10 @@ def _implicit_or_free(
 
 
 def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
-    """Implicit steps, several in one of the fluid's: an impact takes no time, and friction acts before and after it.
+    """Advance by several implicit steps in one of the fluid's: an impact takes no time, and friction acts before and
+    after it.
 
-    In a single one the impact would last as long as the fluid's step and meet friction all the while, and the impulse
+    The impact in a single one would last as long as the fluid's step and meet friction all the while, and the impulse
     be too great for the fluid's mass.
     """
     part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
@@ -283,7 +266,7 @@ def _implicit_step(
     followed: TrackedPairs | ExtrapolatedContacts,
     size: float,
 ) -> tuple[BodyStep, M]:
-    """One implicit step, and the movement at its end."""
+    """Advance by one implicit step; return also the movement at its end."""
     crossing = implicit_contact_step(law, movement, start, followed.at, size, system.wall_velocity)
     end, wrench, lost, driven, stored = crossing
     if isinstance(followed, TrackedPairs):
@@ -299,10 +282,10 @@ def _implicit_step(
 
 
 def _foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float, reach: float) -> TrackedPairs:
-    """The contacts that a step of this ``size`` may bring into range, at least those in ``reach`` [length].
+    """Contacts that a step of this ``size`` may bring into range, and at least those in ``reach`` [length].
 
-    At four times the fastest speed, as impacts may double that of both, and at what bodies that stand still, pressed
-    together, may get from their contacts.
+    The speed allowed for is four times the fastest, as impacts may double that of both bodies, and twice the speed that
+    bodies at rest, pressed together, may get from the energy of their contacts.
     """
     reach = max(reach, law.range + 4.0 * _fastest(system, movement, size) * size)
     contacts = TrackedPairs(system, movement.pose, reach)
@@ -313,7 +296,7 @@ def _foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float
 
 
 def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
-    """The speed of any surface if a body had all energy that its contacts store [length/time]."""
+    """Greatest speed of a surface if a body had all energy that its contacts store [length/time]."""
     energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
@@ -323,7 +306,7 @@ def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: C
 
 
 def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: float) -> None:
-    """Raise StepRejected if contacts that came or went unseen hold more energy than ``allowed``."""
+    """Raise StepRejected if contacts that came or went untracked hold more energy than ``allowed``."""
     missed = followed.missed(law, end)
     if abs(missed) > allowed:
         found = f"contacts of a pair that came or went within it, with an energy of {missed:.1e}"
@@ -331,7 +314,7 @@ def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: fl
 
 
 def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
-    """Up to which gap contacts are foreseen [length], and for how long that is enough [time]."""
+    """Gap up to which contacts are detected ahead [length], and the time for which that suffices [time]."""
     law_range = system.law.range if system.law else 0.0
     if system.substeps:
         return law_range, size
@@ -342,7 +325,7 @@ def _horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float
 
 
 def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
-    """The contacts of any pose, as a detector finds them that needs no mesh."""
+    """Function of the pose that detects the contacts, by a detector that needs no mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:
         near = detect(system, pose, None, reach)
@@ -353,7 +336,8 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
 
 
 def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamics:
-    """Bodies that the model does not know go on with their acceleration, and answer with their mass and added mass."""
+    """Dynamics of the bodies in a fluid; those outside the model keep their acceleration, and respond with mass and
+    added mass."""
     linear, angular = mobility(system, state)
     rate = accelerations(system, state)
     weight = None
@@ -372,14 +356,14 @@ def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodySte
 
 
 def _parts(system: System, size: float) -> int:
-    """In how many parts springs of joints are resolved."""
+    """Number of parts of a step that resolve the springs of joints."""
     return 1 if system.linkage is None else max(1, ceil(size * system.linkage.frequency / SPRING_RESOLUTION))
 
 
 def _arrived(
     movement: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int, friction: float = 0.0
 ) -> BodyStep:
-    """At the end of a step, or of a part of it."""
+    """Result at the end of a step, or of a part of it."""
     end = movement.pose, movement.twist, impulse
     return BodyStep(*end, dissipated, actuator_work, count, friction, free=movement.free)
 
@@ -392,10 +376,10 @@ def _resolve(
     size: float,
     span: float,
 ) -> BodyStep:
-    """Velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+    """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
 
-    Substeps are planned for a ``span`` [time] at a time, as far as contacts can be foreseen, and anew when the contacts
-    are over.
+    Substeps are planned for a ``span`` [time] at a time, as far ahead as contacts are detected, and anew when the
+    contacts are over.
     """
     contacts = contacts_at(movement.pose)
     impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
@@ -441,7 +425,7 @@ def _planned(
 
 
 def _surfaces(system: System) -> Reach:
-    """Balls turn in their place, but not as components of a mechanism."""
+    """Reach of the surfaces: balls turn in their place, but not as components of a mechanism."""
     if system.mechanisms is None:
         return Reach(arms(system), system.leverage)
     radii = np.array([body.bounding_radius for body in system.bodies])
@@ -450,9 +434,8 @@ def _surfaces(system: System) -> Reach:
 
 
 class _ContactLoad(NamedTuple):
-    """What the contacts do at one moment: their ``wrench``, the forces of ``damping`` (m, d) in it, None without
-    dampers, the power ``loss`` that these take, and the power ``actuator_work`` that drives of bodies and walls give.
-    """
+    """Loads of the contacts at one moment: their ``wrench``, the forces of ``damping`` (m, d) in it, None without
+    dampers, the power ``loss`` of these, and the power ``actuator_work`` of prescribed bodies and walls."""
 
     wrench: Wrench
     damping: FloatArray | None
@@ -461,8 +444,8 @@ class _ContactLoad(NamedTuple):
 
 
 def contact_forces(system: System, state: State, time: float) -> FloatArray:
-    """Force of each contact of a state on its first body, of all laws and their dampers (m, d) [force]; zero at the
-    start, as all forces are."""
+    """Force of each contact of a state on its first body, by all laws and their dampers (m, d), zero at the start
+    [force]."""
     contacts, law = state.contacts, system.law
     if law is None or len(contacts) == 0 or state.count == 0:
         return np.zeros((len(contacts), system.dimension))
@@ -473,7 +456,8 @@ def contact_forces(system: System, state: State, time: float) -> FloatArray:
 
 
 def _bodies_now(system: System, state: State, time: float) -> BodyDynamics:
-    """The bodies of a state as contacts meet them, in a fluid by the coupling that it has shown; without joints."""
+    """Dynamics of the bodies of a state as contacts see them, in a fluid by the coupling that its solution has shown;
+    without joints."""
     motions: MotionDynamics
     if not system.backend.needs_mesh:
         motions = _dry_motions(system, state, time)
@@ -500,21 +484,21 @@ def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: B
 
 
 def _loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: FloatArray | None) -> float:
-    """The power that dampers take half-way through their kick: the whole kick takes that times the substep."""
+    """Power of the dampers half-way through their kick: times the substep it is the loss of the whole kick."""
     if damping is None:
         return 0.0
     return -float(np.sum(damping * relative_motion(contacts, movement, system.wall_velocity).velocity))
 
 
 def _driven(system: System) -> BoolArray:
-    """Which bodies are driven, at all or relatively to others."""
+    """Whether the motion of a body is prescribed, in space or relatively to other bodies (n,)."""
     if system.mechanisms is None or not system.mechanisms.driven:
         return system.controlled
     return np.ones_like(system.controlled)
 
 
 def _given_twist(system: System, movement: BodyDynamics) -> Twist:
-    """Of the bodies' twists what no free motion has a share in, where they are driven."""
+    """Prescribed part of the body twists, n rows, valid for prescribed bodies."""
     if isinstance(movement, ComponentDynamics):
         return movement.given_twist(system.controlled_motions)
     return movement.twist
@@ -547,7 +531,7 @@ def _fastest(system: System, movement: BodyDynamics, size: float) -> float:
 
 
 def _added(total: Wrench, wrench: Wrench, factor: float) -> Wrench:
-    """The total with so much of a wrench added in place."""
+    """Add ``factor`` times a wrench to the total in place, and return it."""
     total.force[:] += factor * wrench.force
     total.torque[:] += factor * wrench.torque
     return total

@@ -1,4 +1,4 @@
-"""What convects follows bodies that contacts turn around within a step, as the mesh does."""
+"""Correct the advecting velocity for bodies whose velocity a contact reverses within the step."""
 
 from __future__ import annotations
 
@@ -15,23 +15,14 @@ from rigidfluid.core.model.types import FloatArray, Pose, Step
 
 
 def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:
-    """Impulses that give what convects the bodies' velocity on the mesh, (n, d+k) [force·time | force·length·time].
+    """Impulses (n, d+k) that give the advecting velocity the bodies' velocity on the mesh [force·time |
+    force·length·time].
 
     Extrapolated velocities do not know of an impact, but the mesh has gone with the bodies: fluid would seem to flow
-    through their surfaces, with up to twice their speed. On the surfaces of bodies near contacts both are made equal,
-    elsewhere the fluid follows as it does to an impact. Nothing is done where they agree, but for a hundredth of the
-    body in a step.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and fluid.
-    state : State
-        At the start of the step.
-    path : BodyStep
-        The bodies' way through it, with its coupling.
-    step : Step
-        The weights of its time scheme.
+    through their surfaces, with up to twice their speed. Both velocities are made equal on the surfaces of bodies near
+    contacts; elsewhere the fluid follows as it does to an impact. The impulses are zero where the ways by both
+    velocities in a step differ by less than CHANGED of the body's radius. ``state`` is that at the start of the step,
+    ``path`` the bodies' way through it, with its coupling.
     """
     none, coupling = np.zeros_like(step.load), path.coupling
     if coupling is None or system.backend.problem is None or not system.backend.problem.inertia:
@@ -60,12 +51,12 @@ def _on_the_mesh(system: System, state: State, path: BodyStep, step: Step) -> Fl
 
 
 def _way(start: Pose, end: Pose) -> FloatArray:
-    """From pose to pose, (n, d+k) [length | rad]."""
+    """Displacement and rotation vector from pose to pose, (n, d+k) [length | rad]."""
     turned = rotation_between(start.orientation, end.orientation)
     return np.concatenate([end.position - start.position, turned], axis=1)
 
 
 def _extrapolated(state: State, step: Step) -> FloatArray:
-    """Twists (n, d+k) at the end of the step, from those before."""
+    """Twists (n, d+k) at the end of the step, extrapolated from those before."""
     e0, e1 = step.extrapolation
     return np.asarray(e0 * flat(state.free_twist) + e1 * flat(state.past_twist or state.free_twist))

@@ -1,4 +1,4 @@
-"""How bodies in a fluid move between two of its solutions."""
+"""Dynamics of bodies in a fluid between two fluid solves."""
 
 from __future__ import annotations
 
@@ -17,21 +17,14 @@ from rigidfluid.core.model.types import FloatArray, IntArray, Kinematics, Pose, 
 
 
 class CoupledDynamics:
-    """dU/dt = A + M⁻¹F, and of the velocities in a `ReducedModel` dU/dt = M⁻¹ (Φ + F - R (U - Uⁿ)), in modes exactly.
+    """Dynamics dU/dt = A + M⁻¹F, and of the velocities in a `ReducedModel` dU/dt = M⁻¹ (Φ + F - R (U - Uⁿ)), in modes
+    exactly.
 
-    Parameters
-    ----------
-    pose, twist : Pose, Twist
-        At the start.
-    rate : (n, d+k) array
-        A, the acceleration without contacts; of velocities in the model it is not read [length/time² | rad/time²].
-    linear, angular : (n, d, d) array, (n, k, k) array
-        M⁻¹ of bodies outside the model in the lab frame, zero for driven ones [1/mass | 1/(mass·length²)].
-    coupling : Coupling
-        The model of the bodies near contacts, and Φ, which is constant unless it is told to vary.
-    weight : (c,) array, optional
-        What the model's velocities weigh, where the fluid has no inertia [force | force·length]. Then all else of
-        Φ - R (U - Uⁿ) is its friction, known at all times.
+    ``rate`` A (n, d+k) is the acceleration without contacts, not read for velocities in the model [length/time² |
+    rad/time²]; ``linear`` (n, d, d) and ``angular`` (n, k, k) are M⁻¹ of bodies outside the model in the lab frame,
+    zero for prescribed ones [1/mass | 1/(mass·length²)]; ``coupling`` has the model and Φ, which is constant unless
+    `vary_load` is called; ``weight`` (c,) is that of the model's velocities in a fluid without inertia, else None
+    [force | force·length]: all else of Φ - R (U - Uⁿ) is then its friction, known at all times.
     """
 
     free: FreeMotions | None = None
@@ -65,7 +58,7 @@ class CoupledDynamics:
         self._friction = _Friction(len(load))
 
     def vary_load(self, time: float) -> None:
-        """From now on Φ grows linearly, from what it was before to what it is after so much ``time``."""
+        """Let Φ grow linearly from now on, from its value before to its value after ``time``."""
         change = self._model.modes.T @ self._lacking
         self._load, self._growth = self._load - change, change / time
 
@@ -75,17 +68,18 @@ class CoupledDynamics:
         return Twist(self._velocity[:, :d], self._velocity[:, d:])
 
     def copied(self) -> Self:
-        """Poses and velocities are never changed in place; what friction takes is."""
+        """Copy that shares poses and velocities, which are never changed in place, but not the sums of friction."""
         other = copy(self)
         other._friction = copy(self._friction)
         return other
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """That of the body alone, others held by nothing but the fluid."""
+        """Inverse mass of the body alone, others held by nothing but the fluid."""
         return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """M⁻¹ of all velocities, in the model X φ₁(λ time) Xᵀ: the mean answer to a force that lasts so long."""
+        """Matrix M⁻¹ of all velocities, in the model X φ₁(λ time) Xᵀ: the mean response to a force that lasts for
+        ``time``."""
         width = self._velocity.shape[1]
         outside = np.ones(self._velocity.size)
         outside[self._model.velocities] = 0.0
@@ -98,11 +92,12 @@ class CoupledDynamics:
         return sparse.csr_matrix(own + inside)
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """|A|, or |M⁻¹Φ|; without inertia of the fluid the mean over the time, as friction ends it soon."""
+        """Greatest acceleration |A|, or |M⁻¹Φ| (n,); without inertia of the fluid the mean over the time, as friction
+        ends it soon [length/time²]."""
         return np.asarray(np.linalg.norm(self._pulled(time)[:, : self.pose.position.shape[1]], axis=1))
 
     def angular_pull(self, time: float) -> FloatArray:
-        """As `max_acceleration`, of the rotation."""
+        """Greatest angular acceleration (n,), as in `max_acceleration` [rad/time²]."""
         return np.asarray(np.linalg.norm(self._pulled(time)[:, self.pose.position.shape[1] :], axis=1))
 
     def _pulled(self, time: float) -> FloatArray:
@@ -115,7 +110,7 @@ class CoupledDynamics:
         return rate
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """Change the velocities by all that acts for so long."""
+        """Change the velocities by the wrench and all other forces for ``time``."""
         d, model = wrench.force.shape[1], self._model
         load, self._time = self._load + (self._time + 0.5 * time) * self._growth, self._time + time
         velocity = self._velocity + time * self._rate
@@ -128,10 +123,10 @@ class CoupledDynamics:
         self._velocity = velocity
 
     def begin(self, ahead: float) -> None:
-        """Nothing is given of these motions that jumps."""
+        """No-op: these motions have no prescribed velocity jump."""
 
     def push(self, impulse: FloatArray) -> None:
-        """Change the velocities as impulses (n, d+k) at once do, by the masses alone."""
+        """Change the velocities by impulses (n, d+k) at once, by the masses alone."""
         d, model = self.pose.position.shape[1], self._model
         velocity = self._velocity.copy()
         velocity[:, :d] += np.einsum("nij,nj->ni", self._own[0], impulse[:, :d])
@@ -149,10 +144,11 @@ class CoupledDynamics:
 
     @property
     def friction_loss(self) -> float:
-        """∫ (U - U_lin)ᵀ R (U - U_lin) dt with U_lin linear from start to end [energy].
+        """Energy dissipated by drag within substeps, ∫ (U - U_lin)ᵀ R (U - U_lin) dt with U_lin linear from start to
+        end [energy].
 
-        Without inertia of the fluid all that the path's friction takes, less what Simpson's rule sees of it in the
-        solutions: at both ends, and in the middle on the mesh at the end.
+        The loss without inertia of the fluid is all that of the path's friction, less Simpson's rule for it by the
+        fluid solves: at both ends, and in the middle on the mesh at the end.
         """
         if self._weight is None:
             return self._friction.beyond_linear(self._modal, self._model.decay)
@@ -161,7 +157,7 @@ class CoupledDynamics:
         return self._friction.beyond_simpson(self._modal, self._model.decay, start, resisting)
 
     def _blocks(self) -> tuple[FloatArray, FloatArray]:
-        """M⁻¹ of each body by itself, (n, d, d) and (n, k, k)."""
+        """Inverse mass M⁻¹ of each body by itself, (n, d, d) and (n, k, k)."""
         width, d = self._velocity.shape[1], self._own[0].shape[1]
         linear, angular = self._own[0].copy(), self._own[1].copy()
         body, component = np.divmod(self._model.velocities, width)
@@ -186,14 +182,14 @@ class _Friction:
         self._square = np.zeros(count)
 
     def add(self, modal: FloatArray, time: float) -> None:
-        """A drift with velocities ``modal`` (c,) for so long."""
+        """Add a drift with velocities ``modal`` (c,) for ``time``."""
         self._way = self._way + time * modal
         self._moment = self._moment + (self._time + 0.5 * time) * time * modal
         self._square = self._square + time * modal**2
         self._time += time
 
     def beyond_linear(self, end: FloatArray, decay: FloatArray) -> float:
-        """Σ λ ∫ (y - y_end t/T)² dt."""
+        """Sum Σ λ ∫ (y - y_end t/T)² dt."""
         if self._time == 0.0:
             return 0.0
         each = self._square - 2.0 * end * self._moment / self._time + end**2 * self._time / 3.0
@@ -202,8 +198,8 @@ class _Friction:
     def beyond_simpson(
         self, end: FloatArray, decay: FloatArray, start: FloatArray, resisting: tuple[FloatArray, FloatArray]
     ) -> float:
-        """∫ (f₀ + t f₁ + λ y)·(u + y) dt, u (c,) at the ``start``, less its Simpson's rule for y = y_end t/T with f at
-        the end."""
+        """Integral ∫ (f₀ + t f₁ + λ y)·(u + y) dt, u (c,) at the ``start``, less its Simpson's rule for y = y_end t/T
+        with f at the end."""
         (first, growth), time = resisting, self._time
         last, middle, final = first + time * growth, start + 0.5 * end, start + end
         path = first @ (time * start + self._way) + growth @ (0.5 * time**2 * start + self._moment)
@@ -213,7 +209,7 @@ class _Friction:
 
 
 def _phi(decay: FloatArray) -> FloatArray:
-    """φ₁ = (1 - e⁻ᶻ)/z, 1 at zero."""
+    """Function φ₁ = (1 - e⁻ᶻ)/z, 1 at zero."""
     small = decay < 1e-8
     safe = np.where(small, 1.0, decay)
     return np.where(small, 1.0 - 0.5 * decay, -np.expm1(-safe) / safe)

@@ -1,4 +1,4 @@
-"""What the fluid has to do with contacts in one step: its answers to impulses, and all other forces."""
+"""Fluid–contact coupling of one step: reduced mass and resistance, and the non-contact load Φ."""
 
 from __future__ import annotations
 
@@ -16,32 +16,18 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Step
 
 SETTLED = 1e-3
-"""A step is followed again until the bodies' velocities change by less than this part of them."""
+"""Relative change of the bodies' velocities below which the iteration of a step has converged."""
 
 SETTLED_SHARED = 1e-2
-"""The same where bodies share questions, whose answers are no better."""
+"""Relative change of velocities for convergence where bodies share questions, whose responses are no better."""
 
 STEADY = 1e-2
-"""Contacts whose impulses change by less than this part of them may need no second solution of the fluid."""
+"""Relative change of the contacts' impulses below which one fluid solve may be enough."""
 
 
 def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
-    """The coupling of a step from what was before it; None where nothing can touch.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, law, backend.
-    state : State
-        At the start of the step; its model is used where it has one.
-    time, size : float
-        When the step starts and how long it is [time].
-
-    Returns
-    -------
-    Coupling or None
-        With the present mesh, and the latest step's loads.
-    """
+    """Coupling of a step from ``time`` over ``size`` [time] with the present mesh and the latest step's loads, and the
+    state's own model where it has one; None where nothing can touch."""
     if not system.backend.needs_mesh:
         return None
     near = near_contacts(system, state, time, size)
@@ -58,43 +44,27 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
 
 
 def shown_coupling(system: System, state: State, candidate: State, path: BodyStep, step: Step) -> Coupling:
-    """The coupling that the solution of a step has shown: answers on the mesh at its end, and loads in it.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, backend.
-    state, candidate : State
-        At the start of the step and at its end.
-    path : BodyStep
-        The path that led to the candidate.
-    step : Step
-        What was solved.
-
-    Returns
-    -------
-    Coupling
-        Of the same velocities.
-    """
+    """Coupling by the fluid solve of a ``step`` from ``state`` to ``candidate`` along ``path``: responses on the mesh
+    at its end, and loads in it, of the same velocities."""
     assert path.coupling is not None
     used = path.coupling
     twist, velocities = flat(candidate.free_twist), used.model.velocities
     model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
     past = state.past_twist or state.free_twist
-    twists = tuple(_of(model, flat(twist)) for twist in (candidate.free_twist, state.free_twist, past))
+    twists = tuple(_components(model, flat(twist)) for twist in (candidate.free_twist, state.free_twist, past))
     before = (flat(state.free_contact) + _applied(state)) * (state.past_step or 0.0)
     applied = _applied(candidate)
-    impulses = _of(model, step.impulse + (candidate.past_step or 0.0) * applied), _of(model, before)
+    impulses = _components(model, step.impulse + (candidate.past_step or 0.0) * applied), _components(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
-    load = load + _of(model, applied)
+    load = load + _components(model, applied)
     if candidate.link is not None:
-        load = load - _of(model, candidate.link.wrench)
-    missed = _of(model, flat(path.free_twist)) - twists[0]
+        load = load - _components(model, candidate.link.wrench)
+    missed = _components(model, flat(path.free_twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
 
 def unforeseen(system: System, state: State, candidate: State) -> bool:
-    """Whether a contact is in range at the end of a step that was out of the detector's sight at its start, or a pair
+    """Whether a contact is in range at the end of a step that was beyond the detector's reach at its start, or a pair
     has more of them than were seen.
 
     A detector that needs no mesh is asked on the way, and misses none.
@@ -108,15 +78,14 @@ def unforeseen(system: System, state: State, candidate: State) -> bool:
 
 
 def _correction(system: System, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
-    """(d₀M + R) times the velocities that the solution ``missed`` (c,), where the fluid has no inertia."""
+    """Force (d₀M + R) U (c,) of the velocities ``missed`` U (c,) by the solve; zero in a fluid with inertia."""
     if not system.quasi_steady:
         return np.zeros_like(missed)
     return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
 
 def unsteady(system: System, state: State, path: BodyStep, size: float) -> bool:
-    """Whether contacts give other impulses than in the step before, so that the path of this ``size`` is sure to be
-    followed again."""
+    """Whether contact impulses changed by more than STEADY, so that a second iteration is certain."""
     if path.coupling is None:
         return False
     arms = twist_arms(system)
@@ -125,26 +94,27 @@ def unsteady(system: System, state: State, path: BodyStep, size: float) -> bool:
 
 
 def settled(system: System, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
-    """Whether following the step again, with the coupling ``found`` in it, would lead the bodies nowhere else.
+    """Whether the fixed-point iteration between contact path and fluid solve has converged, with the coupling
+    ``found``.
 
-    Changes are those of velocities. Without inertia of the fluid they are what the step gives: friction has long
-    forgotten what the bodies' mass alone would do with an impulse.
+    Changes are those of velocities. They are the response over the step in a fluid without inertia: by its end friction
+    has damped the response of the bodies' mass alone.
     """
     assert path.coupling is not None
     used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
     if len(model.velocities) == 0:
         return True
-    impulse, d0 = _of(model, flat(path.free_impulse)), float(derivative_weights(size, state.past_step)[0])
+    impulse, d0 = _components(model, flat(path.free_impulse)), float(derivative_weights(size, state.past_step)[0])
 
     def given(answering: ReducedModel, force: FloatArray) -> FloatArray:
         return answering.answer(d0, force) if system.quasi_steady else answering.mobility @ force
 
     gained = given(model, impulse)
-    before, after = (_of(model, flat(twist)) for twist in (state.free_twist, candidate.free_twist))
+    before, after = (_components(model, flat(twist)) for twist in (state.free_twist, candidate.free_twist))
     by_load = size * (given(model, found.load) - given(used.model, used.load))
     by_answer = gained - given(used.model, impulse)
     missed = model.answer(d0, found.correction - used.correction) / d0
-    arm = _of(model, twist_arms(system))
+    arm = _components(model, twist_arms(system))
     scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
     enough = SETTLED_SHARED if model.shared else SETTLED
     return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_answer, missed)) <= enough * scale
@@ -153,7 +123,7 @@ def settled(system: System, found: Coupling, path: BodyStep, state: State, candi
 def _velocities(system: System, near: Contacts) -> IntArray:
     """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone.
 
-    What joints hold is always among them, as their forces are found from the answers of all.
+    Motions that joints hold are always among them, as joint forces are found from the responses of all.
     """
     count, d, carrier = len(system.bodies), system.dimension, carriers(system)
     width = d + (1 if d == 2 else 3)
@@ -169,42 +139,44 @@ def _velocities(system: System, near: Contacts) -> IntArray:
 
 
 def _load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
-    """Φ at the start of a step: at the end of the one before, less the friction that came up in that step."""
+    """Load Φ (c,) at the start of a step: at the end of the one before, less the friction that came up in that step;
+    NaN where unknown."""
     before = np.full(len(model.velocities), np.nan)
     if state.coupling is None or state.past is None:
         return before
     latest = state.coupling.model.velocities
     _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
     change = flat(state.free_twist) - flat(state.past.twist)
-    slowed = state.coupling.model.friction_times(_of(state.coupling.model, change))
-    added = _of(model, flat(newly_applied(system, state)))
+    slowed = state.coupling.model.friction_times(_components(state.coupling.model, change))
+    added = _components(model, flat(newly_applied(system, state)))
     before[here] = (state.coupling.load - slowed)[there] + added[here]
     return before
 
 
 def _slowing(state: State, model: ReducedModel) -> FloatArray:
-    """R (Uⁿ - Uⁿ⁻¹)/2, what `expected_load` takes off for the friction that comes up in a step."""
+    """Friction R (Uⁿ - Uⁿ⁻¹)/2 (c,) that `expected_load` subtracts for its growth within a step."""
     if state.past is None:
         return np.zeros(len(model.velocities))
-    return 0.5 * model.friction_times(_of(model, flat(state.free_twist) - flat(state.past.twist)))
+    return 0.5 * model.friction_times(_components(model, flat(state.free_twist) - flat(state.past.twist)))
 
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
     if state.past is None:
-        return _of(model, flat(outer_load(system, state)))
-    change = _of(model, flat(state.free_twist) - flat(state.past.twist))
+        return _components(model, flat(outer_load(system, state)))
+    change = _components(model, flat(state.free_twist) - flat(state.past.twist))
     pushed = flat(state.free_contact) + (0.0 if state.link is None else state.link.wrench)
-    impulse = _of(model, pushed) * state.past.step
-    return expected_load(model, change, impulse, state.past.step) + _of(model, flat(newly_applied(system, state)))
+    impulse = _components(model, pushed) * state.past.step
+    applied = _components(model, flat(newly_applied(system, state)))
+    return expected_load(model, change, impulse, state.past.step) + applied
 
 
 def _applied(state: State) -> FloatArray:
-    """Mean wrench from outside on the motions in the step that led to a ``state``, (N, d+k)."""
+    """Mean applied wrench on the motions in the step that led to a ``state``, (N, d+k)."""
     if state.past is None or state.past.applied is None:
         return np.zeros_like(flat(state.free_contact))
     return flat(state.past.applied)
 
 
-def _of(model: ReducedModel, field: FloatArray) -> FloatArray:
-    """The model's components (c,) of a field (n, d+k)."""
+def _components(model: ReducedModel, field: FloatArray) -> FloatArray:
+    """Components (c,) of a field (n, d+k) that the model has."""
     return np.asarray(field.ravel()[model.velocities])

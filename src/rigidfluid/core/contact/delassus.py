@@ -1,4 +1,4 @@
-"""How the velocities in contacts answer to the forces in them."""
+"""Delassus matrix: response of the gaps' rates to the contact forces."""
 
 from __future__ import annotations
 
@@ -12,28 +12,17 @@ from rigidfluid.core.model.types import Contacts
 
 
 def delassus(contacts: Contacts, movement: BodyDynamics, time: float) -> sparse.csr_matrix:
-    """D = G M⁻¹ Gᵀ, where G takes the bodies' twists to the speeds at which the gaps open.
+    """Delassus matrix D = G M⁻¹ Gᵀ (m, m), symmetric and positive semidefinite, where G maps the bodies' twists to the
+    rates of the gaps, for forces that last for ``time`` [1/mass].
 
-    Parameters
-    ----------
-    contacts : Contacts
-        m contacts.
-    movement : BodyDynamics
-        The n bodies where the contacts are; walls, and bodies that are driven, do not give way.
-    time : float
-        For how long the contacts' forces last [time].
-
-    Returns
-    -------
-    (m, m) sparse matrix
-        Symmetric, without negative eigenvalues [1/mass].
+    Walls and prescribed bodies have no inverse mass; the bodies of ``movement`` are where the contacts are.
     """
     gap_rates = _gap_rates(contacts, movement)
     return sparse.csr_matrix(gap_rates @ movement.inverse_masses(time) @ gap_rates.T)
 
 
 def _gap_rates(contacts: Contacts, movement: BodyDynamics) -> sparse.csr_matrix:
-    """G, (m, n·(d+k))."""
+    """Matrix G (m, n·(d+k))."""
     position = movement.pose.position
     count, dimension = position.shape
     width = dimension + movement.twist.angular_velocity.shape[1]

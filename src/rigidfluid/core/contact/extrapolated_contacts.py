@@ -11,17 +11,10 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArra
 
 
 class ExtrapolatedContacts:
-    """Contacts of one pose, carried along by the bodies' rigid motion.
+    """Contacts detected at one ``pose``, carried along by the bodies' rigid motion.
 
-    Between balls, and of balls with flat walls, gap and normal are exact. Other surfaces are followed by their points,
+    Gap and normal are exact between balls, and of balls with flat walls. Other surfaces are followed by their points,
     along the normal that was found: the gap is then right to first order in the motion since.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        As detected.
-    pose : Pose
-        Where the n bodies were then.
     """
 
     def __init__(self, contacts: Contacts, pose: Pose) -> None:
@@ -33,7 +26,7 @@ class ExtrapolatedContacts:
         self._arm_b = _arms(contacts.body_b, contacts.point_b, pose, turned_back)
 
     def at(self, pose: Pose) -> Contacts:
-        """The same contacts when the bodies are at ``pose``."""
+        """Contacts when the bodies are at ``pose``, in the same order."""
         rotation = rotation_matrices(pose.orientation)
         old, normal = self._contacts, self._contacts.normal.copy()
         ball_a = np.isfinite(old.radius_a)
@@ -48,7 +41,8 @@ class ExtrapolatedContacts:
     def _measure_balls(
         self, pose: Pose, point_a: FloatArray, point_b: FloatArray, normal: FloatArray, gap: FloatArray
     ) -> None:
-        """In place, for pairs of balls: gap = |x_a - x_b| - r_a - r_b along the line of centres."""
+        """Set gap = |x_a - x_b| - r_a - r_b of pairs of balls along the line of centres, in place, and its points and
+        normal."""
         which, old = self._round, self._contacts
         a, b = pose.position[old.body_a[which]], pose.position[old.body_b[which]]
         distance = np.linalg.norm(a - b, axis=1)
@@ -59,7 +53,7 @@ class ExtrapolatedContacts:
 
 
 def _arms(body: IntArray, point: FloatArray, pose: Pose, turned_back: FloatArray) -> FloatArray:
-    """From the centre of mass to the point in the body's frame; of walls the point itself."""
+    """Arm (m, d) from the centre of mass to the point in the body's frame; for walls the point itself [length]."""
     count = len(pose.position)
     arm = point.copy()
     on_body = body < count
@@ -71,7 +65,8 @@ def _arms(body: IntArray, point: FloatArray, pose: Pose, turned_back: FloatArray
 def _moved(
     body: IntArray, arm: FloatArray, point: FloatArray, old: Pose, pose: Pose, rotation: FloatArray, ball: BoolArray
 ) -> FloatArray:
-    """Where the points are now; those of a ball do not turn with it, as its nearest point does not."""
+    """Present positions (m, d) of the points; those of a ball do not turn with it, as its nearest point does not
+    [length]."""
     moved = arm.copy()
     on_body = body < len(pose.position)
     index, turning = body[on_body], ~ball[on_body, None]

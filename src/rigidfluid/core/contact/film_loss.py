@@ -1,4 +1,4 @@
-"""What a law has to take of an impact in a fluid, beside what the resolved film takes."""
+"""Restitution of a law in a fluid: the loss of the whole impact less the share of the resolved film."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, Film, FloatArray, Loads
 
 _PARTS = 12
-"""Of the way from range to contact, over which the film's part is summed."""
+"""Number of parts of the way from range to contact over which the film's share is summed."""
 
 _LEAST_TAKEN = 1e-9
-"""The least part of β that a film takes: below it 1/A - 1 in the marginal Stokes number has no digits left."""
+"""Least part of β that a film takes: below it 1/A - 1 in the marginal Stokes number has no digits left."""
 
 
 class Braking(NamedTuple):
-    """What the resolved film takes of an impact's Stokes number [1]: ``outside`` (m,) before the law's range is
-    reached, and ``within`` it on the way in, (m,) over the speed at range; ``per_speed`` (m,) St/v [time/length]."""
+    """Loss of an impact's Stokes number in the resolved film [1]: ``outside`` (m,) before the law's range is reached,
+    and ``within`` it on the way in, (m,) over the speed at range; ``per_speed`` (m,) St/v [time/length]."""
 
     per_speed: FloatArray
     outside: FloatArray
@@ -29,8 +29,8 @@ class Braking(NamedTuple):
 
 
 def braking(law: ForceLaw, contacts: Contacts, mass: FloatArray, film: Film, loads: Loads) -> Braking:
-    """What the film takes where the law turns bodies of the effective ``mass`` (m,) [mass]: within range the film acts
-    at v √(1 - 2U/(m v²)), U the law's energy."""
+    """Loss of the Stokes number in the film where the law turns bodies of the effective ``mass`` (m,) [mass]: within
+    range the film acts at v √(1 - 2U/(m v²)), U the law's energy."""
     edges = law.range * np.linspace(1.0, 0.0, _PARTS + 1)
     middles = 0.5 * (edges[1:] + edges[:-1])
     taken = np.array([stokes_number_taken(contacts, film, gap) for gap in edges[:-1]])
@@ -45,7 +45,7 @@ def braking(law: ForceLaw, contacts: Contacts, mass: FloatArray, film: Film, loa
 
 @dataclass(frozen=True, slots=True)
 class FilmLoss:
-    """The loss of impacts in a fluid: e falls as exp(-β/St) with the ``decay`` β [1], whether the mesh resolves the
+    """Loss of impacts in a fluid: e falls as exp(-β/St) with the ``decay`` β [1], whether the mesh resolves the
     ``film`` or not; ``loads`` has the masses."""
 
     decay: float
@@ -55,10 +55,10 @@ class FilmLoss:
     def restitution(
         self, dry: float, law: ForceLaw, contacts: Contacts, mass: FloatArray
     ) -> Callable[[FloatArray], FloatArray]:
-        """The restitution (m,) [1] of the law alone over the speed v (m,) at range [length/time].
+        """Restitution (m,) [1] of the law alone over the speed v (m,) at range [length/time].
 
-        The film takes A of St before range, and B within it on the way in; on the way out it takes both again. So
-        a body that reaches range at St has come with St + A, and comes back with e₀ exp(-β/(St + A)) of that where
+        The film takes A of St before range, and B within it on the way in; on the way out it takes both again. A body
+        that reaches range at St has thus come with St + A, and comes back with e₀ exp(-β/(St + A)) of that where
 
             e = [e₀ exp(-β/(St + A)) (St + A) + A + B]/(St - B),
 
@@ -66,18 +66,19 @@ class FilmLoss:
         """
         met = braking(law, contacts, mass, self.film, self.loads)
 
-        def at(speed: FloatArray) -> FloatArray:
+        def restitution_at(speed: FloatArray) -> FloatArray:
             both = met.outside + met.within(speed)
             stokes = np.maximum(met.per_speed * speed + met.outside, self._marginal(dry, both))
             whole = dry * np.exp(-self.decay / stokes)
             return np.asarray(np.minimum((whole * stokes + both) / (stokes - both), dry))
 
-        return at
+        return restitution_at
 
     def _marginal(self, dry: float, taken: FloatArray) -> FloatArray:
-        """St (m,) at which e is least where the film takes ``taken`` (m,) of St: with s = β/St and a = taken/β,
+        """Stokes number St (m,) at which e is least where the film takes ``taken`` (m,) of it: with s = β/St and a =
+        taken/β,
 
-        exp(s)/e₀ + s = 1/a - 1.
+            exp(s)/e₀ + s = 1/a - 1.
         """
         from scipy.special import wrightomega
 

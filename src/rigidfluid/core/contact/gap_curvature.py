@@ -1,4 +1,4 @@
-"""How curved the gap between two smooth surfaces is, in the one number that its film's resistance depends on."""
+"""Effective radius of the gap between two smooth surfaces: the one number that its film's resistance depends on."""
 
 from __future__ import annotations
 
@@ -14,47 +14,30 @@ from rigidfluid.core.model.wall import Wall, wall_radii
 
 
 def with_effective_radii(contacts: Contacts, bodies: Sequence[Body], walls: Sequence[Wall], pose: Pose) -> Contacts:
-    """Add R of contacts of ellipses and ellipsoids: with H, the sum of both surfaces' curvature tensors,
+    """Contacts with R of ellipses and ellipsoids added: with H, the sum of both surfaces' curvature tensors,
 
         R = √(2/(tr H √(det H))) in 3D, 1/tr H in 2D.
 
-    In the gap h + xᵀHx/2 squeezed at the speed V, 6μV/(tr H h²) solves Reynolds' equation and has the resultant
-    12πμV/(tr H √(det H) h): that of a ball of radius R at a flat wall, 6πμR²V/h.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    bodies, walls : sequences
-        All n bodies and the walls that contacts are with.
-    pose : Pose
-        Of the bodies.
-
-    Returns
-    -------
-    Contacts
-        The same, with R wherever both surfaces have semi-axes or are round, and the gap widens to all sides; else as
-        they came [length].
-
-    Notes
-    -----
-    Cox, Int. J. Multiphase Flow 1 (1974) 343, doi:10.1016/0301-9322(74)90019-6.
+    The pressure 6μV/(tr H h²) solves Reynolds' equation in the gap h + xᵀHx/2 squeezed at the speed V, and has the
+    resultant 12πμV/(tr H √(det H) h): that of a ball of radius R at a flat wall, 6πμR²V/h (Cox, Int. J. Multiphase Flow
+    1 (1974) 343, doi:10.1016/0301-9322(74)90019-6). R is set wherever both surfaces have semi-axes or are round, and
+    the gap widens to all sides; other contacts are unchanged [length].
     """
     unknown = np.flatnonzero(np.isnan(contacts.effective_radius))
     if len(unknown) == 0:
         return contacts
     normal, body_b = contacts.normal[unknown], contacts.body_b[unknown]
-    at_wall, curvature = contacts.at_wall[unknown], _of_bodies(contacts.body_a[unknown], normal, bodies, pose)
+    at_wall, curvature = contacts.at_wall[unknown], _body_curvatures(contacts.body_a[unknown], normal, bodies, pose)
     curvature[at_wall] += _across(normal[at_wall]) / wall_radii(walls, body_b[at_wall])[:, None, None]
-    curvature[~at_wall] += _of_bodies(body_b[~at_wall], normal[~at_wall], bodies, pose)
+    curvature[~at_wall] += _body_curvatures(body_b[~at_wall], normal[~at_wall], bodies, pose)
     radius = contacts.effective_radius.copy()
     radius[unknown] = _effective_radius(curvature)
     return replace(contacts, effective_radius=radius)
 
 
-def _of_bodies(body: IntArray, normal: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:
-    """P √(nᵀMn) M⁻¹ P with M = R diag(a²) Rᵀ of each ellipsoid where its normal is ±n, P across n, (m, d, d)
-    [1/length]; NaN without semi-axes."""
+def _body_curvatures(body: IntArray, normal: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:
+    """Curvature tensor P √(nᵀMn) M⁻¹ P with M = R diag(a²) Rᵀ of each ellipsoid where its normal is ±n, P across n, (m,
+    d, d) [1/length]; NaN without semi-axes."""
     dimension = normal.shape[1]
     missing = np.full(dimension, np.nan)
     axes = [missing if bodies[one].semi_axes is None else bodies[one].semi_axes for one in body.tolist()]
@@ -68,12 +51,13 @@ def _of_bodies(body: IntArray, normal: FloatArray, bodies: Sequence[Body], pose:
 
 
 def _across(normal: FloatArray) -> FloatArray:
-    """1 - nnᵀ, (m, d, d)."""
+    """Projector 1 - nnᵀ, (m, d, d)."""
     return np.asarray(np.eye(normal.shape[1]) - normal[:, :, None] * normal[:, None, :])
 
 
 def _effective_radius(curvature: FloatArray) -> FloatArray:
-    """R of H (m, d, d), which is zero along the normal; NaN where H is not positive across it, (m,)."""
+    """Effective radius R (m,) of H (m, d, d), which is zero along the normal; NaN where H is not positive across it
+    [length]."""
     trace = np.trace(curvature, axis1=1, axis2=2)
     if curvature.shape[1] == 2:
         return 1.0 / np.where(trace > 0.0, trace, np.nan)

@@ -1,4 +1,4 @@
-"""One step of the bodies through their contacts that is stable at any stiffness and keeps the energy."""
+"""Implicit step of the bodies through their contacts, stable at any stiffness, that keeps the energy."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from rigidfluid.core.model.wall import WallVelocities
 from rigidfluid.errors import StepRejected
 
 MOST_UPDATES = 40
-"""How often normals, points and gaps are taken anew at most."""
+"""Largest number of updates of normals, points and gaps."""
 
 MOST_FORCE_UPDATES = 20
-"""From then on dampers, and the scale that makes the work exact, are as they were: a damper that switches on at the
-range, or a way that is nearly none, may have no value that fits."""
+"""Update after which dampers, and the scale that makes the work exact, are kept: a damper that switches on at the
+range, or a displacement close to zero, may have no value that fits."""
 
 TOLERANCE = 1e-10
-"""How far, over the range, the surfaces may end from where the forces take them."""
+"""Tolerance of the surfaces' positions at the end against those that the forces give, over the range."""
 
 KEPT = 1e-5
-"""What a step may create or lose where bodies turn too far in it for one force in each contact, over the energy that it
-has."""
+"""Relative error of the energy above which a step is rejected, as bodies turn too far in it for one force in each
+contact."""
 
 JUST_IN = 0.999
-"""A gap over the range."""
+"""Gap over the range of a contact that is just in range."""
 
 _SCALES = 0.5, 2.0
 _STILL = 1e-6
@@ -46,8 +46,8 @@ M = TypeVar("M", bound=BodyDynamics)
 
 
 class Crossing(NamedTuple, Generic[M]):
-    """A step of the bodies: their ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, what
-    sliding walls have ``driven`` into the bodies, and what bodies and contacts ``store`` [energy]."""
+    """Result of a step: the bodies' ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
+    work ``driven`` into the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
 
     movement: M
     wrench: Wrench
@@ -64,44 +64,20 @@ def implicit_contact_step(
     size: float,
     wall_velocity: WallVelocities | None = None,
 ) -> Crossing[M]:
-    """x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole step.
+    """Advance x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole
+    step.
 
     f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
     the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
-    kicks too, n and the points are those in mid-step.
-    Dampers act with the mean velocity, across the surfaces implicitly, along them with that of the iteration
-    before. Second order where the step resolves the contact. The energy is kept in steps of any length; those in which
-    bodies turn too far for that are rejected.
+    kicks too, n and the points are those in mid-step (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162;
+    Simo, Tarnow & Wong, Comput. Methods Appl. Mech. Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z). Dampers act
+    with the mean velocity, across the surfaces implicitly, along them with that of the iteration before. The step is of
+    second order where it resolves the contact, and keeps the energy at any length.
 
-    Parameters
-    ----------
-    law : ForceLaw
-        Gives force, energy, stiffness and damping.
-    movement : BodyDynamics
-        The n bodies at the start; left as it is.
-    start : Contacts
-        The m contacts there that may come into range in the step.
-    contacts_at : callable
-        The same contacts, in the same order, at another pose.
-    size : float
-        Δt [time].
-    wall_velocity : callable, optional
-        At which walls slide, as in `relative_motion`; they rest if not given [length/time].
-
-    Returns
-    -------
-    Crossing
-        Of all bodies.
-
-    Raises
-    ------
-    StepRejected
-        If bodies would overlap, no forces are found, or the forces do not keep the energy.
-
-    Notes
-    -----
-    Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162; Simo, Tarnow & Wong, Comput. Methods Appl. Mech.
-    Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z.
+    ``movement`` at the start is left as it is; ``start`` are the m contacts there that may come into range in the step
+    of this ``size`` Δt [time], ``contacts_at`` gives the same contacts, in the same order, at another pose;
+    ``wall_velocity`` is as in `relative_motion`, None for walls at rest. StepRejected is raised if bodies would
+    overlap, no forces are found, or bodies turn too far for the forces to keep the energy.
     """
     iterate = _straight_on(movement, start, size, wall_velocity)
     force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
@@ -134,7 +110,7 @@ def implicit_contact_step(
 
 
 class _Iterate(NamedTuple, Generic[M]):
-    """Where some forces take the bodies.
+    """Bodies and contacts under some forces.
 
     ``movement`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
     ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force];
@@ -154,14 +130,15 @@ class _Iterate(NamedTuple, Generic[M]):
 
 
 class _Dampers(NamedTuple):
-    """``across``: force over way along the normal (m,) [force/length]; ``along``: force in the surfaces (m, d)."""
+    """Forces of dampers, ``across``: force over way along the normal (m,) [force/length]; ``along``: force in the
+    surfaces (m, d)."""
 
     across: FloatArray
     along: FloatArray
 
 
 def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: WallVelocities | None) -> _Iterate[M]:
-    """A first guess that asks nothing of bodies in overlap: without contacts, with all surfaces flat."""
+    """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial, wall_velocity)
@@ -183,15 +160,15 @@ def _evaluate(
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
-    kicked = _of_motions(trial)
+    kicked = _motion_twist(trial)
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
-    drifted = _of_motions(trial)
+    drifted = _motion_twist(trial)
     trial.kick(wrench, 0.5 * size, place)
     drift = kicked, drifted
-    twist = _mean(drift if trial.resisted else (_of_motions(movement), *drift, _of_motions(trial)))
+    twist = _mean(drift if trial.resisted else (_motion_twist(movement), *drift, _motion_twist(trial)))
     velocity = relative_velocity(middle, pose, component_twist(kinematics, twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
@@ -222,14 +199,14 @@ def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
-    """Whether gaps are as foreseen, and what the forces still lack moves nothing."""
+    """Whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
     enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
     moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
-def _of_motions(movement: BodyDynamics) -> Twist:
-    """Twists of what carries the bodies, or of the bodies where each moves by itself."""
+def _motion_twist(movement: BodyDynamics) -> Twist:
+    """Twists of the motions that carry the bodies, or of the bodies where each moves by itself."""
     return movement.twist if movement.free is None else movement.free.twist
 
 
@@ -241,7 +218,8 @@ def _mean(twists: Sequence[Twist]) -> Twist:
 
 
 def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate: _Iterate[M]) -> float:
-    """At the start or at the end, or by a contact that is just in range: less is not worth another step [energy]."""
+    """Greatest energy at the start, at the end, or in a contact that is just in range: a smaller scale is not worth
+    another step [energy]."""
     end = replace(start, gap=iterate.gap)
     just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
     touching = [float(law.energy(contacts).max()) for contacts in just_in]
@@ -249,7 +227,7 @@ def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate
 
 
 def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
-    """Kinetic energy of free bodies and what the contacts store [energy]."""
+    """Kinetic energy of free bodies and potential energy of the contacts [energy]."""
     twist, energy = movement.twist, float(law.energy(contacts).sum())
     for velocity, inverse in (
         (twist.velocity, movement.mobility),
@@ -261,17 +239,15 @@ def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
 
 
 def _refuse_to_create(law: ForceLaw, start: Contacts, iterate: _Iterate[M], force: FloatArray, stored: float) -> None:
-    """Raise StepRejected if the springs' ``force`` (m,) does another work than their energy loses."""
+    """Raise StepRejected if the work of the springs' ``force`` (m,) is not the loss of their energy."""
     end = replace(start, gap=iterate.gap)
     created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
     if abs(created) > KEPT * stored:
         raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
 
 
-def _crossing(
-    iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float, stored: float
-) -> Crossing[M]:
-    """The step is done, unless dampers that were not renewed to the end would give energy."""
+def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float, stored: float) -> Crossing[M]:
+    """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy."""
     lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
     if lost < 0.0:
         raise _rejected("dampers that would give energy")

@@ -1,4 +1,4 @@
-"""What a contact must hold: the work that stops a body at the smallest gap wanted."""
+"""Loads that a contact must hold: weight, and the energy of an impact."""
 
 from __future__ import annotations
 
@@ -11,25 +11,8 @@ _FIELD = "contact.epsilon"
 
 
 def require_loads(loads: Loads | None, law_range: float) -> Loads:
-    """The loads, if a strength can be computed from them.
-
-    Parameters
-    ----------
-    loads : Loads or None
-        What the contacts must hold.
-    law_range : float
-        The range of the law [length].
-
-    Returns
-    -------
-    Loads
-        The same.
-
-    Raises
-    ------
-    SceneError
-        Without loads, with a smallest gap outside the range, or where a free body has neither weight nor speed.
-    """
+    """Loads, if a strength can be computed from them; raises SceneError without loads, with a smallest gap outside the
+    range, or where a free body has neither weight nor speed."""
     if loads is None:
         raise SceneError(_FIELD, '"auto" without known loads', "a number", "Give `epsilon` as a number.")
     if not 0.0 < loads.smallest_gap < law_range:
@@ -45,42 +28,20 @@ def require_loads(loads: Loads | None, law_range: float) -> Loads:
 
 
 def impact_energy(contacts: Contacts, loads: Loads) -> FloatArray:
-    """The energy of an approach: of the two bodies alone, or if it is more, of the bodies that come down together.
+    """Energy of an approach (m,): that of the two bodies alone, or if it is more, of the bodies that come down together
+    [energy].
 
-    Those that come down on a wall or on a body of given twist bring ``stacked_energy`` of the lowest. Of two bodies
-    the upper one hits the lower, and brings its own: it is the one with less.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    loads : Loads
-        Masses, speeds and stacked energies.
-
-    Returns
-    -------
-    (m,) array
-        Kinetic energy [energy].
+    Bodies that come down on a wall or on one of prescribed twist bring ``stacked_energy`` of the lowest. The upper one
+    of two bodies hits the lower, and brings its own: it is the one with less.
     """
-    return _of_stack(loads.stacked_energy, pair_energy(contacts, loads), contacts, loads)
+    return _stack_load(loads.stacked_energy, pair_energy(contacts, loads), contacts, loads)
 
 
 def pair_energy(contacts: Contacts, loads: Loads) -> FloatArray:
-    """½ m v² with the effective mass m and v = v_a + v_b; a wall is heavy and rests.
+    """Kinetic energy of the approach ½ m v² (m,) with the effective mass m and v = v_a + v_b; a wall is heavy and rests
+    [energy].
 
-    Between two bodies of given twist it is zero, since nothing is to be stopped.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    loads : Loads
-        Masses and speeds.
-
-    Returns
-    -------
-    (m,) array
-        Kinetic energy of the approach [energy].
+    The energy is zero between two bodies of prescribed twist, since nothing is to be stopped.
     """
     inverse = inverse_mass(contacts, loads)
     twice = np.zeros(len(contacts))
@@ -89,45 +50,33 @@ def pair_energy(contacts: Contacts, loads: Loads) -> FloatArray:
 
 
 def closing_speed(contacts: Contacts, loads: Loads) -> FloatArray:
-    """v_a + v_b, (m,) [length/time]."""
-    return np.asarray(of_both(loads.speed, contacts).sum(axis=0))
+    """Closing speed v_a + v_b, (m,) [length/time]."""
+    return np.asarray(pair_values(loads.speed, contacts).sum(axis=0))
 
 
 def held_weight(contacts: Contacts, loads: Loads) -> FloatArray:
-    """The larger of the two bodies' own weights, (m,) [force]."""
-    return np.asarray(of_both(loads.weight, contacts).max(axis=0))
+    """Larger of the two bodies' own weights, (m,) [force]."""
+    return np.asarray(pair_values(loads.weight, contacts).max(axis=0))
 
 
 def stacked_weight(contacts: Contacts, loads: Loads) -> FloatArray:
-    """The larger of the two bodies' own weights, or if it is more, that of the stack on top of the contact.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    loads : Loads
-        Weights, of bodies and of stacks.
-
-    Returns
-    -------
-    (m,) array
-        Weight [force]; zero between two bodies of given twist.
-    """
-    return _of_stack(loads.stacked_weight, held_weight(contacts, loads), contacts, loads)
+    """Larger of the two bodies' own weights, or if it is more, the weight of the stack on top of the contact, (m,);
+    zero between two bodies of prescribed twist [force]."""
+    return _stack_load(loads.stacked_weight, held_weight(contacts, loads), contacts, loads)
 
 
 def inverse_mass(contacts: Contacts, loads: Loads) -> FloatArray:
-    """1/m_a + 1/m_b, (m,) [1/mass]."""
-    return np.asarray(of_both(1.0 / loads.mass, contacts).sum(axis=0))
+    """Inverse effective mass 1/m_a + 1/m_b, (m,) [1/mass]."""
+    return np.asarray(pair_values(1.0 / loads.mass, contacts).sum(axis=0))
 
 
-def of_both(column: FloatArray, contacts: Contacts, at_wall: float = 0.0) -> FloatArray:
-    """What ``column`` (n,) says of a and of b, ``at_wall`` for walls, (2, m)."""
+def pair_values(column: FloatArray, contacts: Contacts, at_wall: float = 0.0) -> FloatArray:
+    """Values of ``column`` (n,) for a and for b, ``at_wall`` for walls, (2, m)."""
     extended = np.append(column, at_wall)
     return np.stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])
 
 
-def _of_stack(column: FloatArray, single: FloatArray, contacts: Contacts, loads: Loads) -> FloatArray:
-    """The load ``single`` (m,) of two bodies, or what stands behind both of them, by ``column`` (n,), if more, (m,)."""
-    behind = of_both(column, contacts, at_wall=np.inf).min(axis=0)
+def _stack_load(column: FloatArray, single: FloatArray, contacts: Contacts, loads: Loads) -> FloatArray:
+    """Load ``single`` (m,) of two bodies, or that of the stack behind both, by ``column`` (n,), if more, (m,)."""
+    behind = pair_values(column, contacts, at_wall=np.inf).min(axis=0)
     return np.where(inverse_mass(contacts, loads) > 0.0, np.maximum(single, behind), 0.0)

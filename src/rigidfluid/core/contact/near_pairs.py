@@ -1,4 +1,4 @@
-"""Verlet's neighbour list: which balls are near each other, searched for only now and then."""
+"""Verlet's neighbour list: pairs of near balls, searched for only now and then."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rigidfluid.core.contact.broad_phase import near_pairs
 from rigidfluid.core.model.types import FloatArray, IntArray
 
 SKIN = 0.6
-"""How far beyond the reach `NearPairs` looks, over the mean radius."""
+"""Distance beyond the reach up to which `NearPairs` searches, over the mean radius."""
 
 _LISTS = 2
 _ALL_PAIRS = 32
@@ -21,7 +21,7 @@ _ALL_PAIRS = 32
 class PairList:
     """Pairs a < b within ``reach`` [length] when the balls were at ``position`` (n, d), sorted by (a, b).
 
-    Those of ball a are ``second[start[a]:start[a + 1]]``.
+    Slice ``second[start[a]:start[a + 1]]`` has the partners of ball a.
     """
 
     start: IntArray
@@ -36,18 +36,10 @@ class PairList:
 
 
 class NearPairs:
-    """Verlet's neighbour list: pairs a little further apart than asked for, kept as long as no other can come near.
+    """Verlet's neighbour list: pairs a little further apart than asked for, kept as long as no other can come near
+    (Verlet 1967, DOI 10.1103/PhysRev.159.98); ``radii`` (n,) [length].
 
-    It decides how often pairs are searched for, and never which contacts are found.
-
-    Parameters
-    ----------
-    radii : (n,) array
-        Radii of the balls [length].
-
-    Notes
-    -----
-    Verlet 1967, DOI 10.1103/PhysRev.159.98.
+    The list decides how often pairs are searched for, and never which contacts are found.
     """
 
     def __init__(self, radii: FloatArray) -> None:
@@ -56,7 +48,7 @@ class NearPairs:
         self._lists: list[PairList] = []
 
     def within(self, position: FloatArray, reach: float) -> PairList:
-        """All pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
+        """Pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
         for found in self._lists:
             # a list that looks much too far would be right, but slow
             if found.reach <= reach + 2.0 * self._skin and found.holds(position, reach):

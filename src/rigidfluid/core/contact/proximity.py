@@ -1,4 +1,4 @@
-"""How near the bodies are to anything: contacts of one pose, and each body's nearest gap."""
+"""Proximity of bodies and walls: contacts of one pose, and each body's nearest gap."""
 
 from __future__ import annotations
 
@@ -17,14 +17,10 @@ from rigidfluid.errors import StepRejected
 
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-    """All contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh.
+    """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh.
 
-    Raises
-    ------
-    PluginError
-        If they are between surfaces that there are not, or arrays have a wrong shape.
-    StepRejected
-        If a gap, point or normal is no number.
+    PluginError is raised if they are between unknown surfaces or arrays have a wrong shape, StepRejected if a gap,
+    point or normal is not finite.
     """
     contacts = system.detector.detect(pose, mesh, reach)
     refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
@@ -36,7 +32,7 @@ def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Conta
 
 
 def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
-    """The contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
+    """Contacts that may repel, and each body's nearest gap (n,), both as far as ``system.reach``, else infinite.
 
     Parts of one articulated body, and bodies that a joint joins, do not touch each other, yet the gap between them
     counts, for the fluid there.
@@ -51,14 +47,13 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
 
 
 def interacting(system: System, contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) are not between parts of one articulated body or joined bodies, and are some law's, where
-    there is any."""
-    apart = of_separate_bodies(system, contacts)
+    """Whether a contact (m,) is between separate bodies, and some law's, if there is any law."""
+    apart = are_separate(system, contacts)
     return apart & acted_in(system.interactions, contacts) if system.interactions else apart
 
 
-def of_separate_bodies(system: System, contacts: Contacts) -> BoolArray:
-    """Which contacts (m,) are neither between parts of one articulated body nor between bodies that a joint joins."""
+def are_separate(system: System, contacts: Contacts) -> BoolArray:
+    """Whether a contact (m,) is neither between parts of one articulated body nor between bodies that a joint joins."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
     apart = (contacts.body_b >= count) | (system.assembly[contacts.body_a] != other)
@@ -70,7 +65,7 @@ def of_separate_bodies(system: System, contacts: Contacts) -> BoolArray:
 
 
 def refuse_overlap(system: System, body: int, gap: float) -> None:
-    """Raise StepRejected if the ``gap`` of a ``body`` [length] is none."""
+    """Raise StepRejected unless the ``gap`` of a ``body`` [length] is positive."""
     if not gap > 0.0:
         remedy = "Strengthen the contact force, widen its range or refine mesh.size_body."
         if body in system.joined:
@@ -84,7 +79,7 @@ def refuse_overlap(system: System, body: int, gap: float) -> None:
 
 
 def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
-    """Each body's nearest gap (n,), and where it is not measured the most that is known to be free [length]."""
+    """Nearest gap of each body (n,), and where it is not measured the largest known lower bound [length]."""
     beyond = ~np.isfinite(gaps)
     if not beyond.any():
         return gaps
@@ -94,12 +89,12 @@ def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
 
 
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:
-    """How far any surface point of each body can move from one pose to another, |Δx| + R Δθ (n,) [length]."""
+    """Greatest displacement of any surface point of each body between two poses, |Δx| + R Δθ (n,) [length]."""
     moved = np.linalg.norm(end.position - start.position, axis=1)
     return np.asarray(moved + arms(system) * angle_between(start.orientation, end.orientation))
 
 
 def arms(system: System) -> FloatArray:
-    """How far the surface of each body reaches from its centre of mass, zero for balls, which turn in their place (n,)
-    [length]."""
+    """Distance of the farthest surface point of each body from its centre of mass, zero for balls, which turn in their
+    place (n,) [length]."""
     return np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])

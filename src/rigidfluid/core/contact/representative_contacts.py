@@ -1,4 +1,4 @@
-"""A few bodies that stand for all, and contacts of them that are made up to question a law."""
+"""Representative bodies, and hypothetical contacts of them at which a law is evaluated."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.contact.proximity import of_separate_bodies
+from rigidfluid.core.contact.proximity import are_separate
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.surface import Surface
@@ -18,14 +18,14 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray
 from rigidfluid.core.model.wall import Wall, radius_of
 
 FAR_AHEAD = 1e6
-"""In sizes of the domain."""
+"""Distance of a far point, over the size of the domain."""
 
 MOST = 40
-"""More bodies than that do not stand for all: then those with the extremes of all that counts do."""
+"""Largest number of representatives; of more those with the extremes of mass, weight, size, speed and stack remain."""
 
 
 def body_classes(system: System) -> tuple[tuple[int, ...], ...]:
-    """Bodies of one shape, mass, weight and freedom, each class in the order of the expected speed."""
+    """Classes of bodies of one shape, mass, weight and freedom, each in the order of the expected speed."""
     found = defaultdict(list)
     for i in np.argsort(system.loads.speed, kind="stable").tolist():
         body = shape_key(system.bodies[i]), float(system.mass[i]), *system.weight[i].tolist()
@@ -36,7 +36,7 @@ def body_classes(system: System) -> tuple[tuple[int, ...], ...]:
 def representatives(system: System) -> tuple[int, ...]:
     """Numbers of the bodies that stand for all: of each kind the two slowest and fastest, the least and most stacked.
 
-    Those with the extremes of mass, weight, size, speed and stack, if these are too many.
+    Bodies with the extremes of mass, weight, size, speed and stack alone stand for all if these are too many.
     """
     loads = system.loads
     stacks = loads.stacked_weight, loads.stacked_energy
@@ -49,13 +49,13 @@ def representatives(system: System) -> tuple[int, ...]:
 
 
 def _extremes(bodies: Sequence[int], columns: Sequence[FloatArray]) -> set[int]:
-    """Those of ``bodies`` with the two least and the two greatest values in each of the columns (n,)."""
+    """Members of ``bodies`` with the two least and the two greatest values in each of the columns (n,)."""
     orders = (np.argsort(column[list(bodies)], kind="stable") for column in columns)
     return {bodies[i] for order in orders for i in (*order[:2], *order[-2:])}
 
 
 def wall_contacts(system: System, bodies: Sequence[int], walls: Sequence[Wall]) -> Contacts:
-    """A contact of each of ``bodies`` with its wall, one of ``walls`` for each, gap zero."""
+    """Contact of each of ``bodies`` with its wall, one of ``walls`` for each, gap zero."""
     normals = [facing_normal(system, body, wall.shape) for body, wall in zip(bodies, walls, strict=True)]
     radius = np.array([radius_of(wall.shape) for wall in walls])
     at_wall, normal = np.ones(len(walls), dtype=bool), np.array(normals).reshape(-1, system.dimension)
@@ -63,7 +63,7 @@ def wall_contacts(system: System, bodies: Sequence[int], walls: Sequence[Wall]) 
 
 
 def facing_normal(system: System, body: int, shape: Surface) -> FloatArray:
-    """The normal (d,) of a surface where the weight drives a body to in the end: nearest to a point far ahead."""
+    """Normal (d,) of a surface where the weight drives a body to in the end: nearest to a point far ahead."""
     weight = system.weight[body]
     ahead = weight / max(float(np.linalg.norm(weight)), np.finfo(float).tiny)
     far = system.pose.position[body] + FAR_AHEAD * float(system.domain.size.max()) * ahead
@@ -71,21 +71,21 @@ def facing_normal(system: System, body: int, shape: Surface) -> FloatArray:
 
 
 def free(system: System, bodies: Sequence[int]) -> list[int]:
-    """Those of ``bodies`` whose twist is not given."""
+    """Members of ``bodies`` whose twist is not prescribed."""
     return [i for i in bodies if not system.controlled[i]]
 
 
 def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:
-    """A contact of each pair of ``bodies`` that are not parts of one, and of which one is free, gap zero."""
+    """Contact of each pair of separate ``bodies`` of which one is free, gap zero."""
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     radius, at_wall = np.array([radius_of(system.bodies[b]) for b in second]), np.zeros(len(pairs), dtype=bool)
     met = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
-    return select(met, of_separate_bodies(system, met))
+    return select(met, are_separate(system, met))
 
 
-def at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:
-    """Each of m contacts at each of its gaps (m, G), as m · G contacts."""
+def contacts_at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:
+    """Contacts (m · G) that each of m contacts has at each of its gaps (m, G)."""
     many = select(contacts, np.repeat(np.arange(len(contacts)), gaps.shape[1]))
     gap = gaps.ravel()
     return replace(many, gap=gap, point_a=many.point_b + gap[:, None] * many.normal)

@@ -1,4 +1,4 @@
-"""What the laws with a stiffness parameter share: a law gives its formulas for ε = 1, and this divides by ε."""
+"""Common part of the laws with a stiffness parameter: a law gives its formulas for ε = 1, and this divides by ε."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads
 
 AUTO: Literal["auto"] = "auto"
-"""What a scene says that leaves ε to the loads."""
+"""Value of ε in a scene that leaves it to the loads."""
 
 
 def _one_complaint(value: object, validate: ValidatorFunctionWrapHandler) -> object:
-    """One sentence in place of one for each kind of value."""
+    """Validate a value with one error message in place of one for each of its kinds."""
     try:
         return validate(value)
     except ValidationError:
@@ -44,24 +44,11 @@ class RepulsionOptions(PartOptions):
 
 
 class Repulsion(ForceLaw):
-    """F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
+    """Law F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
 
-    With ``auto``, ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a head-on impact of
-    the expected energy E, less what the film takes, that the weight W still pushes on, ends at the smallest gap.
-
-    Parameters
-    ----------
-    options : RepulsionOptions
-        ``epsilon`` and ``epsilon_wall``.
-    range : float
-        The gap above which the law is zero [length].
-    loads : Loads, optional
-        What the contacts must hold; needed by ``auto``.
-
-    Raises
-    ------
-    SceneError
-        If ``auto`` cannot be computed from the loads.
+    ``auto`` sets ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a head-on impact of
+    the expected energy E, less the share of the film, on which the weight W still acts, ends at the smallest gap; it
+    needs ``loads``, and raises SceneError if ε cannot be computed from them.
     """
 
     Options: ClassVar[type[PartOptions]] = RepulsionOptions
@@ -74,37 +61,38 @@ class Repulsion(ForceLaw):
 
     @abstractmethod
     def unit_force(self, contacts: Contacts) -> FloatArray:
-        """F₁ along the normal, (m,) [force · ε]."""
+        """Force F₁ along the normal, (m,) [force · ε]."""
 
     @abstractmethod
     def unit_energy(self, contacts: Contacts) -> FloatArray:
-        """U₁, (m,) [energy · ε]."""
+        """Energy U₁, (m,) [energy · ε]."""
 
     @abstractmethod
     def unit_stiffness(self, contacts: Contacts) -> FloatArray:
-        """k₁ = -dF₁/dgap, (m,) [force/length · ε]."""
+        """Stiffness k₁ = -dF₁/dgap, (m,) [force/length · ε]."""
 
     def force(self, contacts: Contacts) -> FloatArray:
-        """F₁/ε along the normal on ``body_a``, (m, d) [force]."""
+        """Force F₁/ε along the normal on ``body_a``, (m, d) [force]."""
         return (self.unit_force(contacts) / self.epsilon(contacts))[:, None] * contacts.normal
 
     def energy(self, contacts: Contacts) -> FloatArray:
-        """U₁/ε, (m,) [energy]."""
+        """Energy U₁/ε, (m,) [energy]."""
         return self.unit_energy(contacts) / self.epsilon(contacts)
 
     def stiffness(self, contacts: Contacts) -> FloatArray:
-        """k₁/ε, (m,) [force/length]."""
+        """Stiffness k₁/ε, (m,) [force/length]."""
         return self.unit_stiffness(contacts) / self.epsilon(contacts)
 
     def epsilon(self, contacts: Contacts) -> FloatArray:
-        """ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of given twist."""
+        """Stiffness parameter ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of
+        prescribed twist."""
         between, at_walls = self.options.epsilon, self.options.epsilon_wall
         if at_walls is None:
             return self._epsilon(between, contacts)
         return np.where(contacts.at_wall, self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
 
     def closeness(self, contacts: Contacts) -> FloatArray:
-        """w = max(range - gap, 0), (m,) [length]."""
+        """Depth of each contact in the range w = max(range - gap, 0), (m,) [length]."""
         return np.maximum(self.range - contacts.gap, 0.0)
 
     def _epsilon(self, wanted: float | Literal["auto"], contacts: Contacts) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Impacts that lose energy: a damper for any law with an energy, of the restitution asked for."""
+"""Impacts that lose energy: a damper of given restitution for any law with an energy."""
 
 from __future__ import annotations
 
@@ -15,37 +15,24 @@ from rigidfluid.errors import SceneError
 
 
 class Restitution(ForceLaw):
-    """F = f (1 + x ẇ/v), f the force of a law with the energy U, ẇ the closing speed, v that at range.
+    """Law F = f (1 + x ẇ/v), f the force of a ``law`` with the energy U, ẇ the closing speed, v that at range.
 
-    x follows from the restitution e by x (1 + e) = ln[(1 + x)/(1 - e x)]: a head-on impact of two bodies alone ends
-    with e times its speed, whatever the law, the speed and the mass. Nothing has to be remembered, as v follows from
-    the present state, with the effective mass m and G(y) = y - ln(1 + y):
+    x follows from the ``restitution`` e, from LEAST to 1, by x (1 + e) = ln[(1 + x)/(1 - e x)]: a head-on impact of two
+    bodies alone ends with e times its speed, whatever the law, the speed and the mass (Hunt and Crossley, J. Appl.
+    Mech. 42 (1975) 440, doi:10.1115/1.3423596; x as in Marhefka and Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999)
+    566, doi:10.1109/3468.798060). Nothing has to be remembered, as v follows from the present state, with the effective
+    mass m and G(y) = y - ln(1 + y):
 
         (v/x)² [G(x) - G(x ẇ/v)] = U/m
 
-    The damper acts along the normal alone. It neither presses at rest nor pulls, and fades out at range as the law
-    does; where the law itself pulls, there is none.
+    The damper acts along the normal alone. Its force neither presses at rest nor pulls, and fades out at range as the
+    law does; where the law itself pulls, it is zero.
 
-    Parameters
-    ----------
-    law : ForceLaw
-        With an energy and without dampers.
-    restitution : float
-        e, or with ``loss`` what it tends to in ever faster impacts, from LEAST to 1 [1].
-    loss : FilmLoss, optional
-        With it a whole impact, the resolved film with it, ends with restitution · exp(-β/St) of the speed at the
-        film's edge, St the Stokes number there; e of the law is what that leaves, but at least LEAST.
-
-    Raises
-    ------
-    SceneError
-        If the law has no energy or dampers of its own, or the restitution is too small.
-
-    Notes
-    -----
-    Hunt and Crossley, J. Appl. Mech. 42 (1975) 440, doi:10.1115/1.3423596; x as in Marhefka and Orin, IEEE Trans. Syst.
-    Man Cybern. A 29 (1999) 566, doi:10.1109/3468.798060; exp(-β/St): Legendre, Daniel and Guiraud, Phys. Fluids 17
-    (2005) 097105, doi:10.1063/1.2010527.
+    A ``loss`` makes a whole impact, the resolved film included, end with restitution · exp(-β/St) of the speed at the
+    film's edge, St the Stokes number there (Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005) 097105,
+    doi:10.1063/1.2010527): ``restitution`` is then the limit of ever faster impacts, and e of the law makes up for the
+    film's share, but is at least LEAST. SceneError is raised if the law has no energy or dampers of its own, or the
+    restitution is too small.
     """
 
     name: ClassVar[str] = "restitution"
@@ -69,23 +56,23 @@ class Restitution(ForceLaw):
 
     @property
     def ranges(self) -> tuple[float, ...]:
-        """Of the law [length]."""
+        """Ranges of the law [length]."""
         return self.law.ranges
 
     def force(self, contacts: Contacts) -> FloatArray:
-        """f of the law on ``body_a``, (m, d) [force]."""
+        """Force f of the law on ``body_a``, (m, d) [force]."""
         return self.law.force(contacts)
 
     def energy(self, contacts: Contacts) -> FloatArray:
-        """U of the law, (m,) [energy]."""
+        """Energy U of the law, (m,) [energy]."""
         return self.law.energy(contacts)
 
     def stiffness(self, contacts: Contacts) -> FloatArray:
-        """Of the law, (m,) [force/length]."""
+        """Stiffness of the law, (m,) [force/length]."""
         return self.law.stiffness(contacts)
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
-        """f x ẇ/v along the normal on ``body_a``, (m, d) [force]."""
+        """Damping force f x ẇ/v along the normal on ``body_a``, (m, d) [force]."""
         damping = np.zeros_like(contacts.normal)
         rows = np.flatnonzero((contacts.gap < self.range) & (motion.mass > 0.0))
         if len(rows):
@@ -98,18 +85,19 @@ class Restitution(ForceLaw):
         return damping
 
     def _excess(self, contacts: Contacts, closing: FloatArray, stored: FloatArray, mass: FloatArray) -> FloatArray:
-        """x ẇ/v (m,) [1] at ẇ (m,) [length/time] and 2U/m (m,) [length²/time²], of effective masses (m,) [mass]."""
+        """Excess x ẇ/v (m,) [1] at ẇ (m,) [length/time] and 2U/m (m,) [length²/time²], for effective masses (m,)
+        [mass]."""
         if self.loss is None:
             whole = np.sqrt(closing**2 + stored)
             return excess(self.restitution, np.divide(closing, whole, out=np.zeros_like(whole), where=whole > 0.0))
         restitution = self.loss.restitution(self.restitution, self.law, contacts, mass)
 
-        def at(speed: FloatArray) -> Hardening:
+        def hardening_at(speed: FloatArray) -> Hardening:
             return hardening(np.maximum(restitution(speed), LEAST))
 
-        return excess_by_speed(closing, stored, at)
+        return excess_by_speed(closing, stored, hardening_at)
 
 
 def without_restitution(law: ForceLaw) -> ForceLaw:
-    """The law that gives force and energy."""
+    """Law that gives force and energy."""
     return law.law if isinstance(law, Restitution) else law

@@ -1,4 +1,4 @@
-"""Contacts that a detector found between facets of balls and of their walls, put on the round shapes themselves."""
+"""Contacts that a detector found between facets of balls and of their walls, moved to the round shapes themselves."""
 
 from __future__ import annotations
 
@@ -15,24 +15,11 @@ FACING = 0.5
 
 
 def on_round_shapes(contacts: Contacts, walls: Sequence[Wall], pose: Pose) -> Contacts:
-    """The same contacts, of balls with each other and with flat and round walls along the line through the centres.
+    """Contacts, with those of balls with each other and with flat and round walls moved to the line through the
+    centres.
 
-    Between facets the nearest points lie beside that line. Such a force would turn a ball, and its work would not be
-    what the energy of the gap loses.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The m contacts.
-    walls : sequence of Wall
-        All that contacts may be with.
-    pose : Pose
-        Of the n bodies.
-
-    Returns
-    -------
-    Contacts
-        Others as they came.
+    The nearest points between facets lie beside that line: such a force would turn a ball, and its work would not be
+    the loss of the gap's energy.
     """
     ball = np.isfinite(contacts.radius_a)
     pairs = np.flatnonzero(ball & ~contacts.at_wall & np.isfinite(contacts.radius_b))

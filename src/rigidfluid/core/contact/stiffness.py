@@ -1,4 +1,4 @@
-"""How stiff a law gets on the way into a contact, for the run and for the check alike."""
+"""Stiffness of a law on the way into a contact, for the run and for the check alike."""
 
 from __future__ import annotations
 
@@ -11,34 +11,20 @@ from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Contacts, FloatArray
 
 SAMPLES = 8
-"""Gaps from the deepest one outward, at which a law is asked."""
+"""Number of gaps from the deepest one outward at which a law is sampled."""
 
 
-def on_the_way(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> Iterator[Contacts]:
-    """The contacts at SAMPLES gaps from the ``deepest`` (m,) on, in equal steps toward each range [length]."""
+def contacts_on_the_way(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> Iterator[Contacts]:
+    """Contacts at SAMPLES gaps from the ``deepest`` (m,) on, in equal steps toward each range [length]."""
     for begin in law.ranges:
         for part in np.linspace(0.0, 1.0, SAMPLES, endpoint=False):
             yield replace(contacts, gap=deepest + part * np.maximum(begin - deepest, 0.0))
 
 
 def greatest_stiffness(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> FloatArray:
-    """The greatest stiffness of each contact between its deepest gap and the range, at least zero.
-
-    Parameters
-    ----------
-    law : ForceLaw
-        The law.
-    contacts : Contacts
-        The m contacts.
-    deepest : (m,) array
-        The smallest gap that each reaches [length].
-
-    Returns
-    -------
-    (m,) array
-        Stiffness [force/length].
-    """
+    """Greatest stiffness of each contact (m,) between its ``deepest`` gap (m,) [length] and the range, at least zero
+    [force/length]."""
     stiffness = np.zeros(len(contacts))
-    for there in on_the_way(law, contacts, deepest):
+    for there in contacts_on_the_way(law, contacts, deepest):
         stiffness = np.maximum(stiffness, law.stiffness(there))
     return stiffness

@@ -1,4 +1,4 @@
-"""Which stiffness `auto` has chosen, and why."""
+"""Stiffness parameters that `auto` has chosen, and the loads they follow from."""
 
 from __future__ import annotations
 
@@ -19,18 +19,11 @@ from rigidfluid.core.model.types import Contacts, Loads
 
 
 def chosen_strengths(system: System) -> list[dict[str, Any]]:
-    """The ε that `auto` has computed: the largest and the smallest at walls, and the same between bodies.
+    """Values of ε that `auto` has computed: the largest and the smallest at walls, and the same between bodies; none
+    where the scene gives numbers.
 
-    Parameters
-    ----------
-    system : System
-        With its law and loads.
-
-    Returns
-    -------
-    list of dict
-        Each with ``between`` (two names), ``epsilon``, ``impact_speed``, ``impact_energy``, ``weight_work`` and
-        ``smallest_gap``; empty where the scene gives numbers.
+    Each row has ``between`` (two names), ``epsilon``, ``impact_speed``, ``impact_energy``, ``weight_work`` and
+    ``smallest_gap``.
     """
     return [row for interaction in system.interactions for row in _chosen(system, interaction)]
 
@@ -70,6 +63,6 @@ def _extremes(system: System, law: Repulsion, loads: Loads, contacts: Contacts) 
 
 
 def _other(system: System, contacts: Contacts, i: int) -> str:
-    """All walls are alike."""
+    """Name of the second surface; all walls are alike."""
     b = int(contacts.body_b[i])
     return system.surfaces[b] if b < len(system.bodies) else "wall"

@@ -1,4 +1,4 @@
-"""How long substeps must be so that contacts are met and resolved."""
+"""Length of the substeps that resolve contacts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.delassus import delassus
-from rigidfluid.core.contact.stiffness import greatest_stiffness, on_the_way
+from rigidfluid.core.contact.stiffness import contacts_on_the_way, greatest_stiffness
 from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import middle, select
@@ -22,24 +22,26 @@ RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
 
 FADED = 8.0
-"""The frequency of balls that part is taken for no more than so many times the highest that is still to come."""
+"""Bound of the frequency of parting balls, over the highest that is still to come."""
 
 _HALVINGS = 30
 
 _SPEEDS = 1.0, 2.0**-80
-"""At which dampers are asked for their coefficient: some are steepest at rest; a power of two costs no digit."""
+"""Speeds at which dampers are evaluated for their coefficient: some are steepest at rest; a power of two costs no
+digit."""
 
 
 class Reach(NamedTuple):
-    """How far the surface of each body reaches from its centre of mass, ``arms`` (n,) [length], and how easily it gives
-    way there, ``leverage`` (n,) [1], see `most_leverage`; zero for balls, which turn in their place."""
+    """Distance ``arms`` (n,) of the farthest surface point of each body from its centre of mass [length], and
+    ``leverage`` (n,) there [1], see `most_leverage`; zero for balls, which turn in their place."""
 
     arms: FloatArray
     leverage: FloatArray
 
 
 class Plan(NamedTuple):
-    """``free_flight``: for how long nothing can touch; ``substep``: what resolves the contacts from then on [time]."""
+    """Time ``free_flight`` in which nothing can touch, and the ``substep`` that resolves the contacts from then on
+    [time]."""
 
     free_flight: float
     substep: float
@@ -54,37 +56,20 @@ def plan(
     span: float,
     quasi_steady: bool = False,
 ) -> Plan:
-    """How to go on: h ω ≤ 0.1 with ω the highest frequency that the contacts can reach with the energy they have.
+    """Plan of the next ``span``, of a step ``size`` [time]: h ω ≤ 0.1 with ω the highest frequency that the contacts
+    can reach with the energy they have.
 
-    Not the one they have now, nor one that depends on whether they close or open: what is taken for their energy is
-    constant through a collision, and so is h, also where each of many steps plans anew. Substeps of equal length keep
-    the energy; each change costs some. h is the step halved a whole number of times, so that other bodies seldom
-    change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
+    ω is neither the present frequency nor does it depend on whether contacts close or open: the estimate of their
+    energy is constant through a collision, and so is h, also where each of many steps plans anew. Substeps of equal
+    length keep the energy; each change costs some. h is the step halved a whole number of times, so that other bodies
+    seldom change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
 
-    Parameters
-    ----------
-    law : ForceLaw
-        Gives energy, stiffness and damping.
-    contacts : Contacts
-        All that may come into range in the span.
-    movement : BodyDynamics
-        The n bodies as they move now.
-    reach : Reach
-        Of the bodies' surfaces.
-    size, span : float
-        Of the whole step, and how far contacts are foreseen [time].
-    quasi_steady : bool
-        In a fluid without inertia: its friction may leave contacts no time to swing, and h is then a tenth of the time
-        in which they give way.
-
-    Returns
-    -------
-    Plan
-        For the span.
+    ``contacts`` are all that may come into range in the span; ``quasi_steady``: whether the fluid has no inertia.
+    Friction may then leave contacts no time to swing, and h is a tenth of their relaxation time.
     """
     if len(contacts) == 0:
         return Plan(span, span)
-    pulled = _of_both(movement.max_acceleration(span), contacts).sum(axis=1)
+    pulled = _pair_values(movement.max_acceleration(span), contacts).sum(axis=1)
     approach = _approach(law, contacts, movement, reach)
     speed = approach.fastest + span * pulled
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
@@ -96,9 +81,9 @@ def plan(
 
 
 class _Approach(NamedTuple):
-    """Of the m contacts: no two points are ``fastest`` to meet [length/time]; ``energy``: what they have to meet with;
-    ``inverse`` (m, 2): 1/m_a and 1/m_b, as much as they can be where the contact may wander [1/mass]; ``parting``:
-    which are balls in range that part."""
+    """Approach in the m contacts: ``fastest``, a bound of the closing speed of any two points [length/time]; the
+    ``energy`` of the approach; ``inverse`` (m, 2): bounds of 1/m_a and 1/m_b where the contact may wander [1/mass];
+    ``parting``: whether two balls in range part."""
 
     fastest: FloatArray
     energy: FloatArray
@@ -107,16 +92,17 @@ class _Approach(NamedTuple):
 
 
 def _approach(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach) -> _Approach:
-    """Normals of balls turn with the line of centres; those of other shapes may turn anywhere."""
-    twist, arm = movement.twist, _of_both(reach.arms, contacts)
-    spin = _of_both(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
+    """Approach in each contact: normals of balls turn with the line of centres; those of other shapes may turn
+    anywhere."""
+    twist, arm = movement.twist, _pair_values(reach.arms, contacts)
+    spin = _pair_values(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
     velocity = _relative(twist.velocity, contacts)
     opening = np.sum(velocity * contacts.normal, axis=1)
     inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
     energy = _radial_energy(contacts, movement, velocity, opening, inside)
     if tumbling.any():
         energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], reach)
-    inverse = _inverse_masses(contacts, movement) * (1.0 + _of_both(reach.leverage, contacts))
+    inverse = _inverse_masses(contacts, movement) * (1.0 + _pair_values(reach.leverage, contacts))
     fastest = np.linalg.norm(velocity, axis=1) + spin.sum(axis=1)
     return _Approach(fastest, energy, inverse, ~tumbling & (inside > 0.0) & (opening > 0.0))
 
@@ -124,9 +110,10 @@ def _approach(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: 
 def _radial_energy(
     contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, opening: FloatArray, inside: FloatArray
 ) -> FloatArray:
-    """Of two balls, m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins [energy].
+    """Energy of approach of two balls m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins
+    [energy].
 
-    With the energy of the contact that is constant while they touch, as v_t r is. Out of range, balls that part have
+    The sum with the energy of the contact is constant while they touch, as v_t r is. Balls out of range that part have
     none.
     """
     mass = relative_motion(contacts, movement).mass
@@ -139,26 +126,27 @@ def _radial_energy(
 
 
 def _tumbling_energy(contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, reach: Reach) -> FloatArray:
-    """As if all mass had the speed that the kinetic energy can give to the fastest point of a free body, (m,) [energy].
+    """Energy (m,) of all mass at the greatest speed that the kinetic energy can give to a point of a free body
+    [energy].
 
-    Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A driven body is
-    not stopped; so its fastest point counts.
+    Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A prescribed
+    body is not stopped; so its fastest point counts.
     """
     arms, spin, inverse = reach.arms, movement.twist.angular_velocity, movement.inverse_inertia
     free, turning = inverse.any(axis=(1, 2)), np.zeros(len(arms))
     own = free & (arms > 0.0)
     turning[own] = 0.5 * np.einsum("ni,nij,nj->n", spin[own], np.linalg.inv(inverse[own]), spin[own])
     driven = np.where(free, 0.0, arms * np.linalg.norm(spin, axis=1))
-    speed = np.linalg.norm(velocity, axis=1) + _of_both(driven, contacts).sum(axis=1)
+    speed = np.linalg.norm(velocity, axis=1) + _pair_values(driven, contacts).sum(axis=1)
     lightness: FloatArray = np.asarray(np.linalg.eigvalsh(movement.mobility)[:, 0], dtype=np.float64)
-    mass = _reciprocal(_of_both(lightness, contacts).sum(axis=1))
-    kinetic = 0.5 * mass * speed**2 + _of_both(turning, contacts).sum(axis=1)
-    return np.asarray((1.0 + _of_both(reach.leverage, contacts).max(axis=1)) * kinetic)
+    mass = _reciprocal(_pair_values(lightness, contacts).sum(axis=1))
+    kinetic = 0.5 * mass * speed**2 + _pair_values(turning, contacts).sum(axis=1)
+    return np.asarray((1.0 + _pair_values(reach.leverage, contacts).max(axis=1)) * kinetic)
 
 
 class _Creep(NamedTuple):
-    """Contacts in a fluid without inertia: ``force`` (m,), what all but contacts amounts to in each [force];
-    ``answer`` (m, m), absolute, the speeds at which gaps open by forces that last for a step [speed/force]."""
+    """Contacts in a fluid without inertia: ``force`` (m,), the resultant in each of all but contacts [force];
+    ``answer`` (m, m), absolute rates of the gaps by forces that last for a step [speed/force]."""
 
     force: FloatArray
     answer: FloatArray
@@ -166,8 +154,8 @@ class _Creep(NamedTuple):
 
 def _creep(contacts: Contacts, movement: BodyDynamics, reach: Reach, size: float) -> _Creep:
     answer = np.abs(size * delassus(contacts, movement, size).toarray())
-    gained = size * _of_both(movement.max_acceleration(size), contacts).sum(axis=1)
-    wandering = 1.0 + _of_both(reach.leverage, contacts).max(axis=1)
+    gained = size * _pair_values(movement.max_acceleration(size), contacts).sum(axis=1)
+    wandering = 1.0 + _pair_values(reach.leverage, contacts).max(axis=1)
     return _Creep(gained * _reciprocal(answer.diagonal()), answer * wandering)
 
 
@@ -179,10 +167,10 @@ def _resolved(
     pull: FloatArray,
     creep: _Creep | None,
 ) -> float:
-    """0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
+    """Substep 0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
 
-    With ``creep`` a tenth of the time in which contacts give way, if that is longer: h k φ₁(λh) h/m ≤ 0.1 then, with
-    decay rates λ, and Verlet's method with exact decay is stable up to 2.
+    The substep with ``creep`` is a tenth of the contacts' relaxation time, if that is longer: h k φ₁(λh) h/m ≤ 0.1
+    then, with decay rates λ, and Verlet's method with exact decay is stable up to 2.
     """
     motion = relative_motion(contacts, movement)
     force = motion.mass * pull if creep is None else creep.force
@@ -199,10 +187,10 @@ def _resolved(
 def _reached(
     law: ForceLaw, contacts: Contacts, motion: Motion, approach: _Approach, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The greatest stiffness and damping coefficient (m,) that count, where a ``force`` (m,) presses besides.
+    """Greatest stiffness and damping coefficient (m,) that count under a further ``force`` (m,).
 
-    A law may be far stiffer where bodies start than on their way apart. Their substeps grow there, but only where the
-    contact is so soft that the change costs next to no energy.
+    A law may be far stiffer where bodies start than on their way apart. The substeps of parting bodies grow, but only
+    where the contact is so soft that the change costs next to no energy.
     """
     parting = np.flatnonzero(approach.parting)
     rows = np.concatenate(
@@ -221,9 +209,9 @@ def _reached(
 
 
 def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: FloatArray) -> FloatArray:
-    """The gap (m,) at which the law has stored this ``energy`` (m,) and what ``force`` (m,) adds on the way [length].
+    """Gap (m,) at which the law has stored this ``energy`` (m,) and the work of ``force`` (m,) on the way [length].
 
-    Zero where it never can.
+    The gap is zero where the law never can.
     """
     start = np.minimum(contacts.gap, law.range)
     low, high = np.zeros(len(contacts)), start
@@ -235,10 +223,10 @@ def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: Float
 
 
 def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The greatest stiffness and damping coefficient (m,) between the deepest gap and the range."""
+    """Greatest stiffness and damping coefficient (m,) between the deepest gap and the range."""
     damping = np.zeros(len(contacts))
     if law.dissipative:
-        for there in on_the_way(law, contacts, deepest):
+        for there in contacts_on_the_way(law, contacts, deepest):
             for speed in _SPEEDS:
                 resisting = law.damping(there, replace(motion, velocity=speed * contacts.normal))
                 damping = np.maximum(damping, -np.sum(resisting * contacts.normal, axis=1) / speed)
@@ -246,22 +234,11 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
 
 
 def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: WallVelocities | None = None) -> Motion:
-    """Velocity of a relative to b half-way between the contact points, and the effective mass of the pair,
-    zero where both are driven.
+    """Velocity of a relative to b half-way between the m contact points, and the effective mass of the pair, zero where
+    both are prescribed.
 
-    Parameters
-    ----------
-    contacts : Contacts
-        m contacts.
-    movement : BodyDynamics
-        The n bodies as they move now; walls are heavy beyond measure.
-    wall_velocity : callable, optional
-        At which walls slide, (m, d) of surface numbers (m,) and points (m, d); they rest if not given [length/time].
-
-    Returns
-    -------
-    Motion
-        Of the m contacts.
+    ``wall_velocity`` gives the velocity (m, d) of sliding walls from surface numbers (m,) and points (m, d), None for
+    walls at rest [length/time]; walls have infinite mass.
     """
     velocity = relative_velocity(contacts, movement.pose, movement.twist)
     if wall_velocity is not None:
@@ -273,12 +250,12 @@ def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: W
 
 
 def _reciprocal(inverse: FloatArray) -> FloatArray:
-    """Zero where ``inverse`` is."""
+    """Reciprocal, zero where ``inverse`` is."""
     return np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
 
 
 def _relative(quantity: FloatArray, contacts: Contacts) -> FloatArray:
-    """What ``quantity`` (n, d) is of a less what it is of b, zero for walls, (m, d)."""
+    """Difference of ``quantity`` (n, d) between a and b, zero for walls, (m, d)."""
     extended = np.vstack([quantity, np.zeros_like(quantity[:1])])
     return np.asarray(extended[contacts.body_a] - extended[np.minimum(contacts.body_b, len(quantity))])
 
@@ -300,7 +277,7 @@ def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray)
 
 
 def _inverse_masses(contacts: Contacts, movement: BodyDynamics) -> FloatArray:
-    """1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
+    """Inverse masses 1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
     inverse = np.zeros((len(contacts), 2))
     for side, body in enumerate([contacts.body_a, contacts.body_b]):
         on_body = body < len(movement.pose.position)
@@ -308,8 +285,8 @@ def _inverse_masses(contacts: Contacts, movement: BodyDynamics) -> FloatArray:
     return inverse
 
 
-def _of_both(column: FloatArray, contacts: Contacts) -> FloatArray:
-    """What ``column`` (n,) says of a and of b, zero for walls, (m, 2)."""
+def _pair_values(column: FloatArray, contacts: Contacts) -> FloatArray:
+    """Values of ``column`` (n,) for a and for b, zero for walls, (m, 2)."""
     extended = np.append(column, 0.0)
     return np.column_stack([extended[contacts.body_a], extended[np.minimum(contacts.body_b, len(column))]])
 

@@ -13,27 +13,19 @@ from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose
 from rigidfluid.errors import StepRejected
 
 SAME_PLACE = 4.0
-"""A contact is the one before if its points are no farther from those carried along than this times the way."""
+"""Largest distance of a contact's points from those carried along, over the way, at which it is the same contact."""
 
 SLIDING = 0.01
-"""How much the farther of the two points counts beside the nearer one."""
+"""Weight of the distance of the farther points beside that of the nearer ones."""
 
 
 class TrackedPairs:
-    """The same pairs in the same order at any pose, by a detector that needs no mesh.
+    """Contacts of the same pairs in the same order at any pose, by a detector that needs no mesh; the pairs are those
+    within ``reach`` [length] at ``pose``.
 
-    Where a pair has several contacts, each is the one found nearest to its points as the bodies carry them along. One
-    that is not found there any more goes on at the points carried along, so that its force ends with the step and not
-    within it.
-
-    Parameters
-    ----------
-    system : System
-        Bodies, law, detector.
-    pose : Pose
-        Where the pairs are looked for.
-    reach : float
-        Up to which gap [length].
+    A contact of a pair that has several is the one found nearest to its points as the bodies carry them along. A
+    contact that is not found there any more goes on at the points carried along, so that its force ends with the step
+    and not within it.
     """
 
     def __init__(self, system: System, pose: Pose, reach: float) -> None:
@@ -42,13 +34,7 @@ class TrackedPairs:
         self._pairs = self._numbers(self.start)
 
     def at(self, pose: Pose) -> Contacts:
-        """The pairs when the bodies are at ``pose``.
-
-        Raises
-        ------
-        StepRejected
-            If another pair is in range there.
-        """
+        """Contacts of the pairs when the bodies are at ``pose``; raises StepRejected if another pair is in range."""
         moved = float(travel(self._system, self._pose, pose).max())
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
         numbers = self._numbers(found)
@@ -58,13 +44,15 @@ class TrackedPairs:
         return self._matched(found, numbers, ExtrapolatedContacts(self.start, self._pose).at(pose), SAME_PLACE * moved)
 
     def missed(self, law: ForceLaw, pose: Pose) -> float:
-        """Energy of the contacts at ``pose`` less that of those followed there: of what came, or went, unseen."""
+        """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
+        untracked."""
         if _all_different(self._pairs) and not arms(self._system).any():
             return 0.0  # two balls have one contact, and others are refused
         return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.at(pose)).sum())
 
     def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
-        """Of each contact ``carried`` along the one ``found`` at its place."""
+        """Contacts ``found`` at the places of those ``carried`` along, one for each; the carried one where none is as
+        near as ``far``."""
         from scipy.optimize import linear_sum_assignment
 
         both, row = joined([found, carried]), np.arange(len(carried)) + len(found)
@@ -81,7 +69,7 @@ class TrackedPairs:
         return select(near, interacting(self._system, near))
 
     def _numbers(self, contacts: Contacts) -> IntArray:
-        """One for each pair, in the detectors' order."""
+        """Number of each contact's pair, in the detectors' order."""
         return contacts.body_a * len(self._system.surfaces) + contacts.body_b
 
     def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
@@ -102,7 +90,7 @@ def _all_different(numbers: IntArray) -> bool:
 
 
 def _apart(first: Contacts, rows: IntArray, second: Contacts, others: IntArray) -> FloatArray:
-    """The distance of the nearer points and a little of that of the others, of each of some contacts to each of others
+    """Distance of the nearer points and a little of that of the others, of each of some contacts to each of others
     [length]: a corner goes with its body, while the point that faces it slides."""
     points = (first.point_a, second.point_a), (first.point_b, second.point_b)
     a, b = (np.linalg.norm(one[rows][:, None] - other[others][None], axis=2) for one, other in points)

@@ -1,4 +1,4 @@
-"""The work that stops an impact at the smallest gap wanted, after the film has taken its part."""
+"""Work that stops an impact at the smallest gap wanted, less the share of the film."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_t
 from rigidfluid.core.model.types import Contacts, FloatArray, Loads
 
 SLOWEST = 0.25
-"""The film is counted on to leave at least so much of the speed: impacts off the expected way meet less of it."""
+"""Least part of the speed that the film is assumed to leave: impacts off the expected way meet less of it."""
 
 WITHIN = 2.0 / 3.0
-"""What the film takes of a body that the law stops at the smallest gap, over that of a fast one, from range on."""
+"""Film's share within range of the Stokes number of a body that the law stops at the smallest gap, over its share of a
+fast one's."""
 
 
 def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArray:
-    """What a head-on impact puts into each contact: the energy that the film leaves + W (range - smallest_gap), W the
-    weight of a stack, (m,) [energy]."""
+    """Work of each contact in a head-on impact (m,): the energy that the film leaves + W (range - smallest_gap), W the
+    weight of a stack [energy]."""
     energy = impact_energy(contacts, loads) * share_left(contacts, loads, law_range, loads.smallest_gap)
     return energy + stacked_weight(contacts, loads) * (law_range - loads.smallest_gap)
 
 
 def share_left(contacts: Contacts, loads: Loads, law_range: float, smallest_gap: float) -> FloatArray:
-    """The part of the impact's energy that the resolved film leaves to the law, (m,) [1].
+    """Part of the impact's energy that the resolved film leaves to the law, (m,) [1].
 
-    (1 - A/St)², A what the film takes of the Stokes number on the way to range and WITHIN of what it takes from there
-    to the smallest gap, but at least SLOWEST²; of bodies that come down together St is that of them all. One where a
-    body is no ball, whose film may be less, and without inertia of the fluid, where contacts bear what drives the
-    bodies and no impacts.
+    The part is (1 - A/St)², A the film's share of the Stokes number on the way to range and WITHIN of its share from
+    there to the smallest gap, but at least SLOWEST²; St of bodies that come down together is that of them all. The part
+    is one where a body is no ball, whose film may be less, and without inertia of the fluid, where contacts bear the
+    forces on the bodies and no impacts.
     """
     film, share = loads.film, np.ones(len(contacts))
     if film is None or not film.inertia:

@@ -13,7 +13,7 @@ from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.mechanics.component_dynamics import MotionDynamics
 from rigidfluid.core.mechanics.dynamics import LinkWork
-from rigidfluid.core.mechanics.wrenches import flat, nothing, together
+from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
 from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.state import FreeMotions
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
@@ -122,7 +122,7 @@ class JointedDynamics:
             self._begin(time)
         springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing_rate()
         driven = time * self._linkage.spring_power(self.pose, self._time)
-        self._inner.kick(together(wrench, springs), time, at)
+        self._inner.kick(wrench_sum(wrench, springs), time, at)
         impulse, damped = self._rigid_impulse(), 0.0
         if not self._rigid.all():
             by_dampers, damped = self._damper_impulse(before, self._missing_rate() - self._here.answer @ impulse, time)

@@ -1,4 +1,4 @@
-"""What drives the relative motion in mechanisms, by all that its bodies resist it with but contacts and fluid."""
+"""Work of the actuators that prescribe the relative motion in mechanisms, contacts and fluid apart."""
 
 from __future__ import annotations
 
@@ -15,29 +15,12 @@ from rigidfluid.core.model.types import FloatArray, Kinematics, Pose, Twist
 def actuator_work(
     system: System, state: State, kinematics: Kinematics | None, pose: Pose, twist: Twist, size: float
 ) -> float:
-    """∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W their weight and what acts from outside.
+    """Work ∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W weight and applied wrenches
+    [energy].
 
-    With what g does against contacts and fluid it is the work ∫ g · (dP/dt - F) dt of what holds the bodies to their
-    relative motion: in the power of F · (G u + g) the free motions have no share that Newton–Euler's equations do not
-    balance.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and mechanisms.
-    state : State
-        At the start of the step.
-    kinematics : Kinematics or None
-        At its end.
-    pose, twist : Pose, Twist
-        Of the bodies at its end.
-    size : float
-        How long it is [time].
-
-    Returns
-    -------
-    float
-        Zero where nothing moves relatively [energy].
+    The work of g against contacts and fluid added, it is the actuators' ∫ g · (dP/dt - F) dt: in the power of F · (G u
+    + g) the free motions balance their share by Newton–Euler's equations. ``state`` is that at the start;
+    ``kinematics``, ``pose`` and ``twist`` are those of the bodies at the end; ``size`` is the step [time].
     """
     before = kinematics_now(system, state)
     if before is None or kinematics is None or system.mechanisms is None or not system.mechanisms.driven:

@@ -1,4 +1,4 @@
-"""What an ideal fluid adds to the inertia of a body that moves through it."""
+"""Added mass of bodies in an ideal fluid."""
 
 from __future__ import annotations
 
@@ -12,42 +12,30 @@ from rigidfluid.core.model.types import FloatArray
 
 
 def added_mass(body: Body) -> FloatArray:
-    """Added mass over the fluid's density: of ellipsoids π diag(b², a²) in 2D, V diag(α/(2 - α), …) in 3D.
+    """Added mass over the fluid's density in the body's frame (d, d), in unbounded fluid; walls increase it [length^d].
 
-    Of shapes of facets that of the ellipsoid of their volume with second moments in the same ratio; of all others that
-    of a ball of their volume, V/(d - 1): averaged over all directions none has less.
+    Ellipses have π diag(b², a²), ellipsoids V diag(α/(2 - α), …) (Lamb, Hydrodynamics, 6th ed. 1932, §§ 71, 114), with
 
-    α = abc ∫₀^∞ dλ / [(a² + λ) √((a² + λ)(b² + λ)(c² + λ))], and so on, of sum 2.
+        α = abc ∫₀^∞ dλ / [(a² + λ) √((a² + λ)(b² + λ)(c² + λ))], and so on, of sum 2.
 
-    Parameters
-    ----------
-    body : Body
-        The shape; a, b[, c] are its semi-axes if it has some.
-
-    Returns
-    -------
-    (d, d) array
-        In the body's frame, in unbounded fluid; walls add to that [length^d].
-
-    Notes
-    -----
-    Lamb, Hydrodynamics, 6th ed. 1932, §§ 71, 114; other shapes: Pólya, PNAS 33 (1947) 218,
-    doi:10.1073/pnas.33.7.218.
+    Shapes of facets are taken for the ellipsoid of their volume with second moments in the same ratio, all others for
+    the ball of their volume, V/(d - 1): averaged over all directions none has less (Pólya, PNAS 33 (1947) 218,
+    doi:10.1073/pnas.33.7.218).
     """
     axes = body.semi_axes
     if axes is not None:
-        return _of_ellipsoid(axes)
+        return _ellipsoid_added_mass(axes)
     if body.facets is None:
         return body.volume / (body.dimension - 1.0) * np.eye(body.dimension)
     squares, along = np.linalg.eigh(facet_moments(body.facets).second)
     like = np.sqrt(squares)
     ball = pi if body.dimension == 2 else 4.0 / 3.0 * pi
     like *= (body.volume / (ball * prod(like))) ** (1.0 / body.dimension)
-    return np.asarray(along @ _of_ellipsoid(like) @ along.T)
+    return np.asarray(along @ _ellipsoid_added_mass(like) @ along.T)
 
 
-def _of_ellipsoid(axes: FloatArray) -> FloatArray:
-    """Along its ``axes``, its semi-axes (d,)."""
+def _ellipsoid_added_mass(axes: FloatArray) -> FloatArray:
+    """Added mass over density (d, d) of an ellipsoid along its axes, of semi-axes (d,) [length^d]."""
     if len(axes) == 2:
         return pi * np.diag(axes[::-1] ** 2)
     alpha = _lamb_integrals(axes)
@@ -55,7 +43,7 @@ def _of_ellipsoid(axes: FloatArray) -> FloatArray:
 
 
 def _lamb_integrals(semi_axes: FloatArray) -> FloatArray:
-    """α, β, γ (3,) by Carlson's R_D."""
+    """Lamb's integrals α, β, γ (3,) by Carlson's R_D [1]."""
     from scipy.special import elliprd
 
     squares = semi_axes**2

@@ -11,14 +11,12 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
 CELLS_WANTED = 2.0
-"""With so many cells across a layer forces and torques differ by about a tenth at a new mesh."""
+"""Cells across a layer with which forces and torques change by about a tenth at a new mesh."""
 
 
 def boundary_layers(bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float) -> FloatArray:
-    """Thickness d/√Re of the layers on bodies, d the diameter of the ball of equal volume, Re = d v/ν, (n,) [length].
-
-    Infinite for a body at rest.
-    """
+    """Thickness d/√Re of the layers on bodies (n,), d the diameter of the ball of equal volume, Re = d v/ν, infinite
+    for a body at rest [length]."""
     shapes = {shape_key(body): body for body in bodies}
     known = {key: 2.0 * equal_volume_radius(body) for key, body in shapes.items()}
     diameter = np.array([known[shape_key(body)] for body in bodies])

@@ -1,4 +1,4 @@
-"""How easily bodies give way at their surfaces, components of mechanisms as the whole does there."""
+"""Leverage of bodies, that of the whole mechanism for its components."""
 
 from __future__ import annotations
 
@@ -13,26 +13,12 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray, Pose
 
 _TIMES = 33
-"""How often a mechanism that changes its shape is looked at."""
+"""Number of times at which a mechanism that changes its shape is sampled."""
 
 
 def leverages(bodies: Sequence[Body], carried: CarriedBodies | None, end: float) -> FloatArray:
-    """Mass of all that moves with a body times (r × n)·I⁻¹(r × n) at most on its surface, as in `most_leverage`.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The n shapes.
-    carried : CarriedBodies or None
-        Their motions, None where each moves by itself.
-    end : float
-        Until when mechanisms are looked at that change their shape [time].
-
-    Returns
-    -------
-    (n,) array
-        [1].
-    """
+    """Greatest m (r × n)·I⁻¹(r × n) on each surface (n,), with m and I of the body alone or of the motion that carries
+    it, whichever gives more [1]; mechanisms that change their shape are sampled until ``end`` [time]."""
     alone = np.array([most_leverage(body) for body in bodies])
     if carried is None:
         return alone
@@ -42,7 +28,7 @@ def leverages(bodies: Sequence[Body], carried: CarriedBodies | None, end: float)
 
 
 def _within(bodies: Sequence[Body], carried: CarriedBodies, time: float) -> FloatArray:
-    """In mechanisms at one time, zero for bodies that move by themselves (n,)."""
+    """Leverage of each body as part of its mechanism at one time (n,), zero for bodies that move by themselves [1]."""
     motions = Pose(np.zeros_like(carried.pose.position), np.zeros_like(carried.pose.orientation))
     motions.orientation[:, : motions.orientation.shape[1] - 3] = 1.0  # a quaternion's scalar; nothing in 2D
     pose, inertia = carried.poses(motions, time), carried.inertia(time)

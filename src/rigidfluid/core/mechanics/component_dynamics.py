@@ -1,4 +1,4 @@
-"""Bodies that motions carry, as contacts see them."""
+"""Dynamics of bodies that motions carry, as contacts see them."""
 
 from __future__ import annotations
 
@@ -18,25 +18,18 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 
 
 class MotionDynamics(BodyDynamics, Protocol):
-    """Motions on their own way."""
+    """Dynamics of the motions themselves."""
 
     def angular_pull(self, time: float) -> FloatArray:
-        """Greatest angular acceleration of each in so much time from now by all but contacts, (N,) [rad/time²]."""
+        """Greatest angular acceleration of each motion (N,) within ``time`` from now, contacts apart [rad/time²]."""
 
 
 class ComponentDynamics:
-    """Kicks reach the motions as Gᵀ of them; poses and twists of the bodies are evaluated from the motions'.
+    """Dynamics of n bodies on N ``motions``, changed in place: a kick acts on the motions as Gᵀ of it; poses and twists
+    of the bodies are evaluated from the motions'.
 
-    Parameters
-    ----------
-    motions : MotionDynamics
-        The N motions; changed in place.
-    mechanisms : Mechanisms
-        How they carry the n bodies.
-    time : float
-        At the start [time].
-    load : Wrench, optional
-        Constant, on the bodies, where the motions know its force alone, and not that it turns them.
+    ``time`` is that at the start [time]; ``load`` a constant wrench on the bodies of which the motions know the force,
+    but not the torque about their centres, None without.
     """
 
     def __init__(
@@ -48,7 +41,7 @@ class ComponentDynamics:
 
     @property
     def free(self) -> FreeMotions:
-        """The motions, and what contacts gave to them."""
+        """Motions, and the impulse of contacts on them."""
         return FreeMotions(self._motions.pose, self._motions.twist, self._impulse, nothing(self._motions.pose))
 
     @property
@@ -56,27 +49,27 @@ class ComponentDynamics:
         return component_twist(self.kinematics, self._motions.twist)
 
     def given_twist(self, controlled: BoolArray) -> Twist:
-        """That part of the twists that no free motion has a share in, where some (N,) are ``controlled``."""
+        """Prescribed part of the bodies' twists, n rows, where some motions (N,) are ``controlled``."""
         twist, given = self._motions.twist, controlled[:, None]
         return component_twist(self.kinematics, Twist(given * twist.velocity, given * twist.angular_velocity))
 
     @property
     def friction_loss(self) -> float:
-        """Of the motions [energy]."""
+        """Energy dissipated by the motions' drag within substeps [energy]."""
         return self._motions.friction_loss
 
     @property
     def resisted(self) -> bool:
-        """As the motions are."""
+        """Whether drag acts on the motions in kicks too."""
         return self._motions.resisted
 
     @property
     def link_work(self) -> LinkWork | None:
-        """Of the motions."""
+        """Work of joints on the motions so far, None without any."""
         return self._motions.link_work
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """e·(G M⁻¹ Gᵀ)e: of the motion as its body feels it."""
+        """Inverse mass e·(G M⁻¹ Gᵀ)e of the motion as its body feels it, (m,) [1/mass]."""
         motion = self.kinematics.carrier[body]
         turning = moment(self.kinematics.arm[body], direction)
         straight = self._motions.inverse_mass(motion, direction)
@@ -93,7 +86,7 @@ class ComponentDynamics:
         return self._motions.inverse_inertia[self.kinematics.carrier]
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """G M⁻¹ Gᵀ, bodies of one motion coupled."""
+        """Matrix G M⁻¹ Gᵀ, which couples the bodies of one motion."""
         carried = jacobian(self.kinematics)
         return sparse.csr_matrix(carried @ self._motions.inverse_masses(time) @ carried.T)
 
@@ -103,7 +96,8 @@ class ComponentDynamics:
         return other
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """Of the motion, and by its rotation: |α| |arm| + |ω|² |arm|; and what changes in the relative motion."""
+        """Greatest acceleration of each body (n,): the motion's, |α| |arm| + |ω|² |arm| by its rotation, and the change
+        of the relative velocity over the time [length/time²]."""
         now, pull = self.kinematics, self._motions.angular_pull(time)
         if self._load is not None:
             torque = free_wrench(now, self._load).torque
@@ -115,7 +109,8 @@ class ComponentDynamics:
         return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """Change the motions' twists as contacts with this ``wrench`` on the bodies, and all else that acts, do."""
+        """Change the motions' twists by contacts with this ``wrench`` on the bodies, and by all other forces, for
+        ``time``."""
         pushed, so_far = free_wrench(at or self.kinematics, wrench), self._impulse
         self._motions.kick(self._turned(pushed), time)
         self._impulse = Wrench(so_far.force + time * pushed.force, so_far.torque + time * pushed.torque)
@@ -126,7 +121,7 @@ class ComponentDynamics:
         self._place()
 
     def _turned(self, wrench: Wrench) -> Wrench:
-        """The wrench on the motions, with the torque of the constant load."""
+        """Wrench on the motions, with the torque of the constant load."""
         if self._load is None:
             return wrench
         return Wrench(wrench.force, wrench.torque + free_wrench(self.kinematics, self._load).torque)

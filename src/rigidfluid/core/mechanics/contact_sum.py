@@ -1,4 +1,4 @@
-"""Sums the forces of contacts, and their moments, over the bodies."""
+"""Sums of contact forces, and of their moments, over the bodies."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False

@@ -1,4 +1,4 @@
-"""How motions with a given relative motion go without a fluid: as gyrostats whose inertia changes with time."""
+"""Dry dynamics of motions with prescribed relative motion: gyrostats whose inertia changes with time."""
 
 from __future__ import annotations
 
@@ -17,21 +17,12 @@ _ROUNDING = 1e-14
 
 
 class DrivenDynamics(DryDynamics):
-    """As `DryDynamics`, but for the rotation of motions with relative motion in them: L = R (I Rᵀ ω + h) of given I(t),
-    h(t) is constant between kicks, and the orientation follows by the midpoint rule.
+    """Newton–Euler without a fluid for N motions with relative motion in them: L = R (I Rᵀ ω + h) of given I(t) and
+    h(t) is constant between kicks, and the orientation follows by the midpoint rule; all else is as in `DryDynamics`.
 
-    Parameters
-    ----------
-    pose, twist : Pose, Twist
-        At the start.
-    mechanisms : Mechanisms
-        Masses, I and h; h is zero where nothing moves relatively.
-    weight : (N, d) array
-        Constant [force].
-    start : float
-        Time at the start [time].
-    controlled_twist : callable
-        From a time since the start to the twist (N, d+k) of driven motions.
+    ``mechanisms`` give masses, I and h, which is zero without relative motion; ``weight`` (N, d) is constant [force];
+    ``start`` is the time at the start [time]; ``controlled_twist`` gives the twist (N, d+k) of prescribed motions from
+    a time since the start.
     """
 
     def __init__(
@@ -54,11 +45,12 @@ class DrivenDynamics(DryDynamics):
         return Twist(self._velocity.copy(), spin)
 
     def begin(self, ahead: float) -> None:
-        """Where h(t) jumps at the start, the rotation does so too."""
+        """Read h(t) no earlier than ``ahead`` after the start [time], so that a jump of h at the start changes the
+        rotation."""
         self._ahead = ahead
 
     def drift(self, time: float) -> None:
-        """Motions without relative motion turn freely."""
+        """Move straight on; turn motions with relative motion by the midpoint rule, all others freely."""
         before, driven = self.pose.orientation, self._mechanisms.driven_motions
         middle, end = (self._start + self._time + part * time for part in (0.5, 1.0))
         followed = self._turned(before, middle, time)
@@ -69,7 +61,7 @@ class DrivenDynamics(DryDynamics):
         self._inverse = np.asarray(np.linalg.inv(self._inertia), dtype=np.float64)
 
     def _turned(self, orientation: FloatArray, middle: float, time: float) -> FloatArray:
-        """The orientation that ω in mid-time, where half of the rotation is done, leads to."""
+        """Orientation (N, q) after ``time`` with ω of the ``middle`` time at the orientation half-way."""
         way = time * self._rate(orientation, middle)
         for _ in range(_MOST_ITERATIONS):
             found = time * self._rate(rotate(orientation, 0.5 * way), middle)
@@ -81,7 +73,7 @@ class DrivenDynamics(DryDynamics):
         )
 
     def _rate(self, orientation: FloatArray, time: float) -> FloatArray:
-        """ω = (R I Rᵀ)⁻¹ (L - R h)."""
+        """Angular velocity ω = (R I Rᵀ)⁻¹ (L - R h), (N, k) [rad/time]."""
         left = self._momentum - turned(orientation, self._mechanisms.spin(time))
         inverse = inverse_lab_inertia(self._mechanisms.inertia(time), orientation)
         return np.asarray(np.einsum("nij,nj->ni", inverse, left))

@@ -1,4 +1,4 @@
-"""How bodies move between contacts, and how they do freely, without a fluid."""
+"""Dynamics of bodies between contacts, and without a fluid in particular."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 
 @dataclass(frozen=True, slots=True)
 class LinkWork:
-    """Sums over what joints did: the ``impulse`` (c,) of each link [force·time | force·length·time], the ``pushed``
-    (N, d+k) of all of them and of springs, what they ``driven`` into the motions by all that moves as it is told, and
-    ``damped`` away [energy]."""
+    """Sums over the work of joints: the ``impulse`` (c,) of each link [force·time | force·length·time], the ``pushed``
+    (N, d+k) impulse of all links and springs on the motions, the energies ``driven`` into the motions by prescribed
+    ones and ``damped`` away [energy]."""
 
     impulse: FloatArray
     pushed: FloatArray
@@ -31,75 +31,76 @@ class LinkWork:
     damped: float
 
     def load(self, time: float) -> LinkLoad:
-        """The mean over so long."""
+        """Mean loads over ``time``."""
         return LinkLoad(self.impulse / time, self.pushed / time)
 
 
 class BodyDynamics(Protocol):
-    """Bodies in motion; kicked and drifting in turn they follow the velocity Verlet scheme."""
+    """Dynamics of n bodies; kicked and drifting in turn they follow the velocity Verlet scheme."""
 
     @property
     def pose(self) -> Pose:
-        """Where they are now."""
+        """Present pose."""
 
     @property
     def free(self) -> FreeMotions | None:
-        """What carries them, None where each moves by itself."""
+        """Motions that carry the bodies, None where each moves by itself."""
 
     @property
     def kinematics(self) -> Kinematics | None:
-        """How motions carry them now, None where each moves by itself."""
+        """Present G and g of the motions that carry the bodies, None where each moves by itself."""
 
     @property
     def twist(self) -> Twist:
-        """How they move now."""
+        """Present twist."""
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for bodies that are driven [1/mass]."""
+        """Inverse mass e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for prescribed bodies [1/mass]."""
 
     @property
     def mobility(self) -> FloatArray:
-        """M⁻¹ of straight motion of each body by itself (n, d, d), zero for bodies that are driven [1/mass]."""
+        """Inverse mass M⁻¹ of each body alone in translation (n, d, d), zero for prescribed bodies [1/mass]."""
 
     @property
     def inverse_inertia(self) -> FloatArray:
-        """(R I Rᵀ)⁻¹ (n, k, k), zero for bodies that are driven [1/(mass·length²)]."""
+        """Inverse inertia (R I Rᵀ)⁻¹ (n, k, k), zero for prescribed bodies [1/(mass·length²)]."""
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for bodies that are driven: times a wrench that lasts for
-        ``time``, and the time, it is what that adds to the velocities [1/mass | 1/(mass·length²)]."""
+        """Matrix M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for prescribed bodies: M⁻¹ W ``time`` is the change of
+        the velocities by a wrench W that lasts for ``time`` [1/mass | 1/(mass·length²)]."""
 
     @property
     def friction_loss(self) -> float:
-        """What a fluid's friction took that its own solutions do not see [energy]."""
+        """Energy dissipated by drag within substeps, unresolved by the fluid solves [energy]."""
 
     @property
     def resisted(self) -> bool:
-        """Whether a fluid's friction acts in kicks too: a force then works along the way of drifts alone."""
+        """Whether drag acts in kicks too: the work of a force is then its product with the displacement in drifts
+        alone."""
 
     @property
     def link_work(self) -> LinkWork | None:
-        """What joints did to them so far, None without any."""
+        """Work of joints so far, None without any."""
 
     def copied(self) -> Self:
-        """The same motion, to be tried out."""
+        """Copy of the motion, for a trial."""
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """Greatest acceleration of each body in so much time from now by all but contacts, (n,) [length/time²]."""
+        """Greatest acceleration of each body (n,) within ``time`` from now, contacts apart [length/time²]."""
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """Change the twist as contacts with this ``wrench``, and all else that acts, do in ``time``.
+        """Change the twist by contacts with this ``wrench``, and by all other forces, for ``time``.
 
-        ``at``: how motions carried the bodies where the wrench is of, if that is not here.
+        ``at``: kinematics at the pose that the wrench belongs to, None for the present one.
         """
 
     def drift(self, time: float) -> None:
-        """Change the pose as the twist does in ``time``."""
+        """Change the pose with the present twist for ``time``."""
 
 
 class Turning(NamedTuple):
-    """A constant ``torque`` (n, k) on bodies [force·length], whose surfaces reach ``arm`` (n,) far from their centres
-    [length]."""
+    """Constant ``torque`` (n, k) on bodies [force·length], and the distance ``arm`` (n,) of their farthest surface
+    points from their centres [length]."""
 
     torque: FloatArray
     arm: FloatArray
@@ -108,22 +109,9 @@ class Turning(NamedTuple):
 class DryDynamics:
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
-    Parameters
-    ----------
-    pose, twist : Pose, Twist
-        At the start.
-    mass : (n,) array
-        Masses [mass].
-    inertia : (n, k, k) array
-        In each body's frame [mass·length²].
-    weight : (n, d) array
-        W, what else acts, constant [force].
-    controlled : (n,) array
-        Where the twist is given.
-    controlled_twist : callable
-        From a time since the start to the twist (n, d+k) of driven bodies.
-    turning : Turning, optional
-        Torques besides the weight.
+    ``mass`` (n,) [mass]; ``inertia`` (n, k, k) in each body's frame [mass·length²]; ``weight`` W (n, d), all constant
+    forces [force]; ``controlled`` (n,), whether the twist is prescribed, by ``controlled_twist`` from a time since the
+    start to (n, d+k); ``turning``: constant torques, None without.
     """
 
     free: FreeMotions | None = None
@@ -159,7 +147,7 @@ class DryDynamics:
         return Twist(self._velocity.copy(), np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """1/m, whatever the direction."""
+        """Inverse mass 1/m, whatever the direction."""
         return np.asarray(self._free[body, 0] / self._mass[body])
 
     @property
@@ -171,18 +159,18 @@ class DryDynamics:
         return self._inverse_inertia() * self._free[:, :, None]
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """1/m and (R I Rᵀ)⁻¹, whatever the time."""
+        """Matrix of 1/m and (R I Rᵀ)⁻¹, whatever the time."""
         return block_diagonal(self.mobility, self.inverse_inertia)
 
     def copied(self) -> Self:
-        """With momenta of its own, which kicks change in place."""
+        """Copy with momenta of its own, which kicks change in place."""
         other = copy(self)
         other._velocity, other._momentum = self._velocity.copy(), self._momentum.copy()
         return other
 
     def max_acceleration(self, time: float) -> FloatArray:
-        """|W|/m, of turned bodies that of their surface, and of driven bodies the greatest change of velocity over the
-        time that it is in."""
+        """Greatest acceleration (n,): |W|/m, with a constant torque that of the farthest surface point, and of
+        prescribed bodies the greatest change of velocity within the time, over the time [length/time²]."""
         fall = np.linalg.norm(self._weight, axis=1) / self._mass
         if self._turning is not None:
             lightest = np.linalg.eigvalsh(self._inverse)[:, -1]
@@ -195,17 +183,17 @@ class DryDynamics:
         return np.asarray(np.where(self._free[:, 0], fall, change / time))
 
     def angular_pull(self, time: float) -> FloatArray:
-        """None: what turns freely keeps its angular momentum."""
+        """Zero (n,): a body that turns freely keeps its angular momentum."""
         return np.zeros(len(self._mass))
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """Change momenta by F + W and T for so long."""
+        """Change momenta by F + W and T for ``time``."""
         state = self._velocity, self._momentum
         torque = wrench.torque if self._turning is None else wrench.torque + self._turning.torque
         _kick(*state, wrench.force, torque, self._weight, self._mass, self._free[:, 0], time)
 
     def begin(self, ahead: float) -> None:
-        """Nothing is given of these motions that jumps."""
+        """No-op: these motions have no prescribed velocity jump."""
 
     def push(self, impulse: FloatArray) -> None:
         """Change momenta by impulses (n, d+k) at once."""
@@ -214,7 +202,7 @@ class DryDynamics:
         self._momentum = self._momentum + self._free * impulse[:, d:]
 
     def drift(self, time: float) -> None:
-        """Move straight on and turn freely; driven bodies with their twist in mid-time."""
+        """Move straight on and turn freely; move prescribed bodies with their twist in mid-time."""
         if self._driven:
             self._drive(self._time + 0.5 * time)
         orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)
@@ -236,7 +224,7 @@ class DryDynamics:
 
 
 def block_diagonal(linear: FloatArray, angular: FloatArray) -> sparse.csr_matrix:
-    """The matrix of all velocities, body by body, of blocks (n, d, d) and (n, k, k)."""
+    """Matrix of all velocities, body by body, with blocks (n, d, d) and (n, k, k)."""
     count, d, k = len(linear), linear.shape[1], angular.shape[1]
     rows, columns, values = [], [], []
     for first, block in ((0, linear), (d, angular)):
@@ -251,7 +239,7 @@ def block_diagonal(linear: FloatArray, angular: FloatArray) -> sparse.csr_matrix
 
 @njit(cache=True)
 def _kick(velocity, momentum, force, torque, weight, mass, free, time):  # type: ignore[no-untyped-def]
-    """In place, as fresh arrays of many bodies would cost more than the sums."""
+    """Kick in place, as fresh arrays of many bodies would cost more than the sums."""
     for body in range(len(velocity)):
         if free[body]:
             share = time / mass[body]

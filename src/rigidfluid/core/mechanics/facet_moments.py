@@ -1,4 +1,4 @@
-"""Volume, centre of mass and second moments of what a closed surface of facets encloses, exact to rounding."""
+"""Volume, centre of mass and second moments of the inside of a closed surface of facets, exact to rounding."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from rigidfluid.core.model.types import FloatArray
 
 
 class FacetMoments(NamedTuple):
-    """``volume`` [length^d], negative if the normals point inwards, ``centre`` (d,) of mass [length], ``second`` (d, d)
-    moments ∫ r rᵀ/volume about it [length²]."""
+    """Moments of the inside: ``volume`` [length^d], negative if the normals point inwards, ``centre`` (d,) of mass
+    [length], ``second`` (d, d) moments ∫ r rᵀ/volume about it [length²]."""
 
     volume: float
     centre: FloatArray
@@ -21,20 +21,11 @@ class FacetMoments(NamedTuple):
 
 
 def facet_moments(facets: Facets) -> FacetMoments:
-    """∫ 1, ∫ x and ∫ x xᵀ, each as a sum over the simplices (o, facet) of any point o, with their signs.
+    """Moments ∫ 1, ∫ x and ∫ x xᵀ of closed facets of nonzero volume: sums over the simplices (o, facet) of any point
+    o, with their signs.
 
-    Of a simplex of volume V, vertices x_i and one more at o = 0, with s = Σ x_i: ∫ x = V s/(d + 1) and
-    ∫ x xᵀ = V (s sᵀ + Σ x_i x_iᵀ)/((d + 1)(d + 2)).
-
-    Parameters
-    ----------
-    facets : Facets
-        Closed, of any volume but zero.
-
-    Returns
-    -------
-    FacetMoments
-        Of the inside.
+    A simplex of volume V with vertices x_i and one more at o = 0 has ∫ x = V s/(d + 1) and ∫ x xᵀ = V (s sᵀ + Σ x_i
+    x_iᵀ)/((d + 1)(d + 2)), s = Σ x_i.
     """
     dimension = facets.points.shape[1]
     origin = facets.points[np.unique(facets.vertices)].mean(axis=0)
@@ -48,6 +39,6 @@ def facet_moments(facets: Facets) -> FacetMoments:
 
 
 def unit_inertia(second: FloatArray) -> FloatArray:
-    """tr(C) I - C (3, 3) of second moments C, their sum (1, 1) in 2D [length²]."""
+    """Inertia over mass, tr(C) I - C (3, 3) of second moments C, their sum (1, 1) in 2D [length²]."""
     trace = np.trace(second)
     return np.full((1, 1), trace) if len(second) == 2 else np.asarray(trace * np.eye(3) - second)

@@ -1,4 +1,4 @@
-"""What a fluid backend is asked for: one step, with the bodies where their contacts took them."""
+"""Step of the fluid backend: time scheme, mass matrix and load, with the bodies at their poses after contacts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.motions import applied_wrench, weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
-from rigidfluid.core.mechanics.wrenches import flat, together, wrench_of
+from rigidfluid.core.mechanics.wrenches import flat, wrench_of, wrench_sum
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import Mechanisms, System
 from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step, Twist, Wrench
@@ -19,7 +19,7 @@ from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step
 def step_to(
     system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
 ) -> Step:
-    """The step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
+    """Step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
     derivative = derivative_weights(size, state.past_step)
     mechanisms = system.mechanisms
     kinematics = None if mechanisms is None else mechanisms.kinematics(pose, time)
@@ -43,7 +43,7 @@ def step_to(
 
 
 class _Moment(NamedTuple):
-    """The motions at an earlier time."""
+    """Motions at an earlier time."""
 
     time: float
     pose: Pose
@@ -60,22 +60,22 @@ def _newton_euler(
     derivative: FloatArray,
     kinematics: Kinematics | None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Mass matrix and load of the motions, of all that they carry."""
+    """Mass matrix (N, d+k, d+k) and load (N, d+k) of the motions, with all bodies that they carry."""
     past = [_Moment(time - size, state.free_pose, state.free_twist)]
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
     applied = applied_wrench(system, state, kinematics)
-    pushed = together(impulse, Wrench(size * applied.force, size * applied.torque))
+    pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
     if system.linkage is not None and system.backend.needs_mesh:
-        pushed = together(pushed, system.linkage.spring_wrench(pose, time))
+        pushed = wrench_sum(pushed, system.linkage.spring_wrench(pose, time))
     mechanisms = system.mechanisms
     if mechanisms is None:
         wrench = Wrench(pushed.force + system.weight, pushed.torque)
         return newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
     weight = weights(system, kinematics)
-    wrench = together(pushed, weight)
+    wrench = wrench_sum(pushed, weight)
     inertia = mechanisms.inertia(time)
     mass_matrix, load = newton_euler(mechanisms.mass, inertia, pose, poses, twists, derivative, wrench)
     if mechanisms.driven:
@@ -84,14 +84,14 @@ def _newton_euler(
 
 
 def _latest_push(system: System, state: State) -> Wrench:
-    """What pushed the motions in the latest step: contacts, wrenches from outside, and without a fluid joints, which go
-    the same way."""
+    """Mean wrench on the motions in the latest step: contacts, applied wrenches, and without a fluid joints, which
+    enter the time scheme in the same way."""
     pushed = state.free_contact
     if state.past is not None and state.past.applied is not None:
-        pushed = together(pushed, state.past.applied)
+        pushed = wrench_sum(pushed, state.past.applied)
     if state.link is None or system.backend.needs_mesh:
         return pushed
-    return together(pushed, wrench_of(state.link.wrench, system.dimension))
+    return wrench_sum(pushed, wrench_of(state.link.wrench, system.dimension))
 
 
 def _relative_momentum_rate(
@@ -102,7 +102,7 @@ def _relative_momentum_rate(
     past: Sequence[_Moment],
     derivative: FloatArray,
 ) -> FloatArray:
-    """d/dt of R h, and of R (I - I_new) Rᵀ ω: what a relative motion adds to the angular momentum (N, k)."""
+    """Rate d/dt of R h and of R (I - I_new) Rᵀ ω: angular momentum (N, k) by relative motion [force·length]."""
     rate = derivative[0] * turned(pose.orientation, mechanisms.spin(time))
     for weight, (then, there, twist) in zip(derivative[1:], past, strict=False):
         change = lab_inertia(mechanisms.inertia(then) - inertia, there.orientation)
@@ -112,9 +112,9 @@ def _relative_momentum_rate(
 
 
 def _load_scale(system: System, state: State, impulse: Wrench, derivative: FloatArray) -> float:
-    """A hundredth of weight, contacts and forces from outside, which cancel each other at rest [force].
+    """Hundredth of weight, contacts and applied forces, which cancel each other at rest [force].
 
-    What remains of them is rounding, and no residual can be made small beside it.
+    Their sum is rounding there, and no residual can be made small relative to it.
     """
     pushed = derivative[0] * np.linalg.norm(impulse.force[~system.controlled_motions])
     applied = 0.0 if state.applied is None else np.linalg.norm(state.applied.force)
@@ -122,26 +122,12 @@ def _load_scale(system: System, state: State, impulse: Wrench, derivative: Float
 
 
 def mean_push(impulse: Wrench, latest: Wrench, past_step: float | None, derivative: FloatArray) -> Wrench:
-    """The contacts' wrench as the time scheme sees it, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
+    """Wrench of the contacts in the time scheme, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
 
-    It is what differencing momentum less the impulses received so far comes to: an impact shorter than the step changes
-    the momentum by all of it at once, and not by the two thirds that BDF2 would take for a force.
-
-    Parameters
-    ----------
-    impulse : Wrench
-        Jⁿ⁺¹ [force·time | force·length·time].
-    latest : Wrench
-        The mean wrench in the step before.
-    past_step : float or None
-        How long that was [time].
-    derivative : (3,) array
-        d₀, d₁, d₂ [1/time].
-
-    Returns
-    -------
-    Wrench
-        As many rows as both.
+    The scheme differences momentum less the impulses received so far: an impact shorter than the step changes the
+    momentum by all of it at once, and not by the two thirds that BDF2 would take for a force. ``impulse`` is Jⁿ⁺¹
+    [force·time | force·length·time]; ``latest`` the mean wrench in the step before, of length ``past_step`` [time],
+    None at the start; ``derivative`` d₀, d₁, d₂ (3,) [1/time].
     """
     before = past_step or 0.0
     return Wrench(

@@ -1,4 +1,4 @@
-"""Where a body's own frame lies in the world: x = c + R ξ, R from the pose's orientation."""
+"""Transformations between a body's own frame and the world: x = c + R ξ, R from the pose's orientation."""
 
 from __future__ import annotations
 
@@ -8,43 +8,14 @@ from rigidfluid.core.model.types import FloatArray, Pose
 
 
 def to_body_frame(pose: Pose, body: int, points: FloatArray) -> FloatArray:
-    """World points in the frame of one body, ξ = Rᵀ(x - c).
-
-    Parameters
-    ----------
-    pose : Pose
-        Where the bodies are.
-    body : int
-        Number of the body.
-    points : (N, d) array
-        World coordinates [length].
-
-    Returns
-    -------
-    (N, d) array
-        Coordinates in the body's frame [length].
-    """
+    """Coordinates ξ = Rᵀ(x - c) in the frame of one body (N, d), of world points (N, d) [length]."""
     local: FloatArray = (points - pose.position[body]) @ rotation_matrices(pose.orientation[body : body + 1])[0]
     return local
 
 
 def to_world(pose: Pose, body: int, points: FloatArray) -> FloatArray:
-    """Points of one body's frame in the world, x = c + R ξ; the inverse of :func:`to_body_frame`.
-
-    Parameters
-    ----------
-    pose : Pose
-        Where the bodies are.
-    body : int
-        Number of the body.
-    points : (N, d) array
-        Coordinates in the body's frame [length].
-
-    Returns
-    -------
-    (N, d) array
-        World coordinates [length].
-    """
+    """World coordinates x = c + R ξ (N, d), of points (N, d) in one body's frame; the inverse of :func:`to_body_frame`
+    [length]."""
     world: FloatArray = pose.position[body] + points @ rotation_matrices(pose.orientation[body : body + 1])[0].T
     return world
 

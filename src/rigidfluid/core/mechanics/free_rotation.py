@@ -1,4 +1,4 @@
-"""Rotation of rigid bodies that nothing turns, with angular momentum and energy kept to rounding."""
+"""Torque-free rotation of rigid bodies, with angular momentum and energy kept to rounding."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
@@ -15,7 +15,7 @@ LARGEST_TURN = 0.1
 """Angle turned in one application of the fourth-order scheme [rad]: a period is then right to 1e-8."""
 
 MOST_TURNED = 1000.0
-"""More in one call is refused [rad]: the time that it takes grows with the turns."""
+"""Largest rotation allowed in one call [rad]: the computing time grows with the turns."""
 
 _SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 _STAGES = np.array([_SUZUKI, _SUZUKI, 1.0 - 4.0 * _SUZUKI, _SUZUKI, _SUZUKI])
@@ -24,37 +24,14 @@ _STAGES = np.array([_SUZUKI, _SUZUKI, 1.0 - 4.0 * _SUZUKI, _SUZUKI, _SUZUKI])
 def rotate_freely(
     orientation: FloatArray, angular_momentum: FloatArray, inertia: FloatArray, time: float
 ) -> FloatArray:
-    """Orientation after a torque-free rotation, dR/dt = [ω]× R with R I Rᵀ ω = L constant.
+    """Orientation (n, q) after a torque-free rotation for ``time``, dR/dt = [ω]× R with R I Rᵀ ω = L constant [rad |
+    1]; raises StepRejected if a body that is not round turns by too many turns.
 
-    In 3D the midpoint rule in the body's frame, l' - l = h m × I⁻¹m with m = (l + l')/2, is a rotation by the Cayley
-    transform of h I⁻¹m; so the angular momentum and the energy are kept exactly. Suzuki's composition of five such
-    maps is of fourth order.
-
-    Parameters
-    ----------
-    orientation : (n, q) array
-        Orientation before [rad | 1].
-    angular_momentum : (n, k) array
-        L in the lab frame [mass·length²/time].
-    inertia : (n, k, k) array
-        I in each body's frame [mass·length²].
-    time : float
-        How long they turn [time].
-
-    Returns
-    -------
-    (n, q) array
-        Orientation after [rad | 1].
-
-    Raises
-    ------
-    StepRejected
-        If a body that is not round turns by many turns.
-
-    Notes
-    -----
-    Suzuki 1990, DOI 10.1016/0375-9601(90)90962-N; the midpoint rule: Austin, Krishnaprasad & Wang 1993,
-    DOI 10.1006/jcph.1993.1128.
+    The midpoint rule in the body's frame in 3D, l' - l = h m × I⁻¹m with m = (l + l')/2, is a rotation by the Cayley
+    transform of h I⁻¹m; so the angular momentum and the energy are kept exactly (Austin, Krishnaprasad & Wang 1993, DOI
+    10.1006/jcph.1993.1128). Suzuki's composition of five such maps is of fourth order (1990, DOI
+    10.1016/0375-9601(90)90962-N). L (n, k) is in the lab frame [mass·length²/time], ``inertia`` I (n, k, k) in each
+    body's frame [mass·length²].
     """
     if orientation.shape[1] == 1:
         return orientation + time * angular_momentum / inertia[:, 0]
@@ -72,7 +49,8 @@ def rotate_freely(
 
 @njit(cache=True)
 def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages, most_turned):
-    """Turn all in place, but stop at a body that may turn by too much; that one, or the last, and how far it turns."""
+    """Turn all in place, but stop at a body that may turn by too much; return that one, or the last, and its angle
+    [rad]."""
     body, turned = 0, 0.0
     for body in range(len(orientation)):
         if _is_round(inertia, body):
@@ -145,7 +123,7 @@ def _midpoint(quaternion, momentum, inverse, step):
 
 @njit(cache=True)
 def _to_body(quaternion, vector):
-    """Rᵀ v."""
+    """Vector of the lab frame in the body's, Rᵀ v."""
     w, axis = quaternion[0], quaternion[1:]
     twice = 2.0 * _cross(vector, axis)
     return vector + w * twice + _cross(twice, axis)
@@ -158,5 +136,5 @@ def _cross(a, b):
 
 @njit(cache=True)
 def _matrix(a):
-    """[a]×, so that [a]× b = a × b."""
+    """Matrix [a]× of the cross product, [a]× b = a × b."""
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])

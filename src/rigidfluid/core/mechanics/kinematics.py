@@ -1,6 +1,6 @@
-"""From the motions that carry bodies to the bodies, and back: component twist = G u + g, free wrench = Gᵀ wrench.
+"""Map from the motions that carry bodies to the bodies, and back: component twist = G u + g, free wrench = Gᵀ wrench.
 
-Without kinematics each body moves by itself: G = 1, g = 0, and what comes is what goes.
+Bodies without kinematics move each by itself: G = 1, g = 0; arguments are returned unchanged.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def component_twist(kinematics: Kinematics | None, motion: Twist) -> Twist:
 
 
 def given_twist(step: Step) -> tuple[Twist, BoolArray]:
-    """Of the bodies' twists what no free motion has a share in, n rows, and where there is any, (n,)."""
+    """Prescribed part of the body twists, n rows, and whether a body has one (n,)."""
     kinematics, d = step.kinematics, step.pose.position.shape[1]
     held = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
     given = component_twist(kinematics, Twist(held[:, :d], held[:, d:]))
@@ -45,7 +45,7 @@ def given_twist(step: Step) -> tuple[Twist, BoolArray]:
 
 
 def motion_twist(kinematics: Kinematics | None, twist: FloatArray) -> FloatArray:
-    """The motions (N, d+k) that give the bodies this ``twist`` (n, d+k), read from the first body of each."""
+    """Twists (N, d+k) of the motions that give the bodies this ``twist`` (n, d+k), read from the first body of each."""
     if kinematics is None:
         return twist
     d, first = kinematics.arm.shape[1], np.unique(kinematics.carrier, return_index=True)[1]
@@ -55,7 +55,7 @@ def motion_twist(kinematics: Kinematics | None, twist: FloatArray) -> FloatArray
 
 
 def free_wrench(kinematics: Kinematics | None, wrench: Wrench) -> Wrench:
-    """What wrenches on the bodies do to the motions, F = Σ Fᵢ, T = Σ (armᵢ × Fᵢ + Tᵢ).
+    """Wrench on the motions by wrenches on the bodies, F = Σ Fᵢ, T = Σ (armᵢ × Fᵢ + Tᵢ).
 
     Parameters
     ----------
@@ -76,25 +76,14 @@ def free_wrench(kinematics: Kinematics | None, wrench: Wrench) -> Wrench:
 
 
 def carried_sum(carrier: IntArray, rows: FloatArray, motions: int) -> FloatArray:
-    """Of each motion the sum of ``rows`` (n, …) of what it carries, (N, …)."""
+    """Sum of ``rows`` (n, …) over the bodies that each motion carries, (N, …)."""
     total = np.zeros((motions, *rows.shape[1:]))
     np.add.at(total, carrier, rows)
     return total
 
 
 def jacobian(kinematics: Kinematics) -> sparse.csr_matrix:
-    """G as a matrix.
-
-    Parameters
-    ----------
-    kinematics : Kinematics
-        Of n bodies on N motions.
-
-    Returns
-    -------
-    (n·(d+k), N·(d+k)) sparse matrix
-        From velocities of the motions to those of the bodies.
-    """
+    """Matrix G (n·(d+k), N·(d+k)) from velocities of the motions to those of the bodies."""
     count, d = kinematics.arm.shape
     width = kinematics.given.shape[1]
     block = np.tile(np.eye(width), (count, 1, 1))
@@ -106,6 +95,6 @@ def jacobian(kinematics: Kinematics) -> sparse.csr_matrix:
 
 
 def levers(arm: FloatArray) -> FloatArray:
-    """X (n, d, k) with X ω = ω × arm, for arms (n, d) [length]."""
+    """Lever matrices X (n, d, k) with X ω = ω × arm, for arms (n, d) [length]."""
     k = 1 if arm.shape[1] == 2 else 3
     return np.stack([cross(np.broadcast_to(axis, (len(arm), k)), arm) for axis in np.eye(k)], axis=-1)

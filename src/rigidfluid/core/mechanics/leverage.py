@@ -1,4 +1,4 @@
-"""How much more easily a body gives way at its surface than at its centre of mass."""
+"""Leverage of a body: its inverse mass at a surface point over that at the centre of mass, less one."""
 
 from __future__ import annotations
 
@@ -8,23 +8,15 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 
 ELLIPSOIDS = 5.0
-"""No homogeneous ellipsoid has more, however slender."""
+"""Bound of the leverage of homogeneous ellipsoids, however slender."""
 
 _SAMPLES = 1000
 
 
 def most_leverage(body: Body) -> float:
-    """Mass times (r × n)·I⁻¹(r × n) at most, for points r of the surface and any unit n, as at corners; 0 for balls.
+    """Greatest m (r × n)·I⁻¹(r × n) for points r of the surface and any unit n, as at corners; 0 for balls [1].
 
-    Parameters
-    ----------
-    body : Body
-        The shape.
-
-    Returns
-    -------
-    float
-        1/(effective mass) at a point of the surface is at most 1 + this over the mass [1].
+    The inverse effective mass at a surface point is at most 1 + this over the mass.
     """
     if body.radius is not None:
         return 0.0
@@ -36,8 +28,8 @@ def most_leverage(body: Body) -> float:
 
 
 def surface_points(body: Body) -> FloatArray:
-    """Points (N, d) spread over the surface, as far out as it reaches; of facets their vertices, since nothing between
-    them gives way more easily [length]."""
+    """Points (N, d) spread over the surface, as far out as it reaches; the vertices of facets, as leverage has its
+    maximum at one of them [length]."""
     if body.facets is not None:
         return body.facets.points
     points = body.sample_surface(_SAMPLES)
@@ -46,20 +38,8 @@ def surface_points(body: Body) -> FloatArray:
 
 
 def leverage_at(points: FloatArray, unit_inertia: FloatArray) -> float:
-    """The most at any of some points.
-
-    Parameters
-    ----------
-    points : (N, d) array
-        From the centre of mass [length].
-    unit_inertia : (k, k) array
-        Of what turns, in the same frame [length²].
-
-    Returns
-    -------
-    float
-        As in `most_leverage` [1].
-    """
+    """Greatest leverage at ``points`` (N, d) from the centre of mass [length], for the inertia over mass
+    ``unit_inertia`` (k, k) in the same frame [length²]; see `most_leverage` [1]."""
     if points.shape[1] == 2:
         return float(np.max(np.sum(points**2, axis=1)) / unit_inertia[0, 0])
     across = np.cross(points[:, None, :], np.eye(3)[None])  # rows r × e

@@ -1,4 +1,5 @@
-"""The motions of a system with mechanisms: where they carry their bodies, and what they have to carry."""
+"""Motions of a system with mechanisms: poses and kinematics of the bodies they carry, and the mass and inertia of
+these."""
 
 from __future__ import annotations
 
@@ -21,20 +22,11 @@ class Relative(NamedTuple):
 
 
 class CarriedBodies:
-    """Single bodies, each its own motion, and after them the mechanisms with their components.
+    """Single bodies, each its own motion, and after them the ``mechanisms`` with their components.
 
-    Parameters
-    ----------
-    mechanisms : mapping of str to Mechanism
-        By name, one for each motion after those of single bodies.
-    mass : (n,) array
-        Of single bodies and of all components in order [mass].
-    inertia : (n, k, k) array
-        In each body's frame [mass·length²].
-    controlled : (n,) array
-        Which single bodies have a given motion.
-    pose, twist : Pose, Twist
-        Of the N motions at the start.
+    ``mass`` (n,) [mass] and ``inertia`` (n, k, k) in each body's frame [mass·length²] are those of single bodies and of
+    all components in order; ``controlled`` (n,): whether a single body's motion is prescribed; ``pose`` and ``twist``:
+    the N motions at the start.
     """
 
     def __init__(
@@ -60,46 +52,47 @@ class CarriedBodies:
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
 
     def poses(self, motions: Pose, time: float) -> Pose:
-        """c + R s and R Q of each body."""
+        """Pose c + R s and R Q of each body."""
         relative, carrier = self._relative(time).pose, self.carrier
         arm = _turned(motions.orientation[carrier], relative.position)
         orientation = compose(motions.orientation[carrier], relative.orientation)
         return Pose(motions.position[carrier] + arm, orientation)
 
     def kinematics(self, motions: Pose, time: float) -> Kinematics:
-        """Arms R s, and what relative motion adds, R ds/dt and R ν."""
+        """Arms R s, and the relative velocities R ds/dt and R ν."""
         relative, orientation = self._relative(time), motions.orientation[self.carrier]
         velocity, spin = relative.twist.velocity, relative.twist.angular_velocity
         given = np.concatenate([_turned(orientation, velocity), turned(orientation, spin)], axis=1)
         return Kinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
 
     def inertia(self, time: float) -> FloatArray:
-        """Σ Q I Qᵀ + m (|s|² - s sᵀ) of what each motion carries."""
+        """Inertia Σ Q I Qᵀ + m (|s|² - s sᵀ) of all that each motion carries, (N, k, k) [mass·length²]."""
         pose = self._relative(time).pose
         own = lab_inertia(self._own_inertia, pose.orientation)
         return self._sum(own + self._own_mass[:, None, None] * _unit_inertia(pose.position))
 
     def spin(self, time: float) -> FloatArray:
-        """Σ Q I Qᵀ ν + m s × ds/dt of what each motion carries."""
+        """Relative angular momentum Σ Q I Qᵀ ν + m s × ds/dt of all that each motion carries, (N, k)
+        [mass·length²/time]."""
         pose, twist = self._relative(time)
         own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
         return self._sum(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
 
     def next_corner(self, time: float) -> float:
-        """Of all mechanisms the first."""
+        """First time after this at which the rate of a mechanism jumps [time]."""
         return min(mechanism.next_corner(time) for mechanism in self._mechanisms)
 
     def _sum(self, rows: FloatArray) -> FloatArray:
         return carried_sum(self.carrier, rows, len(self.mass))
 
     def _relative(self, time: float) -> Relative:
-        """What was asked for last is kept, since a moment is asked about several times; nothing else moves in time."""
+        """Relative poses and rates at a ``time``; the latest are kept, since one time is asked for repeatedly."""
         if self.driven and time != self._latest[0]:
             self._latest = time, self._placed(time)
         return self._latest[1]
 
     def _placed(self, time: float) -> Relative:
-        """Of all bodies; single ones are their frames."""
+        """Relative poses and rates of all bodies; single ones rest in their own frames."""
         dimension, k = self.pose.position.shape[1], self._own_inertia.shape[1]
         count, single = len(self.carrier), len(self.mass) - len(self._mechanisms)
         position, velocity, spin = np.zeros((count, dimension)), np.zeros((count, dimension)), np.zeros((count, k))
@@ -115,12 +108,12 @@ class CarriedBodies:
 
 
 def _turned(orientation: FloatArray, vectors: FloatArray) -> FloatArray:
-    """R v, (n, d)."""
+    """Vectors (n, d) of the motions' frames in the lab frame, R v."""
     return np.asarray(np.einsum("nij,nj->ni", rotation_matrices(orientation), vectors))
 
 
 def _unit_inertia(arm: FloatArray) -> FloatArray:
-    """|r|² - r rᵀ of points, (n, k, k), |r|² in 2D [length²]."""
+    """Inertia over mass |r|² - r rᵀ of points, (n, k, k), |r|² in 2D [length²]."""
     square = np.sum(arm**2, axis=1)[:, None, None]
     if arm.shape[1] == 2:
         return np.asarray(square)

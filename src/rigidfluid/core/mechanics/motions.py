@@ -1,4 +1,4 @@
-"""The motions that carry a system's bodies: what they weigh, how easily they give way, where they take the bodies."""
+"""Motions that carry a system's bodies: their loads, accelerations, inverse masses and extents."""
 
 from __future__ import annotations
 
@@ -6,20 +6,19 @@ import numpy as np
 
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench, levers
 from rigidfluid.core.mechanics.rigid import cross, inverse_lab_inertia, lab_inertia, rotation_matrices
-from rigidfluid.core.mechanics.wrenches import flat, nothing, together, wrench_of
+from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of, wrench_sum
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
 
 
 def weights(system: System, kinematics: Kinematics | None) -> Wrench:
-    """Of all that each motion carries: the sum, and its torque about the centre of mass, N rows."""
+    """Weight of all that each motion carries, and its torque about the centre of mass, N rows."""
     return free_wrench(kinematics, Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))
 
 
 def applied_wrench(system: System, state: State, kinematics: Kinematics | None) -> Wrench:
-    """Mean wrench from outside on the motions in the step from ``state`` to where they carry the bodies by
-    ``kinematics``, N rows."""
+    """Mean applied wrench on the motions in the step from ``state`` to ``kinematics`` at its end, N rows."""
     if state.applied is None:
         return nothing(state.free_pose)
     if kinematics is None:
@@ -29,13 +28,13 @@ def applied_wrench(system: System, state: State, kinematics: Kinematics | None) 
 
 
 def outer_load(system: System, state: State) -> Wrench:
-    """Weight and wrenches from outside, of all that each motion carries, N rows."""
+    """Weight and applied wrenches on all that each motion carries, N rows."""
     kinematics = kinematics_now(system, state)
-    return together(weights(system, kinematics), applied_wrench(system, state, kinematics))
+    return wrench_sum(weights(system, kinematics), applied_wrench(system, state, kinematics))
 
 
 def newly_applied(system: System, state: State) -> Wrench:
-    """Wrench from outside on the motions from now on, less its mean in the latest step, N rows."""
+    """Applied wrench on the motions from now on, less its mean in the latest step, N rows."""
     now = applied_wrench(system, state, kinematics_now(system, state))
     if state.past is None or state.past.applied is None:
         return now
@@ -50,7 +49,7 @@ def carried_bodies(system: System, motions: Pose, twist: Twist, time: float) -> 
 
 
 def kinematics_now(system: System, state: State) -> Kinematics | None:
-    """G and g of a state, read from its poses and twists."""
+    """Kinematics G and g of a state, read from its poses and twists."""
     if system.mechanisms is None:
         return None
     carrier, centre = system.mechanisms.carrier, state.free_pose.position
@@ -61,21 +60,8 @@ def kinematics_now(system: System, state: State) -> Kinematics | None:
 
 
 def accelerations(system: System, state: State) -> FloatArray:
-    """Of the motions in the latest step, without what their contacts gave, and with what has been applied since; at the
-    start what weight and applied wrenches give.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and mechanisms.
-    state : State
-        Now.
-
-    Returns
-    -------
-    (N, d+k) array
-        [length/time² | rad/time²].
-    """
+    """Accelerations of the motions (N, d+k) in the latest step, less the share of contacts, plus that of wrenches
+    applied since; at the start those by weight and applied wrenches [length/time² | rad/time²]."""
     linear, angular = mobility(system, state)
     if state.past is None:
         return _answer(linear, angular, outer_load(system, state))
@@ -87,22 +73,8 @@ def accelerations(system: System, state: State) -> FloatArray:
 
 
 def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
-    """Of the bodies, as the motions carry them, A + α × arm + ω × (ω × arm), and what relative motion adds to that.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and mechanisms.
-    state : State
-        Now.
-    time, size : float
-        When that is, and for how long relative motion is looked at from then on [time].
-
-    Returns
-    -------
-    (n, d+k) array
-        As in `accelerations`.
-    """
+    """Accelerations of the bodies (n, d+k), A + α × arm + ω × (ω × arm) of the motions that carry them, and the mean
+    rate of the relative velocity from ``time`` on over ``size`` [length/time² | rad/time²]."""
     rate, mechanisms = accelerations(system, state), system.mechanisms
     if mechanisms is None:
         return rate
@@ -115,27 +87,14 @@ def body_accelerations(system: System, state: State, time: float, size: float) -
 
 
 def _answer(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArray:
-    """M⁻¹ times a wrench on the motions (N, d+k)."""
+    """Acceleration M⁻¹ W of the motions by a wrench W on them (N, d+k)."""
     by_force = np.einsum("nij,nj->ni", linear, wrench.force)
     return np.concatenate([by_force, np.einsum("nij,nj->ni", angular, wrench.torque)], axis=1)
 
 
 def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
-    """How easily motions give way in straight motion and in rotation, each by itself, zero for those that are given.
-
-    Parameters
-    ----------
-    system : System
-        Bodies and mechanisms.
-    state : State
-        Where they are.
-
-    Returns
-    -------
-    (N, d, d) array, (N, k, k) array
-        Inverse mass, the added mass of bodies with it, and inverse inertia, in the lab frame
-        [1/mass | 1/(mass·length²)].
-    """
+    """Inverse mass (N, d, d), with the added mass of bodies, and inverse inertia (N, k, k) of each motion alone in the
+    lab frame, zero for prescribed motions [1/mass | 1/(mass·length²)]."""
     orientation, eye = state.pose.orientation, np.eye(system.dimension)
     rotation = rotation_matrices(orientation)
     own = system.mass[:, None, None] * eye
@@ -151,7 +110,8 @@ def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
 
 
 def reaches(system: System) -> tuple[FloatArray, FloatArray]:
-    """How large what each motion carries is at most, and how far from its centre of mass it reaches (N,) [length]."""
+    """Largest bounding radius of the bodies of each motion, and the distance of its farthest point from its centre of
+    mass, (N,) each [length]."""
     radii = np.array([body.bounding_radius for body in system.bodies])
     if system.mechanisms is None:
         return radii, radii
@@ -164,14 +124,14 @@ def reaches(system: System) -> tuple[FloatArray, FloatArray]:
 
 
 def twist_arms(system: System) -> FloatArray:
-    """What makes velocities of all components of twists (N, d+k): 1, and of angular ones how far a motion reaches
-    [1 | length]."""
+    """Factors (N, d+k) that turn components of twists into velocities: 1, and for angular ones the distance of the
+    motion's farthest point [1 | length]."""
     farthest, d = reaches(system)[1], system.dimension
     return np.repeat([np.ones_like(farthest), farthest], [d, 1 if d == 2 else 3], axis=0).T
 
 
 def round_motions(system: System) -> BoolArray:
-    """Which motions are those of single balls, which turn in their place (N,)."""
+    """Whether a motion is that of a single ball, which turns in its place (N,)."""
     balls = np.array([body.radius is not None for body in system.bodies])
     if system.mechanisms is None:
         return balls
@@ -180,5 +140,5 @@ def round_motions(system: System) -> BoolArray:
 
 
 def carriers(system: System) -> IntArray:
-    """The motion of each body (n,)."""
+    """Number of the motion of each body (n,)."""
     return np.arange(len(system.bodies)) if system.mechanisms is None else system.mechanisms.carrier

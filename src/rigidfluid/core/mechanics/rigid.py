@@ -30,21 +30,10 @@ def rotation_matrices(orientation: FloatArray) -> FloatArray:
 
 
 def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
-    """Orientation after a further rotation of the lab frame, R_new = exp([rotation_vector]×) R.
+    """Orientation (n, q) after a further rotation of the lab frame, R_new = exp([rotation_vector]×) R [rad | 1].
 
-    In 2D the angles add, so that whole turns are kept; in 3D the quaternion is normalised again.
-
-    Parameters
-    ----------
-    orientation : (n, q) array
-        Orientation before [rad | 1].
-    rotation_vector : (n, k) array
-        Axis times angle, in the lab frame [rad].
-
-    Returns
-    -------
-    (n, q) array
-        Orientation after [rad | 1].
+    The vector (n, k) is axis times angle in the lab frame [rad]. Angles add in 2D, so that whole turns are kept; the
+    quaternion of 3D is normalised again.
     """
     if orientation.shape[-1] == 1:
         return orientation + rotation_vector
@@ -53,53 +42,21 @@ def rotate(orientation: FloatArray, rotation_vector: FloatArray) -> FloatArray:
 
 
 def compose(orientation: FloatArray, relative: FloatArray) -> FloatArray:
-    """Orientation of what is turned by ``relative`` in a frame that is turned by ``orientation``, R_new = R R_relative.
-
-    Parameters
-    ----------
-    orientation, relative : (n, q) array
-        Orientations [rad | 1].
-
-    Returns
-    -------
-    (n, q) array
-        Orientation in the lab frame [rad | 1].
-    """
+    """Orientation (n, q) in the lab frame of a frame turned by ``relative`` in one turned by ``orientation``, R
+    R_relative [rad | 1]."""
     if orientation.shape[-1] == 1:
         return orientation + relative
     return _quaternion_product(orientation, relative)
 
 
 def angle_between(start: FloatArray, end: FloatArray) -> FloatArray:
-    """Angle of the rotation that leads from one orientation to another.
-
-    Parameters
-    ----------
-    start, end : (n, q) array
-        Orientations [rad | 1].
-
-    Returns
-    -------
-    (n,) array
-        Angle, in 2D whole turns included [rad].
-    """
+    """Angle (n,) of the rotation from one orientation (n, q) to another, whole turns included in 2D [rad]."""
     return np.asarray(np.linalg.norm(rotation_between(start, end), axis=1))
 
 
 def rotation_between(start: FloatArray, end: FloatArray) -> FloatArray:
-    """Rotation vector of the rotation of the lab frame that leads from one orientation to another, the inverse of
-    `rotate`.
-
-    Parameters
-    ----------
-    start, end : (n, q) array
-        Orientations [rad | 1].
-
-    Returns
-    -------
-    (n, k) array
-        Axis times angle, in 2D whole turns included, in 3D at most half a turn [rad].
-    """
+    """Rotation vector (n, k) in the lab frame that leads from one orientation (n, q) to another, the inverse of
+    `rotate`: in 2D whole turns included, in 3D at most half a turn [rad]."""
     if start.shape[-1] == 1:
         return end - start
     turn = _quaternion_product(end, start * [1.0, -1.0, -1.0, -1.0])
@@ -110,60 +67,24 @@ def rotation_between(start: FloatArray, end: FloatArray) -> FloatArray:
 
 
 def cross(angular_velocity: FloatArray, arm: FloatArray) -> FloatArray:
-    """Velocity that a rotation gives to a point, ω × r.
-
-    Parameters
-    ----------
-    angular_velocity : (..., k) array
-        Angular velocity ω, counter-clockwise in 2D [rad/time].
-    arm : (..., d) array
-        Vector r from the centre of mass to the point [length].
-
-    Returns
-    -------
-    (..., d) array
-        Velocity [length/time].
-    """
+    """Velocity ω × r (..., d) of a point at ``arm`` r (..., d) from the centre of mass, ω (..., k) counter-clockwise in
+    2D [length/time]."""
     if arm.shape[-1] == 2:
         return angular_velocity * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
     return np.cross(angular_velocity, arm)
 
 
 def moment(arm: FloatArray, force: FloatArray) -> FloatArray:
-    """Moment of a force about the centre of mass, r × F.
-
-    Parameters
-    ----------
-    arm : (..., d) array
-        Vector r from the centre of mass to where the force acts [length].
-    force : (..., d) array
-        Force F [force].
-
-    Returns
-    -------
-    (..., k) array
-        Moment, counter-clockwise in 2D [force·length].
-    """
+    """Moment r × F (..., k) about the centre of mass of a force (..., d) at ``arm`` r (..., d), counter-clockwise in 2D
+    [force·length]."""
     if arm.shape[-1] == 2:
         return np.asarray(arm[..., :1] * force[..., 1:] - arm[..., 1:] * force[..., :1])
     return np.cross(arm, force)
 
 
 def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Inertia tensors in the lab frame, R I Rᵀ; in 2D the scalar does not change.
-
-    Parameters
-    ----------
-    inertia : (n, k, k) array
-        Inertia I in each body's frame [mass·length²].
-    orientation : (n, q) array
-        Orientation of the bodies [rad | 1].
-
-    Returns
-    -------
-    (n, k, k) array
-        Inertia in the lab frame [mass·length²].
-    """
+    """Inertia tensors in the lab frame R I Rᵀ (n, k, k), of ``inertia`` I in each body's frame; in 2D the scalar does
+    not change [mass·length²]."""
     if orientation.shape[-1] == 1:
         return inertia
     rotation = rotation_matrices(orientation)
@@ -183,7 +104,7 @@ def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatAr
 
 
 def kinetic_energy(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> float:
-    """Of the bodies, Σ ½ m|U|² + ½ ω·(R I Rᵀ)ω [energy]."""
+    """Kinetic energy of the bodies, Σ ½ m|U|² + ½ ω·(R I Rᵀ)ω [energy]."""
     spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
     return 0.5 * float(mass @ np.sum(twist.velocity**2, axis=1) + np.sum(spin * twist.angular_velocity))
 

@@ -1,4 +1,4 @@
-"""The root of a secular equation, on which nearest and farthest points of ellipsoids depend."""
+"""Largest root of a secular equation, which gives nearest and farthest points of ellipsoids."""
 
 from __future__ import annotations
 
@@ -10,32 +10,13 @@ _MAX_ITERATIONS = 1000
 
 
 def secular_image(numerator: FloatArray, shift: FloatArray) -> FloatArray:
-    """p_i = b_i/(s + c_i) at the largest root s of |p(s)| = 1.
+    """Image p_i = b_i/(s + c_i) (N, d), of length 1 to rounding, at the largest root s of |p(s)| = 1 (D. Eberly,
+    "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013).
 
-    Newton's method is applied to 1/|p| - 1, which is concave and increasing in s, so that the iterates grow
-    monotonically from a lower bound to the root.
-
-    Parameters
-    ----------
-    numerator : (N, d) array
-        b ≥ 0, not zero where c is.
-    shift : (d,) or (N, d) array
-        c ≥ 0, zero once at least in each row.
-
-    Returns
-    -------
-    (N, d) array
-        p, of length 1 to rounding.
-
-    Raises
-    ------
-    FloatingPointError
-        If the iteration does not come to rest.
-
-    Notes
-    -----
-    Secular equation: D. Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid" (2013); the
-    reciprocal form: Moré and Sorensen (1983), doi:10.1137/0904038.
+    Newton's method is applied to 1/|p| - 1 (Moré and Sorensen 1983, doi:10.1137/0904038), which is concave and
+    increasing in s, so that the iterates grow monotonically from a lower bound to the root; FloatingPointError is
+    raised if they do not converge. ``numerator`` b ≥ 0 (N, d) is not zero where c is; ``shift`` c ≥ 0 (d,) or (N, d) is
+    zero at least once in each row.
     """
     # at this lower bound at least one component of p is 1 or more
     root = np.max(numerator - shift, axis=1, keepdims=True)

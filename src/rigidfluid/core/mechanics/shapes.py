@@ -1,4 +1,4 @@
-"""What any shape says of itself beyond its interface: how round it is, and whether two are the same."""
+"""Measures of any shape: inscribed radius, half thickness, equal-volume radius, and a key of equal shapes."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ import numpy as np
 from rigidfluid.core.model.interfaces import Body
 
 _SAMPLES = {2: 400, 3: 1600}
-"""Dimension → points of a surface at which balls inside touch it."""
+"""Number of surface points, by dimension, at which inscribed balls touch."""
 
 _BISECTIONS = 50
-"""Of a ball's radius: to rounding of the shape's size."""
+"""Bisections of a ball's radius: to rounding of the shape's size."""
 
 _SLACK = 1e-6
-"""A ball is inside if its centre is as deep as its radius but for this share of it."""
+"""Relative tolerance of a ball's radius against the depth of its centre."""
 
 
 def shape_key(body: Body) -> tuple[str, str]:
-    """Equal for bodies of the same shape: the type's name and its options as text."""
+    """Key that is equal for bodies of the same shape: the type's name and its options as text."""
     return body.name, body.options.model_dump_json()
 
 
@@ -29,9 +29,9 @@ def inscribed_radius(body: Body) -> float:
 
 
 def half_thickness(body: Body) -> float:
-    """Radius of the largest ball that fits into the shape, to a few per cent where it is no ellipsoid [length].
+    """Radius of the largest ball that fits into the shape, to a few per cent unless it is an ellipsoid [length].
 
-    The largest of those that touch the surface at samples of it, each by bisection, so that no shape is too thin.
+    The balls touch the surface at samples of it, each found by bisection, so that no shape is too thin.
     """
     if body.semi_axes is not None:
         return float(body.semi_axes.min())

@@ -1,4 +1,4 @@
-"""A length or an angle as a given function of time, once or again and again."""
+"""Length or angle as a given function of time, once or periodic."""
 
 from __future__ import annotations
 
@@ -15,30 +15,23 @@ if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
 _ROUNDING = 1e-11
-"""Of a stroke's duration: times that near to a corner are the corner, as times of steps are rounded; so little
-that what is read just after a corner is beyond it, however long the stroke is."""
+"""Relative tolerance of a corner's time, over the stroke's duration: steps round their times."""
 
 _SAME_SLOPE = 1e-9
-"""Between slopes that differ by less than this part of them there is no corner."""
+"""Relative difference of slopes below which they make no corner."""
 
 
 class Stroke:
-    """s(t) through rows (time, value), repeated with a period or held after the last row.
+    """Stroke s(t) through rows (time, value), repeated with a period or held after the last row.
 
-    Piecewise it is linear between the rows, and its rate jumps at corners. Smooth it is the monotone cubic of Fritsch
-    and Carlson (SIAM J. Numer. Anal. 17, 238, 1980), as scipy has it: between two rows it stays between their values,
-    it rests at its extremes, and its rate has no jump; it need not stop at rows on its way, as a stroke of eased
-    pieces would.
+    A piecewise stroke is linear between the rows, and its rate jumps at corners. A ``smooth`` one is the monotone cubic
+    of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 238, 1980), as scipy has it: between two rows it stays between
+    their values, it rests at its extremes, and its rate has no jump; it need not stop at rows on its way, as a stroke
+    of eased pieces would.
 
-    Parameters
-    ----------
-    rows : sequence of pairs
-        Times that rise from 0 [time], and values [length | rad].
-    smooth : bool
-        Whether the rate is continuous.
-    period : float, optional
-        Not shorter than the rows, whose last value is then the first; the value rests between the last row and the
-        period's end [time]. None: once, and the last value is held.
+    ``rows`` have times that rise from 0 [time] and values [length | rad]. A ``period`` is not shorter than the rows,
+    whose last value is then the first; the value rests between the last row and the period's end [time]. A stroke
+    without one occurs once, and its last value is held.
     """
 
     def __init__(self, rows: Sequence[tuple[float, float]], smooth: bool = False, period: float | None = None) -> None:
@@ -50,20 +43,20 @@ class Stroke:
         self._values = np.append(values, values[-1]) if rests else values
 
     def value(self, time: float) -> float:
-        """s at a ``time`` [length | rad]."""
+        """Value s at a ``time`` [length | rad]."""
         phase = self._phase(time)
         return float(self._curve(phase) if self.smooth else np.interp(phase, self._times, self._values))
 
     def rate(self, time: float) -> float:
-        """ds/dt at a ``time``: at a corner that before it, as a step ends there; at time 0 that after it, as nothing
-        is before [length/time | rad/time]."""
+        """Rate ds/dt at a ``time``: at a corner that before it, as a step ends there; at time 0 that after it, as
+        nothing is before [length/time | rad/time]."""
         if self.smooth:
             return float(self._slope(self._phase(time)))
         before = time - self._rounding if time > self._rounding else time
         return float(self._slopes[np.searchsorted(self._times, self._phase(before), side="right") - 1])
 
     def next_corner(self, time: float) -> float:
-        """The first time after this at which the rate jumps; infinite where it never does [time]."""
+        """First time after this at which the rate jumps; infinite where it never does [time]."""
         after = time + self._rounding
         begun = 0.0 if self.period is None else self.period * math.floor(after / self.period)
         ahead = begun + self._corners[self._corners > after - begun]
@@ -81,7 +74,7 @@ class Stroke:
 
     @cached_property
     def _slopes(self) -> FloatArray:
-        """Of the pieces, and zero from the last row on."""
+        """Slopes of the pieces, and zero from the last row on."""
         return np.append(np.diff(self._values) / np.diff(self._times), 0.0)
 
     @cached_property
@@ -97,7 +90,8 @@ class Stroke:
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
-        """Through the rows and those around them: of the periods before and after, or of a value that is held."""
+        """Monotone cubic through the rows and those around them: those of the periods before and after, or the held
+        values."""
         from scipy.interpolate import PchipInterpolator  # slow to load, and few scenes have strokes
 
         times, values, span = self._times, self._values, self._span

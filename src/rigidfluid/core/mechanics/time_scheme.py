@@ -1,6 +1,6 @@
 """Second-order time stepping with a variable step: BDF2 for velocities, Adams–Bashforth 2 for poses.
 
-For a spring at constant step the pair is the Störmer–Verlet method in disguise: with the force taken at the new pose
+The pair is for a spring at constant step the Störmer–Verlet method in disguise: with the force taken at the new pose
 the positions obey xⁿ⁺¹ - (2 - k²) xⁿ + xⁿ⁻¹ = 0, k = ωΔt, so that nothing is damped and nothing grows while k < 2.
 """
 
@@ -15,22 +15,10 @@ from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
 
 
 def derivative_weights(step: float, previous_step: float | None) -> FloatArray:
-    """Weights of the backward difference ∂u/∂t(tⁿ⁺¹) ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹.
+    """Weights (3,) of the backward difference ∂u/∂t(tⁿ⁺¹) ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, newest first [1/time].
 
-    d = (1 + 2r, -(1 + r)², r²) / ((1 + r) Δt) with r = step / previous_step: BDF2, exact for parabolas; without a
-    previous step (1, -1, 0) / Δt: BDF1.
-
-    Parameters
-    ----------
-    step : float
-        Δt from tⁿ to tⁿ⁺¹ [time].
-    previous_step : float or None
-        Step from tⁿ⁻¹ to tⁿ [time]; None where there is none.
-
-    Returns
-    -------
-    (3,) array
-        The weights, newest first [1/time].
+    The weights are d = (1 + 2r, -(1 + r)², r²) / ((1 + r) Δt) with r = step / previous_step: BDF2, exact for parabolas;
+    if previous_step is None (1, -1, 0) / Δt: BDF1.
     """
     if previous_step is None:
         return np.array([1.0, -1.0, 0.0]) / step
@@ -39,42 +27,18 @@ def derivative_weights(step: float, previous_step: float | None) -> FloatArray:
 
 
 def extrapolation_weights(step: float, previous_step: float | None) -> FloatArray:
-    """Weights of the linear extrapolation uⁿ⁺¹ ≈ (1 + r) uⁿ - r uⁿ⁻¹, r = step / previous_step.
-
-    Parameters
-    ----------
-    step : float
-        Δt from tⁿ to tⁿ⁺¹ [time].
-    previous_step : float or None
-        Step from tⁿ⁻¹ to tⁿ [time]; None where there is none, and then uⁿ⁺¹ ≈ uⁿ.
-
-    Returns
-    -------
-    (2,) array
-        The weights, newest first [1].
-    """
+    """Weights (2,) of the linear extrapolation uⁿ⁺¹ ≈ (1 + r) uⁿ - r uⁿ⁻¹, r = step / previous_step, newest first; uⁿ⁺¹
+    ≈ uⁿ if previous_step is None [1]."""
     ratio = 0.0 if previous_step is None else step / previous_step
     return np.array([1 + ratio, -ratio])
 
 
 def path_error_weight(step: float, previous_step: float) -> float:
-    """Local error of `predict_pose` per unit time over what the twist differs from its linear extrapolation.
+    """Local error c of `predict_pose` per unit time over the difference of the twist from its linear extrapolation [1].
 
     Milne's device: Adams–Bashforth 2 integrates the extrapolation u*. The parabola through the three velocities exceeds
     it in the mean over the step by c (uⁿ⁺¹ - u*), c = (3 + 2r) / (6 (1 + r)) with r = step / previous_step: 5/12 for
-    equal steps. For a smooth u that is (2r + 3)/(12 r) Δt² ü to leading order.
-
-    Parameters
-    ----------
-    step : float
-        Δt from tⁿ to tⁿ⁺¹ [time].
-    previous_step : float
-        Step from tⁿ⁻¹ to tⁿ [time].
-
-    Returns
-    -------
-    float
-        c [1].
+    equal steps. The error is (2r + 3)/(12 r) Δt² ü to leading order for a smooth u.
     """
     ratio = step / previous_step
     return (3 + 2 * ratio) / (6 * (1 + ratio))
@@ -85,26 +49,8 @@ def predict_pose(
 ) -> Pose:
     """Pose at the new time by Adams–Bashforth 2, xⁿ⁺¹ = xⁿ + Δt[(1 + r/2) Uⁿ - (r/2) Uⁿ⁻¹], r = step / previous_step.
 
-    The orientation is turned by the exponential of the same combination of the angular velocities. Without a
-    previous twist or step: forward Euler.
-
-    Parameters
-    ----------
-    pose : Pose
-        Pose at tⁿ.
-    twist : Twist
-        Twist at tⁿ.
-    previous_twist : Twist or None
-        Twist at tⁿ⁻¹; None at the start.
-    step : float
-        Δt from tⁿ to tⁿ⁺¹ [time].
-    previous_step : float or None
-        Step from tⁿ⁻¹ to tⁿ [time]; None at the start.
-
-    Returns
-    -------
-    Pose
-        Pose at tⁿ⁺¹.
+    The orientation is turned by the exponential of the same combination of the angular velocities. The scheme is
+    forward Euler where the previous twist or step is None.
     """
     mean = twist
     if previous_twist is not None and previous_step is not None:
@@ -113,23 +59,9 @@ def predict_pose(
 
 
 def start_pose(pose: Pose, twist: Twist, end_twist: Twist, step: float) -> Pose:
-    """Pose at the end of the first step, where the twist there is known: x¹ = x⁰ + Δt (U⁰ + U¹)/2.
+    """Pose at the end of the first step from the twists at both ends: x¹ = x⁰ + Δt (U⁰ + U¹)/2.
 
-    With BDF1 for a fluid at rest this keeps the balance of energy, where forward Euler leaves out half of the fall.
-
-    Parameters
-    ----------
-    pose : Pose
-        Pose at t⁰.
-    twist, end_twist : Twist
-        Twists at t⁰ and t¹.
-    step : float
-        Δt [time].
-
-    Returns
-    -------
-    Pose
-        Pose at t¹.
+    The mean keeps the balance of energy with BDF1 for a fluid at rest, where forward Euler leaves out half of the fall.
     """
     velocity = 0.5 * (twist.velocity + end_twist.velocity)
     spin = 0.5 * (twist.angular_velocity + end_twist.angular_velocity)
@@ -145,32 +77,13 @@ def newton_euler(
     weights: FloatArray,
     wrench: Wrench,
 ) -> tuple[FloatArray, FloatArray]:
-    """The bodies' equations of motion in discrete form, mass_matrix · twist = load (+ the fluid's wrench).
+    """Equations of motion in discrete form, mass_matrix · twist = load (+ the fluid's wrench): mass_matrix (n, d+k,
+    d+k), block-diagonal [mass/time | mass·length²/time], and load (n, d+k) [force | force·length].
 
-    Differenced is the momentum (mU, R I Rᵀω), each time with its own orientation: mass_matrix = d₀ diag(m, R I Rᵀ) at
-    the new pose, load = -d₁ momentumⁿ - d₂ momentumⁿ⁻¹ + wrench; so angular momentum is kept, gyroscopic terms and all.
-
-    Parameters
-    ----------
-    mass : (n,) array
-        Masses [mass].
-    inertia : (n, k, k) array
-        Inertia in each body's frame [mass·length²].
-    pose : Pose
-        Pose at tⁿ⁺¹.
-    poses, twists : sequences of Pose and of Twist
-        The past, newest first: those at tⁿ and, where ``weights`` needs it, those at tⁿ⁻¹.
-    weights : (3,) array
-        From `derivative_weights` [1/time].
-    wrench : Wrench
-        What acts besides the fluid: weight, contact.
-
-    Returns
-    -------
-    mass_matrix : (n, d+k, d+k) array
-        Block-diagonal [mass/time | mass·length²/time].
-    load : (n, d+k) array
-        Right-hand side [force | force·length].
+    The momentum (mU, R I Rᵀω) is differenced, each time with its own orientation: mass_matrix = d₀ diag(m, R I Rᵀ) at
+    the new ``pose``, load = -d₁ momentumⁿ - d₂ momentumⁿ⁻¹ + wrench; so angular momentum is kept, gyroscopic terms and
+    all. ``poses`` and ``twists`` are the past ones, newest first; ``weights`` (3,) are from `derivative_weights`;
+    ``wrench`` is that of all but the fluid: weight, contact.
     """
     load = np.concatenate([wrench.force, wrench.torque], axis=1)
     for weight, old_pose, old_twist in zip(weights[1:], poses, twists, strict=False):
@@ -179,22 +92,7 @@ def newton_euler(
 
 
 def momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
-    """Of each body, (m U, R I Rᵀ ω).
-
-    Parameters
-    ----------
-    mass : (n,) array
-        Masses [mass].
-    inertia : (n, k, k) array
-        Inertia in each body's frame [mass·length²].
-    pose, twist : Pose, Twist
-        Of the bodies.
-
-    Returns
-    -------
-    (n, d+k) array
-        [mass·length/time | mass·length²/time].
-    """
+    """Momentum of each body (m U, R I Rᵀ ω), (n, d+k) [mass·length/time | mass·length²/time]."""
     spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
     return np.concatenate([mass[:, None] * twist.velocity, spin], axis=1)
 
@@ -208,22 +106,7 @@ def _mean(twist: Twist, previous: Twist, ratio: float) -> Twist:
 
 
 def generalised_mass(mass: FloatArray, inertia: FloatArray, pose: Pose) -> FloatArray:
-    """Of each body, diag(m, R I Rᵀ).
-
-    Parameters
-    ----------
-    mass : (n,) array
-        Masses [mass].
-    inertia : (n, k, k) array
-        Inertia in each body's frame [mass·length²].
-    pose : Pose
-        Of the bodies.
-
-    Returns
-    -------
-    (n, d+k, d+k) array
-        Block-diagonal [mass | mass·length²].
-    """
+    """Generalised mass of each body diag(m, R I Rᵀ), (n, d+k, d+k) [mass | mass·length²]."""
     count, dimension = pose.position.shape
     size = dimension + inertia.shape[-1]
     matrix = np.zeros((count, size, size))

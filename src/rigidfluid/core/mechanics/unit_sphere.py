@@ -10,20 +10,7 @@ from rigidfluid.core.model.types import FloatArray
 
 
 def unit_sphere_points(count: int, dimension: int) -> FloatArray:
-    """Evenly spread unit vectors: equal angles in 2D, the golden-angle spiral in 3D.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-    dimension : int
-        2 or 3.
-
-    Returns
-    -------
-    (count, dimension) array
-        Unit vectors [1].
-    """
+    """Evenly spread unit vectors (count, dimension): equal angles in 2D, the golden-angle spiral in 3D [1]."""
     index = np.arange(float(count))
     if dimension == 2:
         angle = index * 2 * pi / count

@@ -1,4 +1,4 @@
-"""Walls that slide in themselves: straight on, or turning about a point."""
+"""Velocities of walls that slide in themselves: straight on, or turning about a point."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from rigidfluid.core.model.wall import Wall
 
 @dataclass(frozen=True)
 class WallVelocity:
-    """v + ω × (x - c): ``velocity`` v (d,) [length/time], ``angular_velocity`` ω (k,) [rad/time], ``centre`` c (d,)
-    [length]."""
+    """Velocity field v + ω × (x - c): ``velocity`` v (d,) [length/time], ``angular_velocity`` ω (k,) [rad/time],
+    ``centre`` c (d,) [length]."""
 
     velocity: FloatArray
     angular_velocity: FloatArray
@@ -28,13 +28,13 @@ class WallVelocity:
         spin = np.tile(self.angular_velocity, (len(points), 1))
         return np.asarray(self.velocity + cross(spin, points - self.centre))
 
-    def steadily(self, time: float, points: FloatArray) -> FloatArray:
-        """The same at any time."""
+    def velocity_at(self, time: float, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) at ``points`` (N, d), the same at any time [length/time]."""
         return self(points)
 
 
 class SlidingWalls:
-    """The velocities of all walls that slide, by surface number."""
+    """Velocities of all walls that slide, by surface number."""
 
     def __init__(self, walls: Sequence[Wall]) -> None:
         self._sliding = [(wall.surface, wall.velocity) for wall in walls if wall.velocity is not None]

@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
-from rigidfluid.core.mechanics.wrenches import flat, power, together, wrench_of
+from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
@@ -107,7 +107,7 @@ def _pushed(path: BodyStep, size: float) -> Wrench:
     """The impulse of contacts, and without a fluid of joints, on the motions."""
     if path.link is None:
         return path.free_impulse
-    return together(path.free_impulse, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
+    return wrench_sum(path.free_impulse, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
 
 
 def _applied(system: System, state: State, step: Step) -> Wrench | None:

@@ -55,7 +55,7 @@ def _condition(scene: Scene, domain: Domain, surface: int, piece: Piece) -> Boun
     value: Callable[[float, FloatArray], FloatArray] | None = None
     if table.type == "wall":
         sliding = wall_velocity(table, scene.dimension)
-        value = None if sliding is None else sliding.steadily
+        value = None if sliding is None else sliding.velocity_at
     elif table.type == "velocity":
         value = prescribed_velocity(piece, table, table_key(scene, table))
     elif table.pressure is not None:
