@@ -6,6 +6,7 @@ import ast
 import hashlib
 import sys
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import rigidfluid
@@ -62,6 +63,13 @@ def file_hash(path: Path) -> str:
     """Hash of a file, of a module without its prose; empty if the file is missing."""
     if not path.is_file():
         return ""
+    file = path.stat()
+    return _hash(path, file.st_mtime_ns, file.st_size)
+
+
+@cache
+def _hash(path: Path, changed: int, size: int) -> str:
+    """Hash of a file as it is since it was ``changed`` [ns], with a ``size`` [byte]: each run of a page asks for it."""
     content = _code(path.read_text(encoding="utf-8")).encode() if path.suffix == ".py" else path.read_bytes()
     return hashlib.sha256(content).hexdigest()[:16]
 
