@@ -20,7 +20,8 @@ class Cause(StrEnum):
 class Power:
     """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
     viscous dissipation, also ``dissipation_midway`` through the step that led there, of what the dampers of joints
-    take, of what convection takes through faces that let nothing pass, and of grad-div stabilisation."""
+    take, of what convection takes through faces that let nothing pass, and of grad-div stabilisation; and in a step
+    without a past ``stress_power``, of the end's viscous stress in the mean velocity of the step that led there."""
 
     boundary: float = 0.0
     control: float = 0.0
@@ -29,6 +30,7 @@ class Power:
     damping: float = 0.0
     leak: float = 0.0
     grad_div: float = 0.0
+    stress_power: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +111,8 @@ class Ledger:
         """The ledger one step later, rates integrated by the trapezoidal rule.
 
         Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign.
-        What is not known at the start is taken from the end of the first step.
+        What is not known at the start is taken from the end of the first step. Dissipation is then that of the step's
+        own viscous impulse: the rate at the start is that of a layer without thickness, and means nothing.
         """
         before = self.power or power
 
@@ -119,6 +122,8 @@ class Ledger:
 
         damped = 0.5 * step * (before.damping + power.damping)
         dissipated = (before.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
+        if self.power is None and power.stress_power is not None:
+            dissipated = power.stress_power
         return replace(
             self,
             kinetic=kinetic,

@@ -46,6 +46,8 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, moti
         _refuse_lost_bodies(names, quantity, values, key)
     for quantity in ("kinetic_energy", "dissipation", "dissipation_midway", "boundary_power", "leak", "grad_div"):
         refuse_no_number("fluid", quantity, getattr(advance, quantity), key)
+    if advance.stress_power is not None:
+        refuse_no_number("fluid", "stress_power", advance.stress_power, key)
 
 
 def refuse_lost_forces(contacts: Contacts, force: FloatArray, key: str = "contact.law") -> None:

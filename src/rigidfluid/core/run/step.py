@@ -167,7 +167,8 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
         control += 0.0 if system.linkage is None else system.linkage.spring_power(motions, step.time)
         damping = float(step.links.compliance @ advance.link_force**2)
     dissipation = advance.dissipation, advance.dissipation_midway
-    return Power(advance.boundary_power, control, *dissipation, damping, advance.leak, advance.grad_div)
+    fluid = advance.leak, advance.grad_div, advance.stress_power
+    return Power(advance.boundary_power, control, *dissipation, damping, *fluid)
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
