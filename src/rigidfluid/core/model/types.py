@@ -347,8 +347,8 @@ class Advance:
     ``leak``: kinetic energy that convection takes through faces that let none pass, an error of the mesh [energy/time].
     ``grad_div``: what stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow
     [energy/time].
-    ``stress_power`` of the end's viscous stress in the mean of the velocities at start and end, in a step without a past
-    of a fluid with inertia; else None [energy/time].
+    ``stress_power`` of the end's viscous stress in the mean of the velocities at start and end, in a step without a
+    past of a fluid with inertia; else None [energy/time].
     """
 
     fluid: FluidState

@@ -71,8 +71,8 @@ def attempt(
     link = _link_load(system, path, step, advance)
     ledger = _ledger_at_start(system, state, advance, step, time - size)
     power = _power(system, advance, step, path.free_pose)
-    if system.quasi_steady and ledger.power is None:  # a fluid that forgets: its velocity before says nothing
-        power = replace(power, dissipation_midway=power.dissipation)
+    if system.quasi_steady:
+        power = replace(power, dissipation_midway=_dissipation_midway(state, ledger.power, advance, twist, power))
     candidate = State(
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
@@ -169,6 +169,17 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
     dissipation = advance.dissipation, advance.dissipation_midway
     fluid = advance.leak, advance.grad_div, advance.stress_power
     return Power(advance.boundary_power, control, *dissipation, damping, *fluid)
+
+
+def _dissipation_midway(state: State, before: Power | None, advance: Advance, twist: Twist, after: Power) -> float:
+    """Where the fluid has no inertia, of the mean force on the bodies at their mean velocity: the mean of the flows at
+    both ends is none of the mesh midway, and dissipates more. As at the end where the flow before says nothing."""
+    if before is None:
+        return after.dissipation
+    force = 0.5 * (flat(state.hydrodynamic_wrench) + flat(advance.hydrodynamic_wrench))
+    velocity = 0.5 * (flat(state.twist) + flat(twist))
+    through_faces = 0.5 * (before.boundary + after.boundary - before.grad_div - after.grad_div)
+    return through_faces - float(np.sum(force * velocity))
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
