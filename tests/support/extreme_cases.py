@@ -433,12 +433,7 @@ def _wet_crowds() -> Iterator[Case]:
 
 def _wet_shapes() -> Iterator[Case]:
     steps = (4, 2, 1)
-    begun: dict[float, float] = {4: 0.2, 2: 0.1, 1: 0.05}
-    known = {
-        run: (Demand("energy created by the first step", at_most=begun[run[0]]),)
-        for run in _by("substeps", *steps) + _by("implicit", *steps)
-    }
-    yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 1), known)
+    yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 1))
     yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4))
     yield from _in_fluid("ellipse that spins, into a corner", contacts.in_a_corner, steps, steps, _by("substeps", 4))
 

@@ -28,7 +28,10 @@ from fluid_contacts import (
 import rigidfluid
 from rigidfluid.core.output.history import History
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError
+
+COARSE = {"size": 0.2, "size_body": 0.06}
 
 
 def column(step: float, stepping: Stepping, epsilon: float = 1e-8) -> Scene:
@@ -143,3 +146,21 @@ def _row(scene: Scene, figures: Figures) -> tuple[str, ...]:
     created, lost, _ = created_and_lost(history)
     shares, spent = (f"{100.0 * created:.2f}", f"{100.0 * lost:.2f}"), time.process_time() - start
     return *figures(history), *shares, str(len(history.energy["time"]) - 1), f"{spent:.0f}"
+
+
+def released(step: float, stepping: Stepping = "substeps") -> Scene:
+    """A disk at rest that a contact throws off the floor; the fluid stops it a few radii from there."""
+    disk = heavy(0.4, RADIUS + 0.02, density=2.0)
+    return in_fluid(
+        repulsion(stepping, 1e-8, "normal"), disk, end=0.004, step=step, gravity=0.0, fluid=STOKES, mesh=COARSE
+    )
+
+
+def hinged(step: float, stepping: Stepping = "substeps") -> Scene:
+    """Two ellipses at rest, joined by a hinge with a spring that is bent, that contacts throw off the floor."""
+    axes = 0.1, 0.06
+    pair = [ellipsoid((x, 0.08), REST, axes, density=2.0, name=name) for x, name in ((0.28, "one"), (0.52, "two"))]
+    contact = repulsion(stepping, 1e-8, "normal")
+    tables = in_fluid(contact, *pair, end=0.01, step=step, gravity=0.0, fluid=STOKES, mesh=COARSE).to_dict()
+    knee = {"name": "knee", "type": "hinge", "between": ["one", "two"], "at": [0.4, 0.08]}
+    return scene_from_dict(tables | {"joint": [knee | {"stiffness": 0.3, "rest_angle": 1.0}]})

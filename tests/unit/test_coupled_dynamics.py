@@ -106,9 +106,8 @@ def test_without_inertia_of_the_fluid_all_friction_is_known():
         path += (WEIGHT + pushed) @ middle * time / parts
     end = joined(bodies.twist).ravel()[INSIDE]
     path -= 0.5 * (end @ MASS @ end - start @ MASS @ start)
-    mean, last = 0.5 * (start + end), WEIGHT - LOAD
-    seen = (WEIGHT - before) @ start + 4.0 * (last + FRICTION @ (mean - start)) @ mean
-    seen += (last + FRICTION @ (end - start)) @ end
+    first, last = WEIGHT - before, WEIGHT - LOAD + FRICTION @ (end - start)
+    seen = first @ start + (first + last) @ (start + end) + last @ end
     assert bodies.friction_loss == pytest.approx(path - time * seen / 6.0, rel=1e-5)
 
 

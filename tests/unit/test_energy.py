@@ -31,6 +31,18 @@ def test_dissipation_of_velocities_that_change_linearly_is_exact(start, end):
     assert before.after(step, power, Work(), 0.0, 0.0).dissipation == pytest.approx(exact)
 
 
+@pytest.mark.parametrize("stiffness", [0.01, 1.0, 100.0])
+def test_a_first_step_dissipates_what_its_own_viscous_impulse_takes(stiffness: float) -> None:
+    """u' = -λu by BDF1 from a velocity that begins at once, however many times 1/λ the step is."""
+    step, start = 0.1, 3.0
+    rate = stiffness / step
+    end = start / (1.0 + stiffness)
+    mean = 0.5 * (start + end)
+    power = Power(dissipation=rate * end**2, dissipation_midway=rate * mean**2, stress_power=rate * end * mean)
+    begun = Ledger(0.5 * start**2, 0.0, 0.5 * start**2, power=None)
+    assert begun.after(step, power, Work(), 0.5 * end**2, 0.0).residual == pytest.approx(0.0, abs=1e-12)
+
+
 def grown(ledger: Ledger, by: float, cause: Cause | None, leak: float = 0.0) -> Ledger:
     """A step of one tenth later; energy has vanished, some of it through faces."""
     after = ledger.after(0.1, Power(leak=leak), Work(), ledger.kinetic - by, 0.0)

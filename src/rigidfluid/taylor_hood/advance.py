@@ -13,7 +13,7 @@ from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, S
 from rigidfluid.taylor_hood.boundary import face_leak, face_power, pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
-from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy
+from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
 from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
 
@@ -66,6 +66,8 @@ def advance(
         moved, moved_before = points - before, before - fluid["points_previous"]
         return discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
 
+    mean = 0.5 * (fluid["velocity"] + velocity)
+    begins = problem.inertia and step.derivative[2] == 0.0
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     return Advance(
         fluid=state,
@@ -73,7 +75,7 @@ def advance(
         hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
         kinetic_energy=kinetic_energy(discretisation, points, velocity),
         dissipation=dissipation(discretisation, points, velocity),
-        dissipation_midway=dissipation(discretisation, 0.5 * (before + points), 0.5 * (fluid["velocity"] + velocity)),
+        dissipation_midway=dissipation(discretisation, 0.5 * (before + points), mean),
         boundary_power=face_power(
             surfaces, problem.inert_density, at, velocity, mesh_velocity, on_faces, solution.reaction
         ),
@@ -81,6 +83,7 @@ def advance(
         leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
         source_power=_source_power(discretisation, matrix, velocity, step.time),
+        stress_power=stress_power(discretisation, points, velocity, mean) if begins else None,
     )
 
 

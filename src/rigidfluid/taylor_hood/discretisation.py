@@ -77,3 +77,9 @@ def dissipation(discretisation: Discretisation, points: FloatArray, velocity: Fl
     """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""
     rate = discretisation.surfaces.ranks.sum(discretisation.strain_square(points, velocity))
     return discretisation.problem.dynamic_viscosity * float(rate)
+
+
+def stress_power(discretisation: Discretisation, points: FloatArray, velocity: FloatArray, other: FloatArray) -> float:
+    """μ ∫ ½ (∇u + ∇uᵀ):(∇v + ∇vᵀ) [energy/time], of the viscous stress of a ``velocity`` u in an ``other`` v."""
+    mean, half = 0.5 * (velocity + other), 0.5 * (velocity - other)
+    return dissipation(discretisation, points, mean) - dissipation(discretisation, points, half)

@@ -148,7 +148,7 @@ class CoupledDynamics:
         end [energy].
 
         The loss without inertia of the fluid is all that of the path's friction, less Simpson's rule for it by the
-        fluid solves: at both ends, and in the middle on the mesh at the end.
+        fluid solves: at both ends, and in the middle by the mean force at the mean velocity.
         """
         if self._weight is None:
             return self._friction.beyond_linear(self._modal, self._model.decay)
@@ -198,13 +198,14 @@ class _Friction:
     def beyond_simpson(
         self, end: FloatArray, decay: FloatArray, start: FloatArray, resisting: tuple[FloatArray, FloatArray]
     ) -> float:
-        """Integral ∫ (f₀ + t f₁ + λ y)·(u + y) dt, u (c,) at the ``start``, less its Simpson's rule for y = y_end t/T
-        with f at the end."""
+        """Integral ∫ (f₀ + t f₁ + λ y)·(u + y) dt, u (c,) at the ``start``, less its Simpson's rule for
+        y = y_end t/T."""
         (first, growth), time = resisting, self._time
         last, middle, final = first + time * growth, start + 0.5 * end, start + end
         path = first @ (time * start + self._way) + growth @ (0.5 * time**2 * start + self._moment)
         path += decay @ (start * self._way + self._square)
-        seen = first @ start + 4.0 * (last + 0.5 * decay * end) @ middle + (last + decay * end) @ final
+        midway = first + 0.5 * time * growth
+        seen = first @ start + 4.0 * (midway + 0.5 * decay * end) @ middle + (last + decay * end) @ final
         return float(path - time * seen / 6.0)
 
 

@@ -38,8 +38,9 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     known = None if state.coupling is None else state.coupling.model
     model = updated_model(system, state, step, state.contacts, flat(state.free_twist), velocities, known)
     before, expected = _load_before(system, state, model), _expected_load(system, state, model)
-    if system.quasi_steady:  # the fluid remembers nothing: Φ is what bodies and contacts leave of the forces there are
-        before = expected = np.where(np.isnan(before), expected + _slowing(state, model), before)
+    if system.quasi_steady:  # the fluid remembers nothing: Φ is its force on the bodies now, and what pulls them
+        now = _components(model, flat(outer_load(system, state)) + flat(state.free_hydrodynamic))
+        before = expected = np.where(np.isnan(before), now, before)
     return Coupling(model, expected, before, np.zeros(len(velocities)))
 
 
@@ -151,13 +152,6 @@ def _load_before(system: System, state: State, model: ReducedModel) -> FloatArra
     added = _components(model, flat(newly_applied(system, state)))
     before[here] = (state.coupling.load - slowed)[there] + added[here]
     return before
-
-
-def _slowing(state: State, model: ReducedModel) -> FloatArray:
-    """Friction R (Uⁿ - Uⁿ⁻¹)/2 (c,) that `expected_load` subtracts for its growth within a step."""
-    if state.past is None:
-        return np.zeros(len(model.velocities))
-    return 0.5 * model.friction_times(_components(model, flat(state.free_twist) - flat(state.past.twist)))
 
 
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:

@@ -21,7 +21,8 @@ class Power:
     """Rates at one time [energy/time]: of what enters by the boundary, of what drives bodies through the fluid, of
     viscous dissipation, also ``dissipation_midway`` through the step that led there, of what the dampers of joints
     take, of what convection takes through faces that let nothing pass, of grad-div stabilisation, and of the force on
-    the fluid."""
+    the fluid; and in a step without a past ``stress_power``, of the end's viscous stress in the mean velocity of the
+    step that led there."""
 
     boundary: float = 0.0
     control: float = 0.0
@@ -31,6 +32,7 @@ class Power:
     leak: float = 0.0
     grad_div: float = 0.0
     source: float = 0.0
+    stress_power: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +121,8 @@ class Ledger:
         """Ledger one step later, rates integrated by the trapezoidal rule.
 
         Dissipation is by Simpson's, exact for velocities that change linearly: in an impact they change their sign. A
-        power unknown at the start is taken from the end of the first step.
+        power unknown at the start is taken from the end of the first step. Dissipation is then the
+        work of the step's own viscous impulse: the rate at the start is that of a layer without thickness.
         """
         before = self.power or power
 
@@ -129,6 +132,8 @@ class Ledger:
 
         damped = 0.5 * step * (before.damping + power.damping)
         dissipated = (before.dissipation + 4.0 * power.dissipation_midway + power.dissipation) / 6.0
+        if self.power is None and power.stress_power is not None:
+            dissipated = power.stress_power
         return replace(
             self,
             kinetic=kinetic,

@@ -46,6 +46,8 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, moti
         _refuse_lost_bodies(names, quantity, values, key)
     for quantity in _ENERGIES:
         refuse_no_number("fluid", quantity, getattr(advance, quantity), key)
+    if advance.stress_power is not None:
+        refuse_no_number("fluid", "stress_power", advance.stress_power, key)
 
 
 _POWERS = ("boundary_power", "leak", "grad_div", "source_power")

@@ -167,6 +167,11 @@ class State(CarriedState):
         return self.contact_wrench if self.free is None else self.free.contact
 
     @property
+    def free_hydrodynamic(self) -> Wrench:
+        """Of the fluid, on the motions that carry the bodies."""
+        return self.hydrodynamic_wrench if self.free is None else self.free.hydrodynamic
+
+    @property
     def is_on_new_mesh(self) -> bool:
         """Whether its mesh was made for it."""
         return self.reference is not None and self.reference.tick == self.tick

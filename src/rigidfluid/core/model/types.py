@@ -348,6 +348,8 @@ class Advance:
     convection takes through faces that let none pass, an error of the mesh [energy/time]. ``grad_div``: what
     stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow [energy/time].
     ``source_power``: that of the problem's source on the fluid, ∫ f·u [energy/time].
+    ``stress_power``: that of the end's viscous stress in the mean of the velocities at start and end, in a step without
+    a past of a fluid with inertia; else None [energy/time].
     """
 
     fluid: FluidState
@@ -361,6 +363,7 @@ class Advance:
     leak: float = 0.0
     grad_div: float = 0.0
     source_power: float = 0.0
+    stress_power: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
+from rigidfluid.core.run.turn_remarks import turn_remarks
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.parts import known_parts
 
@@ -55,6 +56,8 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     remarks += start_remarks(found.get("cycles", {}), inertia, length)
     jumps = remesh_jumps(simulation.history, radii) if simulation.counts.remeshes else {}
     remarks += jump_remarks(jumps)
+    if inertia:
+        remarks += turn_remarks(simulation.history)
     return {
         "status": status,
         "scene": simulation.scene.to_dict(),
