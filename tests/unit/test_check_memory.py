@@ -100,7 +100,7 @@ def test_the_time_is_that_of_all_steps_and_meshes_on_this_machine(monkeypatch: p
 def test_the_parts_of_a_run_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run_time, "machine_speed", lambda: 1.0)
     count, cost = Count(1000.0, 100.0), SolverCost("lu", 4000.0, 1e9, seconds=0.02, step_seconds=0.01)
-    size = RunSize(count, count, None, cost, cost, meshes=3)
+    size = RunSize(count, count, None, cost, cost, meshes=3, memory=1e9)
     smooth = 100 * 0.01 + 3 * (1000 * 3e-5 + 0.02)
     for name, contact in (("falling_disk", 0.005), ("ellipse_xia", 0.1), ("dfg_cylinder", 0.0)):
         scene = load_scene(SCENES / f"{name}.toml", ["time.end=1.0", "time.step=0.01"])

@@ -25,7 +25,6 @@ def in_memory(size: RunSize) -> Iterator[Finding]:
         A warning where that is more than there is.
     """
     start, most = size.start_cost, size.most_cost
-    costly = max(start, most, key=lambda cost: cost.memory)
     available = available_memory()
     found: Figures = {
         "cells": size.start.cells,
@@ -34,7 +33,7 @@ def in_memory(size: RunSize) -> Iterator[Finding]:
         "most_unknowns": most.unknowns,
         "gap": size.gap,
         "method": most.method,
-        "memory": costly.memory,
+        "memory": size.memory,
         "available": available,
         "seconds": most.seconds,
     }
@@ -42,9 +41,9 @@ def in_memory(size: RunSize) -> Iterator[Finding]:
     if size.meshes > 1:
         text += f", at most {figure(size.most.cells)} with {figure(most.unknowns)}"
         text += "" if size.gap is None else f", where gaps are {figure(size.gap)}"
-    text += f"; by {most.method!r} the run takes {gigabytes(costly.memory)} of memory, and {figure(most.seconds)} s of"
+    text += f"; by {most.method!r} the run takes {gigabytes(size.memory)} of memory, and {figure(most.seconds)} s of"
     text += " one core each time that factors are made"
-    if costly.memory <= available:
+    if size.memory <= available:
         yield Finding("note", QUESTION, (), text, found=found)
         return
     text += f"; {gigabytes(available)} are available"
