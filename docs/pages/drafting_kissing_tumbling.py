@@ -320,7 +320,7 @@ def about_overtaking(pairs: dict[str, Pair]) -> str:
 
 When are the two disks at one height? Published are
 {published}.
-These are {np.ptp(list(PAIR_OVERTAKES.values())):.3f} s apart, since the line of centres is an unstable equilibrium: what
+These are {np.ptp(list(PAIR_OVERTAKES.values())):.3f} s apart: the line of centres is an unstable equilibrium, and what
 the disks are beside each other grows as exp({rate:.0f} t/s), an offset at the start twice as large saves {saved:.3f} s,
 and one that is not known leaves the time open. Uhlmann's disks start d/250 on either side of the line, and Koblitz et
 al. repeat his case: in their figure 10a the leading disk is .0009 cm off the middle until 0.09 s, by a digitised copy.

@@ -90,7 +90,7 @@ def test_the_pair_tumbles_as_published_from_the_published_offset():
     )
     trailing, leading = ways(history, "trailing", "leading")
     early = PAIR_LEADING_ASIDE[PAIR_LEADING_ASIDE[:, 0] < 0.21]
-    aside = np.interp(early[:, 0], leading["time"], leading["x"] - leading["x"][0])
+    aside = np.interp(early[:, 0], leading["time"], leading["x"][0] - leading["x"])
     np.testing.assert_allclose(aside, early[:, 1], atol=0.003)
     overtakes = first(trailing["time"], trailing["y"] < leading["y"])
     assert overtakes == pytest.approx(PAIR_OVERTAKES["Koblitz et al. 2017"], rel=0.03)
