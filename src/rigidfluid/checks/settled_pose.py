@@ -32,9 +32,9 @@ _EQUAL = 1e-6
 def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     """The pose with each free body moved along its weight, the foremost first, until a ``gap`` [length] is left ahead.
 
-    What is no ball turns its flattest side to where it falls before, if there is room for it: that is how it comes to
-    rest, and its gap is narrow over the widest area. Bodies without weight, of given motion, and all that mechanisms or
-    joints hold stay where they start; so do all where there are very many, or only a slow detector knows their gaps.
+    Other bodies than balls turn their flattest side to where they fall before, if there is room for it: so they come to
+    rest, and their gap is narrow over the widest area. Bodies without weight, of given motion, and all that mechanisms
+    or joints hold stay where they start; so do all where there are very many, or only a slow detector knows their gaps.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
 def flattest_side(body: Body, ahead: FloatArray) -> FloatArray:
     """Outward unit normal (d,) of the tangent plane nearest to the centre of mass, in the body's frame [1].
 
-    Of an ellipsoid it is along the least semi-axis, of several equal ones as near to ``ahead`` (d,) as can be; of a
-    shape of facets it is that of a facet. ``ahead`` itself where the shape is neither.
+    The normal of an ellipsoid is along the least semi-axis, of several equal ones as near to ``ahead`` (d,) as can be,
+    and a shape of facets has that of a facet. ``ahead`` itself stands for other shapes.
     """
     if body.semi_axes is not None:
         least = body.semi_axes <= (1.0 + _EQUAL) * body.semi_axes.min()

@@ -27,7 +27,7 @@ _BLOCKS = {2: Cost(1.0e3, 2.2e-6), 3: Cost(1.8e3, 6.0e-6)}
 _PROCESS = {2: 3.4e8, 3: 3.5e8}
 _BESIDE = {"lu": {2: 1.8e3, 3: 3.7e3}, "schur": {2: 1.1e3, 3: 1.6e3}}
 """Memory of a process with interpreter, libraries and compiled kernels, and beside for each unknown: matrices, meshes,
-states [byte]. What meshers take while they make a mesh comes on top of it."""
+states [byte]. Meshers take more while they make a mesh."""
 
 _STEP_SECONDS = {"lu": {2: (4e-3, 1.8e-6), 3: (1e-2, 9e-6)}, "schur": {2: (4e-3, 5e-6), 3: (1e-2, 1.1e-5)}}
 """CPU seconds of one core for each step, and for each unknown of it."""

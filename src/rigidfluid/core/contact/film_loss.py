@@ -69,7 +69,7 @@ class FilmLoss:
 
             e = [e₀ exp(-β/(St + A)) (St + A) + A + B]/(St - B),
 
-        e₀ the ``dry`` one. That is least at one speed, and more in slower impacts, of which the film takes more than
+        e₀ the ``dry`` one. This e is least at one speed, and more in slower impacts, of which the film takes more than
         the formula: there the law gives back what the film takes on the way out, all at the most. Up to twice REBOUND,
         where next to nothing is to come back, e keeps its least value, so that the body stays near, and goes from one
         to the other up to three times REBOUND. With ``dry`` below _MAY_FALL all slower impacts have the least value.
