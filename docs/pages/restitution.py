@@ -21,6 +21,13 @@ DRY = {
 DRY_RESTITUTIONS = 0.05, 0.2, 0.5, 0.8, 0.95
 VISCOSITIES = 0.15, 0.08, 0.05, 0.035, 0.018, 0.005, 0.002
 FAR = ["body.0.position=[0.4, 0.5]", "domain.upper=[1.2, 1.0]", "time.end=0.14"]
+BALL = [
+    *("scene.dimension=3", "domain.lower=[0.0, 0.0, 0.0]", "domain.upper=[0.8, 0.8, 0.8]"),
+    *("body.0.position=[0.2, 0.4, 0.4]", "body.0.velocity=[-10.0, 0.0, 0.0]", "contact.range=0.01"),
+    *("contact.restitution=1.0", "mesh.size=0.2", "mesh.size_body=0.04", "time.step=0.001", "time.end=0.04"),
+]
+BALLS = {"st4": (0.4722, []), "st6": (0.3148, []), "st6_film": (0.3148, [f"contact.restitution_stokes={DECAY}"])}
+"""By folder: the viscosity, and what else differs of a ball that is thrown so slowly that it should not come back."""
 LAWS = {
     "restitution": [],
     "stokes": [f"contact.restitution_stokes={DECAY}"],
@@ -101,6 +108,7 @@ def page(work: Work) -> Page:
             _wet_rows(film, thin, wet),
         ),
         **_distances(wet),
+        ball=table(BALL_HEAD, [_ball_row(work, name) for name in BALLS]),
         halved=table(("law", "step [s]", "rebound", "created [%]", "lost [%]"), _halved_rows(halved)),
         created=f"{created:.2f}",
         study=study_table(study),
@@ -134,6 +142,16 @@ other, {meshes} with one mesh and the other. Part of what is missing is drag on 
 and back, which is no film. A law cannot give back what the film has taken: where e = 1 leaves less than the formula
 asks for, that is all there is.
 
+## A ball that should not come back
+
+A ball in 3D of radius .1 is thrown at 10 cm/s at a wall a radius away; the law's range is R/10, its `epsilon` is
+`"auto"`. St is of the speed of the throw; speeds are in cm/s.
+
+{ball}
+
+What leaves range the film takes before half a radius, if there is nothing in the column of the gap at the end beyond
+it. With `restitution_stokes` the law keeps the ball near the wall.
+
 ## Halvings of the step
 
 Energy created and lost by contacts and scheme, of all that was put in, for a viscosity of .02 g/s, thrown a radius
@@ -150,6 +168,21 @@ Of all runs on this page the worst creates {created} % of what was put in.
 `studies/rebound.toml`, one knob at a time.
 
 {study}"""
+
+
+BALL_HEAD = ("viscosity", "St", "law", "in at a gap of R/2", "in at range", "smallest gap [cm]")
+BALL_HEAD += ("out at range", "gap at the end [cm]")
+
+
+def _ball_row(work: Work, name: str) -> tuple[str, ...]:
+    viscosity, own = BALLS[name]
+    run = work.run(f"ball_{name}", SCENE, [*BALL, f"fluid.viscosity={viscosity}", *own])
+    bodies, disk, fluid = run.history.bodies, run.scene.body[0], run.scene.fluid
+    stokes = (disk.density + 0.5 * (fluid.density or 0.0)) * 2.0 * disk.radius * 10.0 / (9.0 * viscosity)
+    (far, _), (near, gone) = (_through(bodies, gap) for gap in (0.5 * disk.radius, run.scene.contact.range))
+    law = "`restitution_stokes`" if own else "elastic"
+    figures = f"{far:.2f}", f"{near:.2f}", f"{bodies['gap'].min():.5f}", f"{gone:.2f}", f"{bodies['gap'][-1]:.4f}"
+    return (f"{viscosity:g}", f"{stokes:.2g}", law, *figures)
 
 
 def _dry(work: Work, law: str, restitution: float) -> float:

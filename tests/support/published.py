@@ -45,6 +45,16 @@ PAIR_LEADING_VELOCITY = np.array(
 )
 PAIR_KISSES = 0.159  # s, when the velocities of the published disks jump towards each other
 
+# The same pair, each disk half of PAIR_OFFSET beside the line. When the two are at one height: Koblitz, Lovett,
+# Nikiforakis, Henshaw, J. Comput. Phys. 343 (2017) 414; Uhlmann, J. Comput. Phys. 209 (2005) 448, figure 6a, digitised;
+# Glowinski et al. 2001, digitised, whose offset is not known [s].
+PAIR_OFFSET = 0.002
+PAIR_OVERTAKES = {"Koblitz et al. 2017": 0.261, "Uhlmann 2005": 0.280, "Glowinski et al. 2001": 0.243}
+PAIR_LEADING_ASIDE = np.array(  # Koblitz et al. 2017, figure 10a: (time [s], way of the leading disk aside [cm])
+    [(0.1575, 0.0085), (0.1740, 0.0191), (0.1850, 0.0335), (0.1960, 0.0588), (0.2070, 0.1004), (0.2170, 0.1586)]
+    + [(0.2278, 0.2455), (0.2366, 0.3330), (0.2466, 0.4485), (0.2541, 0.5404), (0.2615, 0.6291)]
+)
+
 # Xia, Connington, Rapaka, Yue, Feng & Chen, J. Fluid Mech. 625 (2009) 249: an ellipse in a channel that is four of its
 # long axes a wide. Digitised, heights over a from the bottom of a channel of 28 a; it starts at 24 a.
 ELLIPSE_PATH = np.array(  # (y/a, x/a)

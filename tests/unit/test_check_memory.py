@@ -18,6 +18,7 @@ from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import load_scene
 
 FINE_SPHERE = ["mesh.size=1.0", "mesh.size_body=0.1", "mesh.growth=0.2"]
+LYING = "body.0.orientation=[0.7547,0.0,0.0,0.6561]"
 COARSE_SPHERE = ["mesh.size=3.0", "mesh.size_body=0.6"]
 
 
@@ -28,6 +29,9 @@ def findings(scene: Scene) -> list[Finding]:
 MEASURED = [  # scene, settings, unknowns at the start, most and memory [MiB] of the whole run
     ("falling_sphere", [], 66_923, 72_163, 1049),
     ("falling_sphere", ["mesh.size_body=0.4"], 18_005, 25_713, 903),
+    ("falling_ellipsoid", [], 61_521, 63_666, 1074),
+    ("falling_ellipsoid", ["body.0.position=[0.5,0.4,0.2]", LYING, "time.end=0.2"], 60_283, 63_666, 961),
+    ("drafting_kissing_tumbling", ["time.step=0.0005", "time.end=0.31"], 32_441, 35_615, 444),
     ("ten_cate_e3", ["contact.epsilon=7.576e-8"], 356_442, 465_534, 2956),
     ("two_disks", ["mesh.size_body=0.04", "time.step=0.004"], 8_738, 9_542, 350),
 ]
@@ -100,7 +104,7 @@ def test_the_time_is_that_of_all_steps_and_meshes_on_this_machine(monkeypatch: p
 def test_the_parts_of_a_run_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run_time, "machine_speed", lambda: 1.0)
     count, cost = Count(1000.0, 100.0), SolverCost("lu", 4000.0, 1e9, seconds=0.02, step_seconds=0.01)
-    size = RunSize(count, count, None, cost, cost, meshes=3)
+    size = RunSize(count, count, None, cost, cost, meshes=3, memory=1e9)
     smooth = 100 * 0.01 + 3 * (1000 * 3e-5 + 0.02)
     for name, contact in (("falling_disk", 0.005), ("ellipse_xia", 0.1), ("dfg_cylinder", 0.0)):
         scene = load_scene(SCENES / f"{name}.toml", ["time.end=1.0", "time.step=0.01"])

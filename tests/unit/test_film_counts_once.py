@@ -12,6 +12,7 @@ from touching import contact, unstacked
 
 import rigidfluid
 from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.hunt_crossley import LEAST, hardening
 from rigidfluid.core.contact.loads import inverse_mass
 from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.contact.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
@@ -33,6 +34,11 @@ def cylinder_resistance(gap: float) -> float:
 
 def sphere_resistance(gap: float) -> float:
     return 6.0 * np.pi * VISCOSITY * RADIUS**2 / max(gap, 1e-6)
+
+
+def work(excess: np.ndarray) -> np.ndarray:
+    """y - ln(1 + y)."""
+    return excess - np.log1p(excess)
 
 
 class Impact(NamedTuple):
@@ -88,6 +94,37 @@ def test_law_and_film_together_leave_the_formula(dimension: int, law_range: floa
 @pytest.mark.parametrize(("dimension", "law_range"), [(2, 0.03), (2, 0.01), (3, 0.03), (3, 0.002)])
 def test_slow_impacts_in_a_resolved_film_do_not_come_back(dimension: int, law_range: float) -> None:
     assert whole_rebound(dimension, law_range, 7.0) == 0.0
+
+
+@pytest.mark.parametrize("stokes", [35.0, 44.0, 60.0])
+def test_a_film_that_takes_more_than_the_formula_is_all_that_takes(stokes: float) -> None:
+    """In 2D and within a twentieth of the radius: nothing more than a law without losses could come back."""
+    law_range, held = 0.05 * RADIUS, replace(loads(2, stokes), smallest_gap=0.0125 * RADIUS)
+    lossless = impact(NormalLaw(NormalLaw.Options(epsilon="auto"), law_range, held), 2, stokes).whole
+    asked = min(DRY * float(np.exp(-DECAY / stokes)), lossless)
+    assert whole_rebound(2, law_range, stokes) == pytest.approx(asked, abs=0.01)
+
+
+@pytest.mark.parametrize("dry", [0.97, 0.8, 0.5, 0.3, 0.1])
+@pytest.mark.parametrize(("dimension", "law_range"), [(2, 0.02), (2, 0.005), (2, 0.002), (3, 0.02), (3, 0.002)])
+def test_each_state_has_one_speed_at_range(dimension: int, law_range: float, dry: float) -> None:
+    """Its energy grows with that speed at any closing speed, though the restitution may fall with it."""
+    held = replace(loads(dimension, 20.0), smallest_gap=0.25 * law_range)
+    law, there = (
+        NormalLaw(NormalLaw.Options(epsilon="auto"), law_range, held),
+        contact(law_range, RADIUS, np.inf, dimension),
+    )
+    per_speed = float(stokes_number(there, FILM, LOADS)[0])
+    found = FilmLoss(DECAY, FILM, held).restitution(dry, law, there, 1.0 / inverse_mass(there, LOADS))
+    speed = np.geomspace(1.0, 2000.0, 600) / per_speed
+    restitution = np.maximum([float(found(one)[0]) for one in speed[:, None]], LEAST)
+    harder = hardening(restitution)
+    for closing in np.concatenate([-np.geomspace(1.0, 500.0, 12), [0.0, 5.0, 50.0]]) / per_speed:
+        met = (np.abs(closing) <= speed) & (closing >= -restitution * speed)
+        now = np.maximum(harder.most * closing / speed, -harder.least)
+        stored = 2.0 * (speed / harder.most) ** 2 * (work(harder.most) - work(now))
+        both = met[1:] & met[:-1]
+        assert np.all(np.diff(stored)[both] > -1e-9 * stored.max())
 
 
 @pytest.mark.parametrize(("dimension", "stokes"), [(2, 8.0), (3, 4.0), (3, 6.0)])

@@ -5,7 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from published import PAIR_KISSES, PAIR_LEADING_HEIGHT, PAIR_TRAILING_HEIGHT
+from published import (
+    PAIR_KISSES,
+    PAIR_LEADING_ASIDE,
+    PAIR_LEADING_HEIGHT,
+    PAIR_OFFSET,
+    PAIR_OVERTAKES,
+    PAIR_TRAILING_HEIGHT,
+)
 
 import rigidfluid
 
@@ -68,3 +75,22 @@ def test_the_published_pair_kisses():
     trailing, leading = ways(published_pair(), "trailing", "leading")
     gap = np.hypot(trailing["x"] - leading["x"], trailing["y"] - leading["y"]) - 0.25
     assert first(trailing["time"], gap < 0.015) == pytest.approx(PAIR_KISSES, rel=0.1)
+
+
+def test_the_pair_tumbles_as_published_from_the_published_offset():
+    """Half the offset is .02 s later, and the range of the scene .01 s."""
+    history = run(
+        "drafting_kissing_tumbling.toml",
+        *("mesh.size_body=0.01", "mesh.wake.size=0.04", "time.step=0.0005", "time.end=0.265", "output.every=0.1"),
+        *(
+            f"body.{i}.position=[{1.0 + side * PAIR_OFFSET / 2}, {y}]"
+            for i, (side, y) in enumerate(((-1, 5), (1, 4.5)))
+        ),
+        *("contact.range=0.0075", "contact.stiffness=8e5"),
+    )
+    trailing, leading = ways(history, "trailing", "leading")
+    early = PAIR_LEADING_ASIDE[PAIR_LEADING_ASIDE[:, 0] < 0.21]
+    aside = np.interp(early[:, 0], leading["time"], leading["x"][0] - leading["x"])
+    np.testing.assert_allclose(aside, early[:, 1], atol=0.003)
+    overtakes = first(trailing["time"], trailing["y"] < leading["y"])
+    assert overtakes == pytest.approx(PAIR_OVERTAKES["Koblitz et al. 2017"], rel=0.03)

@@ -15,7 +15,6 @@ def memory_findings(size: RunSize) -> Iterator[Finding]:
     """Compare the most memory that the backend expects to take, at the start or later, with what is available now; a
     warning where it is more."""
     start, most = size.start_cost, size.most_cost
-    costly = max(start, most, key=lambda cost: cost.memory)
     available = available_memory()
     found: Figures = {
         "cells": size.start.cells,
@@ -24,7 +23,7 @@ def memory_findings(size: RunSize) -> Iterator[Finding]:
         "most_unknowns": most.unknowns,
         "gap": size.gap,
         "method": most.method,
-        "memory": costly.memory,
+        "memory": size.memory,
         "available": available,
         "seconds": most.seconds,
     }
@@ -32,9 +31,9 @@ def memory_findings(size: RunSize) -> Iterator[Finding]:
     if size.meshes > 1:
         text += f", at most {figure(size.most.cells)} with {figure(most.unknowns)}"
         text += "" if size.gap is None else f", where gaps are {figure(size.gap)}"
-    text += f"; by {most.method!r} the run takes {gigabytes(costly.memory)} of memory, and {figure(most.seconds)} s of"
+    text += f"; by {most.method!r} the run takes {gigabytes(size.memory)} of memory, and {figure(most.seconds)} s of"
     text += " one core each time that factors are made"
-    if costly.memory <= available:
+    if size.memory <= available:
         yield Finding("note", QUESTION, (), text, found=found)
         return
     text += f"; {gigabytes(available)} are available"

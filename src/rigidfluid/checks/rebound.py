@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.finding import Finding, figure, round_down
-from rigidfluid.core.contact.film_loss import braking
+from rigidfluid.core.contact.film_loss import REBOUND, braking
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
 from rigidfluid.core.model.contacts import select
@@ -17,8 +17,6 @@ from rigidfluid.core.model.types import Contacts, Film, FloatArray
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "rebound"
-REBOUND = 10.0
-"""The Stokes number below which balls were not seen to rebound."""
 BALLS = 35.0
 """β of balls in liquids: they come back with exp(-β/St) of the speed of a dry rebound."""
 COMES_BACK = 0.1

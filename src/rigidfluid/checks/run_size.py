@@ -12,6 +12,7 @@ from rigidfluid.checks.resolution import narrowest_gaps
 from rigidfluid.checks.settled_pose import settled_pose
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mesh.cell_count import Count, expected_count
+from rigidfluid.core.mesh.mmg import MESHER_MEMORY
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, SolverCost
@@ -37,7 +38,8 @@ _DIAMETERS_OF_A_MESH = 2.0
 @dataclass(frozen=True, slots=True)
 class RunSize:
     """Cells of the mesh at the ``start``, and the ``most``, with bodies settled down to a ``gap`` [length], None where
-    none falls; what the backend takes for them; and how many ``meshes`` are made, the first one included."""
+    none falls; what the backend takes for them; how many ``meshes`` are made, the first one included; and the
+    ``memory`` of the run at its most, where a mesh is made while factors are held [byte]."""
 
     start: Count
     most: Count
@@ -45,6 +47,7 @@ class RunSize:
     start_cost: SolverCost
     most_cost: SolverCost
     meshes: int
+    memory: float
 
 
 def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
@@ -63,7 +66,10 @@ def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> 
         most = Count(*(_LATER_OVER_FIRST * number for number in most))
     most_cost = system.backend.solver_cost(*most)
     assert most_cost is not None
-    return RunSize(start, most, gap if falls else None, start_cost, most_cost, 1 + meshes)
+    memory = max(start_cost.memory, most_cost.memory)
+    if meshes:
+        memory += MESHER_MEMORY[system.dimension]
+    return RunSize(start, most, gap if falls else None, start_cost, most_cost, 1 + meshes, memory)
 
 
 def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:

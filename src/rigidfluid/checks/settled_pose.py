@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.model.facets import area_vectors
+from rigidfluid.core.model.interfaces import Body, Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.setup.boundary import surfaces_of
@@ -23,12 +25,17 @@ _TOLERANCE = 0.05
 _ALONG = 1e-9
 """Cosine up to which a way leads along a surface and not to it."""
 
+_EQUAL = 1e-6
+"""Semi-axes that differ by less than this part of the least are one."""
+
 
 def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     """Pose with each free body moved along its weight, the foremost first, until a ``gap`` [length] is left ahead.
 
-    Bodies without weight, of given motion, and all that mechanisms or joints hold stay where they start; so do all
-    where there are very many, or only a slow detector knows their gaps. The ``detector`` needs no mesh.
+    Other bodies than balls turn their flattest side to where they fall before, if there is room for it: so they come to
+    rest, and their gap is narrow over the widest area. Bodies without weight, of given motion, and all that mechanisms
+    or joints hold stay where they start; so do all where there are very many, or only a slow detector knows their gaps.
+    The ``detector`` needs no mesh.
     """
     pose, weight = system.pose, system.weight
     count = len(system.bodies)
@@ -40,8 +47,54 @@ def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     foremost = np.argsort(-np.sum(down * pose.position[pulled], axis=1))
     asked = detector(detector.Options(), system.bodies, surfaces_of(system.domain, count))
     for number, direction in zip(pulled[foremost].tolist(), down[foremost], strict=True):
-        pose = _fallen(asked, pose, number, direction, gap)
+        pose = _fallen(asked, _laid(asked, pose, number, direction, gap), number, direction, gap)
     return pose
+
+
+def flattest_side(body: Body, ahead: FloatArray) -> FloatArray:
+    """Outward unit normal (d,) of the tangent plane nearest to the centre of mass, in the body's frame [1].
+
+    The normal of an ellipsoid is along the least semi-axis, of several equal ones as near to ``ahead`` (d,) as can be,
+    and a shape of facets has that of a facet. ``ahead`` itself stands for other shapes.
+    """
+    if body.semi_axes is not None:
+        least = body.semi_axes <= (1.0 + _EQUAL) * body.semi_axes.min()
+        side = np.where(least, ahead, 0.0)
+        side = side if np.any(np.abs(side) > _EQUAL) else np.eye(len(side))[np.argmax(least)]
+    elif body.facets is not None:
+        normals = area_vectors(body.facets.points, body.facets.vertices)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        side = normals[np.argmin((normals @ body.facets.points.T).max(axis=1))]
+    else:
+        side = ahead
+    return np.asarray(side / np.linalg.norm(side))
+
+
+def _laid(detector: Detector, pose: Pose, body: int, direction: FloatArray, gap: float) -> Pose:
+    """The pose with the flattest side of a body turned to a ``direction`` (d,), unless it is nearer to others then."""
+    shape, row = detector.bodies[body], slice(body, body + 1)
+    if shape.radius is not None:
+        return pose
+    turned = rotation_matrices(pose.orientation[row])[0]
+    side = turned @ flattest_side(shape, turned.T @ direction)
+    orientation = pose.orientation.copy()
+    orientation[row] = rotate(orientation[row], _turn(side, direction)[None])
+    laid = replace(pose, orientation=orientation)
+    found = detector.detect(laid, None, gap)
+    mine = (found.body_a == body) | (found.body_b == body)
+    return pose if np.any(found.gap[mine] < gap) else laid
+
+
+def _turn(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Rotation vector (k,) of the shortest turn from one unit vector (d,) to another [rad]."""
+    cosine = float(start @ end)
+    if len(start) == 2:
+        return np.array([np.arctan2(start[0] * end[1] - start[1] * end[0], cosine)])
+    axis = np.cross(start, end)
+    sine = float(np.linalg.norm(axis))
+    if sine <= _ALONG:  # half a turn may go about any axis across
+        axis, sine = np.cross(start, np.eye(3)[np.argmin(np.abs(start))]), 0.0
+    return np.asarray(axis / np.linalg.norm(axis) * np.arctan2(sine, cosine))
 
 
 def _fallen(detector: Detector, pose: Pose, body: int, direction: FloatArray, gap: float) -> Pose:

@@ -15,6 +15,13 @@ from rigidfluid.core.model.types import Contacts, Film, FloatArray, Loads
 _PARTS = 12
 """Number of parts of the way from range to contact over which the film's share is summed."""
 
+REBOUND = 10.0
+"""The Stokes number below which balls were not seen to rebound."""
+
+_MAY_FALL = 0.5
+"""With a lower dry restitution e never falls with the speed: a faster impact would end slower, and so have no one speed
+at range for each state."""
+
 _LEAST_TAKEN = 1e-9
 """Least part of β that a film takes: below it 1/A - 1 in the marginal Stokes number has no digits left."""
 
@@ -62,17 +69,28 @@ class FilmLoss:
 
             e = [e₀ exp(-β/(St + A)) (St + A) + A + B]/(St - B),
 
-        e₀ the ``dry`` one. e never falls with v: impacts below its least value have that, and do not come back.
+        e₀ the ``dry`` one. This e is least at one speed, and more in slower impacts, of which the film takes more than
+        the formula: there the law gives back what the film takes on the way out, all at the most. Up to twice REBOUND,
+        where next to nothing is to come back, e keeps its least value, so that the body stays near, and goes from one
+        to the other up to three times REBOUND. With ``dry`` below _MAY_FALL all slower impacts have the least value.
         """
         met = braking(law, contacts, mass, self.film, self.loads)
 
         def restitution_at(speed: FloatArray) -> FloatArray:
-            both = met.outside + met.within(speed)
-            stokes = np.maximum(met.per_speed * speed + met.outside, self._marginal(dry, both))
-            whole = dry * np.exp(-self.decay / stokes)
-            return np.asarray(np.minimum((whole * stokes + both) / (stokes - both), dry))
+            both, stokes = met.outside + met.within(speed), met.per_speed * speed + met.outside
+            least = self._left_to_law(dry, np.maximum(stokes, self._marginal(dry, both)), both)
+            if dry < _MAY_FALL:
+                return least
+            wanted = np.maximum(self._left_to_law(dry, stokes, both), least)
+            return np.asarray(least + np.clip(stokes / REBOUND - 2.0, 0.0, 1.0) * (wanted - least))
 
         return restitution_at
+
+    def _left_to_law(self, dry: float, stokes: FloatArray, taken: FloatArray) -> FloatArray:
+        """e of the formula (m,) at St (m,) before the film, which takes ``taken`` (m,) each way, at most one."""
+        left = stokes - taken
+        given = dry * np.exp(-self.decay / stokes) * stokes + taken
+        return np.asarray(np.divide(np.minimum(given, left), left, out=np.ones_like(left), where=left > 0.0))
 
     def _marginal(self, dry: float, taken: FloatArray) -> FloatArray:
         """Stokes number St (m,) at which e is least where the film takes ``taken`` (m,) of it: with s = β/St and a =
