@@ -24,7 +24,7 @@ def later(time):
 
 def test_balls_are_followed_exactly():
     detector = SphereDetector(PartOptions(), [ball(0.1), ball(0.12)], [FLOOR])
-    followed = ExtrapolatedContacts(detector.detect(START, None, np.inf), START).at(later(1.0))
+    followed = ExtrapolatedContacts(detector.detect(START, None, np.inf), START).extrapolate(later(1.0))
     found = detector.detect(later(1.0), None, np.inf)
     for name in ("body_a", "body_b", "gap", "normal", "point_a", "point_b"):
         np.testing.assert_allclose(getattr(followed, name), getattr(found, name), atol=1e-14, err_msg=name)
@@ -35,7 +35,7 @@ def test_other_shapes_to_first_order(contact):
     detector = EllipsoidDetector(PartOptions(), [ellipsoid(0.14, 0.07), ellipsoid(0.12, 0.08)], [FLOOR])
     follow = ExtrapolatedContacts(detector.detect(START, None, np.inf), START)
     errors = [
-        abs(follow.at(later(time)).gap[contact] - detector.detect(later(time), None, np.inf).gap[contact])
+        abs(follow.extrapolate(later(time)).gap[contact] - detector.detect(later(time), None, np.inf).gap[contact])
         for time in (0.4, 0.2, 0.1)
     ]
     moved = abs(detector.detect(later(0.1), None, np.inf).gap - detector.detect(START, None, np.inf).gap)[contact]

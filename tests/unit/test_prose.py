@@ -18,9 +18,7 @@ PUBLIC_ROOMS = {"testing", "taylor_hood"}
 
 # Names and sentences without a subject, and sections on private names, left in each room. They only fall.
 LEFT: dict[str, tuple[int, int]] = {
-    "core.contact": (2, 0),
     "core.model": (1, 0),
-    "core.run": (1, 0),
 }
 
 

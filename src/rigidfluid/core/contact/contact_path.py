@@ -199,7 +199,7 @@ def _advance_coupled(
     else:
         contacts_at: Callable[[Pose], Contacts]
         if system.detector.needs_mesh:
-            contacts_at, span = ExtrapolatedContacts(near, state.pose).at, size
+            contacts_at, span = ExtrapolatedContacts(near, state.pose).extrapolate, size
         else:
             reach, span = _horizon(system, movement, size)
             contacts_at = _detected(system, reach)
@@ -248,7 +248,7 @@ def _implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, nea
     reach = max(float(near.gap.max()), law.range + 4.0 * _fastest(system, movement, size) * size)
     for _ in range(IMPLICIT_PARTS):
         followed = on_mesh or _foreseen(system, law, movement, part, reach)
-        start = followed.start if isinstance(followed, TrackedPairs) else followed.at(movement.pose)
+        start = followed.start if isinstance(followed, TrackedPairs) else followed.extrapolate(movement.pose)
         if len(start) == 0:
             _free_flight(system, movement, part)
             continue
@@ -267,7 +267,7 @@ def _implicit_step(
     size: float,
 ) -> tuple[BodyStep, M]:
     """Advance by one implicit step; return also the movement at its end."""
-    crossing = implicit_contact_step(law, movement, start, followed.at, size, system.wall_velocity)
+    crossing = implicit_contact_step(law, movement, start, followed.extrapolate, size, system.wall_velocity)
     end, wrench, lost, driven, stored = crossing
     if isinstance(followed, TrackedPairs):
         _refuse_unseen(law, followed, end.pose, KEPT * stored)

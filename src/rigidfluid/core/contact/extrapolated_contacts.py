@@ -25,7 +25,7 @@ class ExtrapolatedContacts:
         self._arm_a = _arms(contacts.body_a, contacts.point_a, pose, turned_back)
         self._arm_b = _arms(contacts.body_b, contacts.point_b, pose, turned_back)
 
-    def at(self, pose: Pose) -> Contacts:
+    def extrapolate(self, pose: Pose) -> Contacts:
         """Contacts when the bodies are at ``pose``, in the same order."""
         rotation = rotation_matrices(pose.orientation)
         old, normal = self._contacts, self._contacts.normal.copy()

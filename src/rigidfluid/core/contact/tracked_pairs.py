@@ -33,7 +33,7 @@ class TrackedPairs:
         self.start = self._detected(pose, reach)
         self._pairs = self._numbers(self.start)
 
-    def at(self, pose: Pose) -> Contacts:
+    def extrapolate(self, pose: Pose) -> Contacts:
         """Contacts of the pairs when the bodies are at ``pose``; raises StepRejected if another pair is in range."""
         moved = float(travel(self._system, self._pose, pose).max())
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
@@ -41,14 +41,15 @@ class TrackedPairs:
         self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
         if _all_different(self._pairs) and _all_different(numbers):
             return select(found, np.searchsorted(numbers, self._pairs))
-        return self._matched(found, numbers, ExtrapolatedContacts(self.start, self._pose).at(pose), SAME_PLACE * moved)
+        expected = ExtrapolatedContacts(self.start, self._pose).extrapolate(pose)
+        return self._matched(found, numbers, expected, SAME_PLACE * moved)
 
     def missed(self, law: ForceLaw, pose: Pose) -> float:
         """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
         untracked."""
         if _all_different(self._pairs) and not arms(self._system).any():
             return 0.0  # two balls have one contact, and others are refused
-        return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.at(pose)).sum())
+        return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.extrapolate(pose)).sum())
 
     def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
         """Contacts ``found`` at the places of those ``carried`` along, one for each; the carried one where none is as

@@ -130,7 +130,7 @@ class Stepper:
                     return candidate, True
                 end, size = self._end(state, level), self._clock.size(level)
                 again = first_step_again(self.system, state, candidate.free_twist, end, size)
-                path = self._as_given(again, state, level)
+                path = self._with_prescribed(again, state, level)
                 continue
             with self._watch("response"):
                 found = shown_coupling(self.system, state, candidate, path, step)
@@ -151,9 +151,9 @@ class Stepper:
                 coupling = expected_coupling(self.system, state, time, size)
         with self._watch("contact"):
             path = advance_bodies(self.system, state, time, size, coupling)
-        return self._as_given(path, state, level)
+        return self._with_prescribed(path, state, level)
 
-    def _as_given(self, path: BodyStep, state: State, level: int) -> BodyStep:
+    def _with_prescribed(self, path: BodyStep, state: State, level: int) -> BodyStep:
         """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies; and
         with joints that fit."""
         end = self._end(state, level)

@@ -1,4 +1,4 @@
-"""Whether bodies that spin turned so far in a step that the flow round them lost its energy."""
+"""Warns of bodies that turned so far in a step that the flow round them lost its energy."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remarks import Remark
 
 FARTHEST_TURN = 0.5
-"""A step of so many radians loses next to nothing of a flow that goes round with its body [rad]."""
+"""Turn in a step up to which next to nothing is lost of a flow that goes round with its body [rad]."""
 
 
 def turn_remarks(history: History) -> list[Remark]:
-    """Of the body that turned most in a step, where that was much and steps too long have lost energy.
+    """Warn of the body that turned most in a step, if that was much and steps too long have lost energy.
 
-    Flow that is the same all round a body keeps its energy however fast the body spins. What is carried round with it
-    is damped by steps of a radian and more, by as much at half the step: that halving changes nothing shows nothing.
+    Flow that is the same all round a body keeps its energy however fast the body spins. Flow that is carried round with
+    it is damped by steps of a radian and more, and by as much at half the step, so that halving the step shows nothing.
     """
     energy = history.energy
     account = energy_account(energy)
