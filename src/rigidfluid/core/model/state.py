@@ -168,7 +168,7 @@ class State(CarriedState):
 
     @property
     def free_hydrodynamic(self) -> Wrench:
-        """Of the fluid, on the motions that carry the bodies."""
+        """The fluid's wrench on the motions that carry the bodies."""
         return self.hydrodynamic_wrench if self.free is None else self.free.hydrodynamic
 
     @property

@@ -172,8 +172,9 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
 
 
 def _dissipation_midway(state: State, before: Power | None, advance: Advance, twist: Twist, after: Power) -> float:
-    """Where the fluid has no inertia, of the mean force on the bodies at their mean velocity: the mean of the flows at
-    both ends is none of the mesh midway, and dissipates more. As at the end where the flow before says nothing."""
+    """Dissipation of a fluid without inertia by the mean force on the bodies at their mean velocity [energy/time]: the
+    mean of the flows at both ends is none of the mesh midway, and dissipates more. The rate at the end is taken where
+    the flow before says nothing."""
     if before is None:
         return after.dissipation
     force = 0.5 * (flat(state.hydrodynamic_wrench) + flat(advance.hydrodynamic_wrench))

@@ -14,10 +14,10 @@ FARTHEST_TURN = 0.5
 
 
 def turn_remarks(history: History) -> list[Remark]:
-    """Of the body that turned most in a step, where that was much and steps too long have lost energy.
+    """Warn of the body that turned most in a step, where that was much and steps too long have lost energy.
 
-    Flow that is the same all round a body keeps its energy however fast the body spins. What is carried round with it
-    is damped by steps of a radian and more, by as much at half the step: that halving changes nothing shows nothing.
+    Flow that is the same all round a body keeps its energy however fast the body spins. Other flow goes round with the
+    body and is damped by steps of a radian and more, by as much at half the step.
     """
     energy = history.energy
     account = energy_account(energy)
