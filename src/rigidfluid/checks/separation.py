@@ -38,7 +38,7 @@ def _lawless_findings(system: System) -> Iterator[Finding]:
             laws = " and ".join(interaction.field for interaction in met.interactions)
             text = f"nothing keeps {names[0]} and {names[1]} apart: "
             text += f"{laws} only takes energy out" if laws else "no law acts between them"
-            remedy = "Add an [[interaction]] for them, or mean it."
+            remedy = "Add an [[interaction]] for them; ignore this if it is intended."
             yield Finding("warning", "law", names, text, remedy, {"pairs": len(met.contacts)})
 
 
