@@ -71,7 +71,9 @@ def _between_finding(
     text = f"midway between {pair[0]} and {pair[1]} {name} has gaps of {figure(least)} to {figure(most)}"
     text += ", so that both act in every place" if always else ", so that at some angles both act in every place"
     key = f"{interaction.field}.range"
-    remedy = f"Set {key} to {round_down(least)} or less; ignore this if it is intended." if least > 0.0 else "Widen the domain."
+    remedy = "Widen the domain."
+    if least > 0.0:
+        remedy = f"Set {key} to {round_down(least)} or less; ignore this if it is intended."
     yield Finding("warning" if always else "note", "free-gap", (name, *pair), text, remedy, found, {"range": least})
 
 

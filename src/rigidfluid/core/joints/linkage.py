@@ -25,7 +25,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinemat
 from rigidfluid.errors import StepRejected
 
 ROUNDING = 1e-13
-"""Joints fit where their misfit is no more than this part of the lengths and angles there."""
+"""Relative tolerance of the constraint violation [1]."""
 
 _MOST_ITERATIONS = 30
 

@@ -121,7 +121,7 @@ class Writer:
 
     @contextmanager
     def _writing_once(self, path: Path) -> Iterator[bool]:
-        """Whether this rank is to write a file that is there once; its failure is everyone's."""
+        """Whether this rank writes a file shared by all ranks; a failure raises on all."""
         with self._ranks.raise_on_all(), writing(path):
             yield self._ranks.is_root
 
