@@ -191,9 +191,9 @@ def test_a_pair_that_was_not_foreseen_rejects_the_step():
     def right_at(x):
         return Pose(np.array([[0.25, 0.5], [x, 0.5]]), system.pose.orientation)
 
-    assert contacts.at(right_at(0.5)).gap == pytest.approx([0.15, 0.4])
+    assert contacts.extrapolate(right_at(0.5)).gap == pytest.approx([0.15, 0.4])
     with pytest.raises(StepRejected, match=r"body body0.*contact with body1"):
-        contacts.at(right_at(0.46))
+        contacts.extrapolate(right_at(0.46))
 
 
 def test_a_law_that_is_too_weak_is_said_to_be():
