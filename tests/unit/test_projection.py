@@ -64,6 +64,15 @@ def test_divergence_is_round_off_whatever_the_tolerance(given, tolerance):
     assert np.abs(divergence @ found.ravel()).max() < 1e-14 * terms.max()
 
 
+def test_a_gradient_much_larger_than_the_flow_is_taken_out_to_round_off(given):
+    """Single precision with too few refinements left so much of it that small residuals were never reached."""
+    target, points, position, velocity = given
+    at = target.numbering.node_points(points)
+    steep = velocity + 2e2 * (at - at.mean(axis=0))
+    found = target.projection(points, position).nearest(steep, 1e-11, velocity, velocity)
+    assert np.isfinite(found).all()
+
+
 def test_a_projection_that_does_not_converge_rejects_the_step(given, monkeypatch):
     monkeypatch.setattr(module, "_MOST", 2)
     target, points, position, velocity = given

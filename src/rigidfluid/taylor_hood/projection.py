@@ -17,8 +17,9 @@ from rigidfluid.taylor_hood.pardiso import Orderings
 _MOST = 200
 """Greatest number of iterations, which do not depend on the mesh on straight cells: 6 a digit in 3D, 3 in 2D."""
 
-_REFINED = 2
-"""Number of refinements of a solution by factors in single precision, where the iteration starts and ends."""
+_REFINEMENTS, _ROUND_OFF = 5, 1e-15
+"""Refinements at most of a solution by factors in single precision, where the iteration starts and ends, and the
+relative residual at which it needs no more."""
 
 
 class Masses(NamedTuple):
@@ -79,7 +80,7 @@ class SparseProjection:
         iterations = 0
         while True:  # round-off in single precision takes the iterates off those without divergence
             residual = self._load(velocity - self._whole(held, x))
-            residual = residual - self._force(self._divergence @ (residual / self._diagonal), _REFINED)
+            residual = residual - self._force(self._divergence @ (residual / self._diagonal), refined=True)
             if np.linalg.norm(residual) <= enough:
                 return self._whole(held, x)
             if iterations >= _MOST:
@@ -113,14 +114,18 @@ class SparseProjection:
     def _without_divergence(self, held: FloatArray, x: FloatArray) -> FloatArray:
         """The nearest x in D's measure, to round-off."""
         divergence = self._divergence @ x + self._whole_divergence @ held.ravel()
-        nearest: FloatArray = x - self._force(divergence, _REFINED) / self._diagonal
+        nearest: FloatArray = x - self._force(divergence, refined=True) / self._diagonal
         return nearest
 
-    def _force(self, divergence: FloatArray, refined: int = 0) -> FloatArray:
-        """Bᵀp whose velocities D⁻¹Bᵀp have this ``divergence``, by factors ``refined`` so many times."""
+    def _force(self, divergence: FloatArray, refined: bool = False) -> FloatArray:
+        """Bᵀp whose velocities D⁻¹Bᵀp have this ``divergence``, to single precision, or ``refined`` to round-off."""
         pressure = self._factors.solve(divergence)
-        for _ in range(refined):
-            pressure = pressure + self._factors.solve(divergence - self._laplacian @ pressure)
+        enough = _ROUND_OFF * np.linalg.norm(divergence)
+        for _ in range(_REFINEMENTS if refined else 0):
+            residual = divergence - self._laplacian @ pressure
+            if np.linalg.norm(residual) <= enough:
+                break
+            pressure = pressure + self._factors.solve(residual)
         force: FloatArray = self._gradient @ pressure
         return force
 
