@@ -90,6 +90,7 @@ def test_a_mesher_takes_its_tables_whatever_the_mesh() -> None:
 import resource
 import mmgpy
 from falling import SCENES
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.setup.build import build_system
@@ -97,11 +98,10 @@ from rigidfluid.core.setup.load import load_scene
 scene = load_scene(SCENES / "falling_sphere.toml", ["mesh.size=3.0", "mesh.size_body=0.6"])
 system = build_system(scene, to_run=False)
 sizes = sizes_of(scene.mesh, system.domain)
-domain = system.meshed(system.pose)
-surroundings = system.bodies, system.pose, domain, system.walls, sizes
-mesh = inserted_mesh(*surroundings, inserter_of(scene.mesh))
+around = fluid_domain_at(system, system.pose)
+mesh = inserted_mesh(around, sizes, inserter_of(scene.mesh))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-remesh(mesh, *surroundings)
+remesh(mesh, around, sizes)
 print(1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before))
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
