@@ -17,6 +17,7 @@ import numpy as np
 from mpi4py import MPI
 
 from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.model.ranks import MpiRanks
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
@@ -80,7 +81,7 @@ def main() -> None:
     for dimension, bodies in CASES:
         balls, pose, box, walls = balls_in_a_box(dimension, bodies)
         sizes = mesh_sizes(dimension, bodies)
-        whole = initial_mesh(balls, pose, box, walls, sizes) if ranks.is_root else None
+        whole = initial_mesh(FluidDomain(balls, pose, box, walls), sizes) if ranks.is_root else None
         part = distributed(whole, ranks)
         alone, shared = (NarrowBandDetector(NarrowBandDetector.Options(threads=1), balls, walls) for _ in range(2))
         contacts, seconds = measured(shared, pose, part, ranks.calls)

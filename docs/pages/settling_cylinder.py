@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
 from rigidfluid.core.mesh.coarsening import relative_sizes
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
@@ -62,11 +63,12 @@ def cell_sizes(run: Run) -> np.ndarray:
     """At each output, of all cells the mean factor off the wanted size and the coarsest relative size, (outputs, 2)."""
     mesh, bodies = run.scene.mesh, run.history.bodies
     assert mesh is not None
-    sizes, shapes, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), known_parts(run.scene).bodies, []
+    sizes, parts, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), known_parts(run.scene), []
     for time, path in read_pvd(run.folder / "fields.pvd"):
         now, fields = int(np.argmin(np.abs(bodies["time"] - time))), read_vtu(path)
         pose = Pose(np.array([[bodies["x"][now], bodies["y"][now]]]), np.array([[bodies["angle"][now]]]))
-        relative = relative_sizes(fields.points, fields.cells[:, :3], shapes, pose, sizes)
+        around = FluidDomain(parts.bodies, pose, parts.domain, ())
+        relative = relative_sizes(fields.points, fields.cells[:, :3], around, sizes)
         rows.append((np.maximum(relative, 1.0 / relative).mean(), relative.max()))
     return np.array(rows)
 

@@ -10,6 +10,7 @@ from mesh_files import meshed, write_by_meshio, write_gmsh41
 from mesh_tools import nobody
 from wedge import wedge
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
@@ -95,7 +96,7 @@ class TestBentTubeFromMesh(DomainContract):
     def domain(cls, tmp_path_factory):
         folder = tmp_path_factory.mktemp("domain")
         tube = drawn(bent_tube(), folder)
-        mesh = generate_mesh([], nobody(3), tube, 1.0, 1.0, 0.3)
+        mesh = generate_mesh(FluidDomain([], nobody(3), tube, ()), 1.0, 1.0, 0.3)
         write_gmsh41(folder / "tube.msh", mesh, tube.names)
         return meshed(folder / "tube.msh")
 
@@ -108,7 +109,7 @@ class TestPlateFromMesh(DomainContract):
     def domain(cls, tmp_path_factory):
         folder = tmp_path_factory.mktemp("domain")
         sheet = drawn(plate(), folder, 2)
-        mesh = generate_mesh([], nobody(2), sheet, 0.4, 0.4, 0.3)
+        mesh = generate_mesh(FluidDomain([], nobody(2), sheet, ()), 0.4, 0.4, 0.3)
         write_by_meshio(folder / "plate.med", mesh, sheet.names)
         return meshed(folder / "plate.med", 2)
 

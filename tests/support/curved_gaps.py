@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 from mesh_tools import ball, ellipsoid
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import PartOptions
@@ -48,7 +49,7 @@ def curved_gaps(sizes: tuple[float, ...] = (0.1, 0.05, 0.025)) -> Iterator[Curve
             pose = Pose(np.array([place]), np.array([[pi / 5.0]]))
             exact = EllipsoidDetector(PartOptions(), [body], bumps).detect(pose, None, np.inf).gap.min()
             for size in sizes:
-                mesh = initial_mesh([body], pose, domain, walls, Sizes(0.5, size))
+                mesh = initial_mesh(FluidDomain([body], pose, domain, walls), Sizes(0.5, size))
                 found = NarrowBandDetector(NarrowBandOptions(), [body], bumps).detect(pose, mesh, 2.5)
                 at = int(np.argmin(found.gap))
                 on_body = _length(mesh, 0, found.point_a[at])

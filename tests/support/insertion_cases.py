@@ -14,6 +14,7 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.meshing import netgen_mesh
@@ -131,15 +132,15 @@ def arranged(case: Case, seed: int) -> tuple[list[Body], Pose]:
 def outcome(case: Case, seed: int, way: Way) -> Outcome:
     """What comes of one arrangement."""
     bodies, pose = arranged(case, seed)
-    arguments = bodies, pose, case.domain, surfaces_of(case.domain, len(bodies)), case.sizes
+    around = FluidDomain(bodies, pose, case.domain, surfaces_of(case.domain, len(bodies)))
     start = cpu_seconds()
-    mesh = initial_mesh(*arguments, Inserter(way))
+    mesh = initial_mesh(around, case.sizes, Inserter(way))
     seconds = cpu_seconds() - start
     check_mesh(mesh, quality=0.0)
     facets = [mesh.facets[mesh.markers == i] for i in range(len(bodies))]
     off = [abs(distance_to_body(pose, i, b, mesh.points[np.unique(facets[i])])).max() for i, b in enumerate(bodies)]
     middles = [middles_off(mesh, facets[i], body, i, pose) for i, body in enumerate(bodies)]
-    given, curved = surface_mesh(*arguments), curved_walls(case.domain, len(bodies))
+    given, curved = surface_mesh(around, case.sizes), curved_walls(case.domain, len(bodies))
     before, after = (np.isin(m.markers, curved) for m in (given, mesh))
     return Outcome(
         len(mesh.cells),

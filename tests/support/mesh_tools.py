@@ -7,6 +7,7 @@ import numpy as np
 from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.topology import check_mesh
@@ -52,7 +53,7 @@ def random_ellipsoids(dimension, seed):
     pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
     lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
     size = 0.04 if dimension == 2 else 0.2
-    mesh = generate_mesh(bodies, pose, box(lower, upper), 0.3, size, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(lower, upper), ()), 0.3, size, 0.5)
     return bodies, box_walls(lower, upper, len(bodies)), pose, mesh
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from mesh_tools import ball, upright
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
@@ -51,12 +52,12 @@ def wall_drift(remeshings: int = 50) -> Iterator[Drift]:
     body, x = ball(0.5), np.linspace(-1.0, 1.0, remeshings + 1)
     x = 8.0 * np.sign(x) * np.abs(x) ** 1.5
     poses = [upright([at, 0.3 * np.cos(0.4 * at)]) for at in x]
-    around = domain, list(surfaces_of(domain, 1)), Sizes(0.5, 0.08)
-    mesh = initial_mesh([body], poses[0], *around)
+    walls, sizes = surfaces_of(domain, 1), Sizes(0.5, 0.08)
+    mesh = initial_mesh(FluidDomain([body], poses[0], domain, walls), sizes)
     yield _seen(0, mesh, poses[0], domain)
     for number, (before, after) in enumerate(pairwise(poses), start=1):
         moved = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(after))
-        mesh = remesh(moved, [body], after, *around)
+        mesh = remesh(moved, FluidDomain([body], after, domain, walls), sizes)
         yield _seen(number, mesh, after, domain)
 
 

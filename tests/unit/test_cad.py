@@ -10,6 +10,7 @@ import pytest
 from drawn import ball_in_a_box, bent_tube, drawn, plate, written
 from mesh_tools import ball, upright
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
@@ -108,7 +109,7 @@ def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
 
 def test_a_body_is_meshed_in_a_tube(tmp_path: Path) -> None:
     tube, body, pose = drawn(bent_tube(), tmp_path), ball(0.4, 3), upright([0.0, 0.0, 2.0])
-    mesh = initial_mesh([body], pose, tube, surfaces_of(tube, 1), Sizes(0.6, 0.3))
+    mesh = initial_mesh(FluidDomain([body], pose, tube, surfaces_of(tube, 1)), Sizes(0.6, 0.3))
     check_mesh(mesh, quality=0.1)
     on_wall = mesh.points[np.unique(mesh.facets[mesh.markers == 1 + tube.names.index("wall")])]
     assert np.abs(to_the_tube(on_wall)).max() < 1e-13

@@ -7,6 +7,7 @@ import pytest
 from falling import SCENES, falling_disk
 
 from rigidfluid.core.mesh.cell_count import Count, expected_count
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.scene.scene import Scene
@@ -69,14 +70,14 @@ def expected(scene: Scene) -> Count:
     system = build_system(scene, to_run=False)
     assert scene.mesh is not None
     sizes = sizes_of(scene.mesh, system.domain)
-    return expected_count(system.meshed(system.pose), system.bodies, system.pose, system.walls, sizes)
+    return expected_count(fluid_domain_at(system, system.pose), sizes)
 
 
 def assert_as_made(scene: Scene) -> None:
     system = build_system(scene, to_run=False)
     assert scene.mesh is not None
-    sizes, domain = sizes_of(scene.mesh, system.domain), system.meshed(system.pose)
-    made = initial_mesh(system.bodies, system.pose, domain, system.walls, sizes, inserter_of(scene.mesh))
+    sizes = sizes_of(scene.mesh, system.domain)
+    made = initial_mesh(fluid_domain_at(system, system.pose), sizes, inserter_of(scene.mesh))
     assert expected(scene).cells == pytest.approx(len(made.cells), rel=0.15)
     assert expected(scene).facets == pytest.approx(len(made.facets), rel=0.3)
 

@@ -12,6 +12,7 @@ from channels import CHANNEL, PIN, THROAT, scene
 from mesh_files import CUBE, TRIANGLES, write_stl
 from mesh_tools import nobody, upright
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -93,7 +94,7 @@ def test_a_polygon_is_an_obstacle_with_sharp_corners() -> None:
     assert domain.volume == pytest.approx(4.0 - 0.02, rel=1e-14)
     assert piece.area == pytest.approx(2.0 * np.hypot(0.3, 0.1) + 2.0 * np.hypot(0.1, 0.1), rel=1e-14)
     body, pose = parts.bodies[0], upright([1.0, 0.5])
-    mesh = initial_mesh([body], pose, domain, surfaces_of(domain, 1), Sizes(0.2, 0.05))
+    mesh = initial_mesh(FluidDomain([body], pose, domain, surfaces_of(domain, 1)), Sizes(0.2, 0.05))
     on_star = mesh.points[np.unique(mesh.facets[mesh.markers == 5])]
     assert np.abs(piece.shape.signed_distance(on_star)).max() < 1e-14
     disk = 0.5 * np.abs(np.linalg.det(mesh.points[mesh.facets[mesh.markers == 0]] - pose.position[0])).sum()
@@ -105,7 +106,7 @@ def test_a_polyhedron_is_an_obstacle(tmp_path: Path) -> None:
     tables = (NestedBodyTable(type="stl", file=str(tmp_path / "cube.stl"), scale=0.5, position=(1.0, 1.0, 1.0)),)
     domain = Channel(ChannelOptions(lower=(0.0, 0.0, 0.0), upper=(2.0, 2.0, 2.0), obstacle=tables), 3)
     assert domain.volume == pytest.approx(8.0 - 0.125, rel=1e-12)
-    mesh = generate_mesh([], nobody(3), domain, 0.5, 0.5, 0.3)
+    mesh = generate_mesh(FluidDomain([], nobody(3), domain, ()), 0.5, 0.5, 0.3)
     assert cell_volumes(mesh.points, mesh.cells).sum() == pytest.approx(domain.volume, rel=1e-12)
 
 

@@ -10,6 +10,7 @@ from threaded_ranks import on_ranks
 from rigidfluid.core.mesh import remesh as module
 from rigidfluid.core.mesh.coarsening import MOST_COARSENED, has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_adaptation import reference_of
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_sizes
@@ -21,7 +22,7 @@ RADIUS, DISK = 0.125, [ball(0.125)]
 LOWER, UPPER = np.zeros(2), np.array([2.0, 8.0])
 BOX, WALLS = box(LOWER, UPPER), box_walls(LOWER, UPPER, 1)
 SIZES, START = Sizes(size=0.2, size_body=0.025), upright([1.0, 6.0])
-MESH = initial_mesh(DISK, START, BOX, WALLS, SIZES)
+MESH = initial_mesh(FluidDomain(DISK, START, BOX, WALLS), SIZES)
 REFERENCE = reference_of(MESH, START, np.array([1.0]), 0)
 
 
@@ -33,8 +34,10 @@ def fallen(height):
 
 def asks(points, pose, reference=REFERENCE, sizes=SIZES):
     cells = reference.mesh.cells
-    made = relative_sizes(reference.mesh.points, cells, DISK, reference.pose, sizes)
-    return has_coarsened(made, relative_sizes(points, cells, DISK, pose, sizes), reference.mesh.ranks)
+    made = relative_sizes(reference.mesh.points, cells, FluidDomain(DISK, reference.pose, BOX, WALLS), sizes)
+    return has_coarsened(
+        made, relative_sizes(points, cells, FluidDomain(DISK, pose, BOX, WALLS), sizes), reference.mesh.ranks
+    )
 
 
 def test_the_size_of_regular_simplices_is_their_edge():
@@ -57,16 +60,19 @@ def test_cells_are_never_much_coarser_than_wanted_if_it_is_heeded():
         pose = upright([1.0, 6.0 - height])
         points = MeshMotion(mesh, DISK, BOX, start).move(pose)
         if asks(points, pose, reference_of(mesh, start, np.array([1.0]), 0)):
-            mesh, start = remesh(replace(mesh, points=points), DISK, pose, BOX, WALLS, SIZES), pose
+            mesh, start = remesh(replace(mesh, points=points), FluidDomain(DISK, pose, BOX, WALLS), SIZES), pose
             points, made = mesh.points, made + 1
-        worst = max(worst, relative_sizes(points, mesh.cells, DISK, pose, SIZES).max())
+        worst = max(worst, relative_sizes(points, mesh.cells, FluidDomain(DISK, pose, BOX, WALLS), SIZES).max())
     assert worst < 1.25 * MOST_COARSENED
     assert 1 <= made < 6
 
 
 def test_a_mesh_just_made_does_not_ask_however_coarse_it_is():
     far_too_fine = replace(SIZES, size=0.02, size_body=0.0025)
-    assert relative_sizes(MESH.points, MESH.cells, DISK, START, far_too_fine).min() > 1.1 * MOST_COARSENED
+    assert (
+        relative_sizes(MESH.points, MESH.cells, FluidDomain(DISK, START, BOX, WALLS), far_too_fine).min()
+        > 1.1 * MOST_COARSENED
+    )
     assert not asks(MESH.points, START, sizes=far_too_fine)
 
 
@@ -78,7 +84,7 @@ def test_cells_finer_than_wanted_may_grow_up_to_that():
 
 def test_a_gap_asks_by_its_own_rule_alone():
     near = upright([1.0, RADIUS + 0.02])
-    mesh = initial_mesh(DISK, near, BOX, WALLS, SIZES)
+    mesh = initial_mesh(FluidDomain(DISK, near, BOX, WALLS), SIZES)
     nearer = upright([1.0, RADIUS + 0.002])
     points = MeshMotion(mesh, DISK, BOX, near).move(nearer)
     assert not asks(points, nearer, reference_of(mesh, near, np.array([0.02]), 0))
@@ -87,7 +93,7 @@ def test_a_gap_asks_by_its_own_rule_alone():
 def test_cells_that_are_carried_into_a_box_ask():
     below = RefinedBox(np.array([0.8, 5.0]), np.array([1.2, 5.5]), 0.05)
     sizes = replace(SIZES, regions=(below,))
-    mesh = initial_mesh(DISK, START, BOX, WALLS, sizes)
+    mesh = initial_mesh(FluidDomain(DISK, START, BOX, WALLS), sizes)
     carried = mesh.points + np.array([0.0, 0.3]) * (np.abs(mesh.points[:, 1:] - 5.0) < 1.2)
     reference = reference_of(mesh, START, np.array([1.0]), 0)
     assert not asks(mesh.points, START, reference, sizes)
@@ -127,7 +133,7 @@ def test_a_mesh_that_one_pass_of_mmg_leaves_too_coarse_gets_another(monkeypatch)
         return mesh if len(passes) == 1 else improve(mesh, *given)
 
     monkeypatch.setattr(module, "best_remeshed", lazy)
-    made = remesh(replace(MESH, points=points), DISK, pose, BOX, WALLS, SIZES)
-    assert relative_sizes(points, MESH.cells, DISK, pose, SIZES).max() > 2.0
-    assert relative_sizes(made.points, made.cells, DISK, pose, SIZES).max() < 1.4
+    made = remesh(replace(MESH, points=points), FluidDomain(DISK, pose, BOX, WALLS), SIZES)
+    assert relative_sizes(points, MESH.cells, FluidDomain(DISK, pose, BOX, WALLS), SIZES).max() > 2.0
+    assert relative_sizes(made.points, made.cells, FluidDomain(DISK, pose, BOX, WALLS), SIZES).max() < 1.4
     assert len(passes) == 2

@@ -16,6 +16,7 @@ from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.curved_edges import SQUEEZED, with_curved_edges
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -29,8 +30,8 @@ from rigidfluid.taylor_hood.numbering import Numbering
 
 
 def curved_mesh(body, pose, domain, size=0.2, size_body=0.1):
-    mesh = initial_mesh([body], pose, domain, (), Sizes(size, size_body))
-    return with_curved_edges(mesh, [body], pose, domain)
+    mesh = initial_mesh(FluidDomain([body], pose, domain, ()), Sizes(size, size_body))
+    return with_curved_edges(mesh, FluidDomain([body], pose, domain, ()))
 
 
 @pytest.fixture(scope="module", params=[2, 3])
@@ -127,7 +128,7 @@ def test_a_cell_too_thin_to_bend_stays_straight() -> None:
     facets = np.concatenate([np.column_stack([c, np.roll(c, -1)]) for c in (inner, outer)])
     mesh = orient(Mesh(np.concatenate([ring, top]), cells, facets, np.repeat([0, 1], 6)))
     box = Box(BoxOptions(lower=(-30.0, -30.0), upper=(30.0, 30.0)), 2)  # no gap
-    curved = with_curved_edges(mesh, [disk], pose, box).curved
+    curved = with_curved_edges(mesh, FluidDomain([disk], pose, box, ())).curved
     assert curved is not None
     assert curved.vertices.tolist() == [[0, 5], [1, 2], [2, 3], [3, 4], [4, 5]]
 
@@ -139,7 +140,7 @@ def test_edges_in_a_gap_stay_straight_before_it_halves() -> None:
     mesh = orient(Mesh(points, np.array([[0, 1, 2]]), np.array([[0, 1], [1, 2], [0, 2]]), np.array([0, 4, 4])))
     for height, bent in ((9.0, True), (1.5, False)):
         box = Box(BoxOptions(lower=(-9.0, -9.0), upper=(9.0, height)), 2)
-        assert (with_curved_edges(mesh, [disk], pose, box).curved is not None) == bent
+        assert (with_curved_edges(mesh, FluidDomain([disk], pose, box, ())).curved is not None) == bent
 
 
 def test_edges_of_poor_cells_stay_straight() -> None:
@@ -154,7 +155,9 @@ def test_edges_of_poor_cells_stay_straight() -> None:
         apex = middle + 0.25 * middle / np.linalg.norm(middle)
         points = np.vstack([on_ball, apex, [[9.0, 9.0, 8.0], [9.0, 8.0, 9.0]]])
         mesh = orient(Mesh(points, np.array([[0, 1, 2, 3]]), facets, markers))
-        assert (with_curved_edges(mesh, [ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box).curved is not None) == bent
+        assert (
+            with_curved_edges(mesh, FluidDomain([ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box, ())).curved is not None
+        ) == bent
 
 
 def test_vertices_that_gave_way_to_edges_come_back_where_these_stay_straight() -> None:
@@ -171,7 +174,7 @@ def test_vertices_that_gave_way_to_edges_come_back_where_these_stay_straight() -
     markers = np.where((facets < len(octahedron)).all(axis=1), 0, wall)
     box = Box(BoxOptions(lower=(-3.0,) * 3, upper=(3.0,) * 3), 3)
     mesh = with_curved_edges(
-        orient(Mesh(points, cells, facets, markers)), [ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box
+        orient(Mesh(points, cells, facets, markers)), FluidDomain([ball(1.0, 3)], upright([0.0, 0.0, 0.0]), box, ())
     )
     assert mesh.curved is None
     assert cell_quality(mesh.points, mesh.cells).min() > 0.3

@@ -15,6 +15,7 @@ from mesh_tools import ball, ellipsoid, upright
 from wedge import wedge
 
 from rigidfluid.checks.report import check
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
@@ -107,7 +108,7 @@ def test_an_ellipse_meets_the_rim_with_its_tip() -> None:
 def test_a_detector_on_the_mesh_sees_the_facets() -> None:
     bodies, pose = balls_near_the_rim(2)
     wall, sizes = rim(4), Sizes(0.1, 0.02)
-    mesh = initial_mesh(bodies, pose, dish(), [wall], sizes)
+    mesh = initial_mesh(FluidDomain(bodies, pose, dish(), [wall]), sizes)
     exact = at_walls(SphereDetector(PartOptions(), bodies, [wall]), pose, 0.3)
     marched = NarrowBandDetector(NarrowBandOptions(), bodies, [wall]).detect(pose, mesh, 0.3)
     gaps = marched.gap[marched.at_wall]
@@ -247,33 +248,33 @@ def test_the_wall_stays_where_it_is_through_many_meshes(
     dimension: int, away: float, angles: Sequence[float], sizes: Sizes
 ) -> None:
     """A ball goes along the rim: the rim's facets only get finer, so that what they cut off never grows."""
-    body, around = ball(0.2, dimension), (dish(1.0, dimension), [rim(1, dimension=dimension)], sizes)
+    body, domain, walls = ball(0.2, dimension), dish(1.0, dimension), [rim(1, dimension=dimension)]
     path = [upright(away * np.array([np.sin(a), -np.cos(a), 0.0])[:dimension]) for a in angles]
-    mesh, start = initial_mesh([body], path[0], *around), path[0]
+    mesh, start = initial_mesh(FluidDomain([body], path[0], domain, walls), sizes), path[0]
     enclosed = [enclosed_by_the_rim(mesh)]
     for pose in path[1:]:
-        moved = replace(mesh, points=MeshMotion(mesh, [body], around[0], start).move(pose))
-        mesh, start = remesh(moved, [body], pose, *around), pose
+        moved = replace(mesh, points=MeshMotion(mesh, [body], domain, start).move(pose))
+        mesh, start = remesh(moved, FluidDomain([body], pose, domain, walls), sizes), pose
         check_mesh(mesh, quality=0.05)
         on_rim = mesh.points[np.unique(mesh.facets[mesh.markers == 1])]
         assert np.abs(np.linalg.norm(on_rim, axis=1) - 1.0).max() < 1e-14
         enclosed.append(enclosed_by_the_rim(mesh))
     assert np.all(np.diff(enclosed) >= -1e-14)
-    assert enclosed[-1] < around[0].volume
+    assert enclosed[-1] < domain.volume
     if dimension == 2:
         assert enclosed[-1] > enclosed[0]
 
 
 def test_vertices_of_a_slope_rest_while_the_mesh_moves_and_stay_on_it_when_it_is_made_anew() -> None:
     body, (floor, slope, _) = ball(0.1), wedge().pieces
-    around = wedge(), list(surfaces_of(wedge(), 1)), Sizes(0.2, 0.04)
+    domain, walls, sizes = wedge(), surfaces_of(wedge(), 1), Sizes(0.2, 0.04)
     start, end = upright([0.6, 0.3]), upright([0.5, 0.5])
-    mesh = initial_mesh([body], start, *around)
-    points = MeshMotion(mesh, [body], around[0], start).move(end)
+    mesh = initial_mesh(FluidDomain([body], start, domain, walls), sizes)
+    points = MeshMotion(mesh, [body], domain, start).move(end)
     on_slope, on_floor = (np.unique(mesh.facets[mesh.markers == number]) for number in (2, 1))
     assert np.array_equal(points[on_slope], mesh.points[on_slope])
     assert not np.array_equal(points[on_floor], mesh.points[on_floor])
-    new = remesh(replace(mesh, points=points), [body], end, *around)
+    new = remesh(replace(mesh, points=points), FluidDomain([body], end, domain, walls), sizes)
     for number, piece in ((1, floor), (2, slope)):
         vertices = new.points[np.unique(new.facets[new.markers == number])]
         assert np.abs(piece.shape.signed_distance(vertices)).max() < 1e-14
@@ -281,7 +282,7 @@ def test_vertices_of_a_slope_rest_while_the_mesh_moves_and_stay_on_it_when_it_is
 
 def test_vertices_of_a_curved_wall_are_held() -> None:
     body, pose = ball(0.2), upright([0.3, 0.0])
-    mesh = initial_mesh([body], pose, dish(), [rim(1)], Sizes(0.25, 0.05))
+    mesh = initial_mesh(FluidDomain([body], pose, dish(), [rim(1)]), Sizes(0.25, 0.05))
     held = held_components(mesh, 1, dish())
     assert held[np.unique(mesh.facets)].all()
 
@@ -339,7 +340,7 @@ def test_a_side_of_the_cad_shape_without_a_name_is_refused() -> None:
     nameless = dish()
     nameless.cad_shape = lambda unit: ball(1.0).cad_shape(unit)  # type: ignore[method-assign]
     with pytest.raises(PluginError, match=r"domain.type: found a side of the CAD shape named .* allowed is one of rim"):
-        initial_mesh([ball(0.2)], upright([0.0, 0.0]), nameless, [rim(1)], Sizes(0.25, 0.05))
+        initial_mesh(FluidDomain([ball(0.2)], upright([0.0, 0.0]), nameless, [rim(1)]), Sizes(0.25, 0.05))
 
 
 def test_a_contact_that_takes_a_wall_for_a_body_is_refused() -> None:

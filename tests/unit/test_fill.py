@@ -12,6 +12,7 @@ from wedge import wedge
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh import fill
 from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -30,7 +31,8 @@ def in_a_dish(dimension):
     """Two bodies in a round container, one of them near its rim, and all that a mesh asks for."""
     tilted = ellipsoid(0.25, 0.1) if dimension == 2 else ellipsoid(0.25, 0.15, 0.15)
     pose = upright(*np.array([[0.5, 0.4, 0.1], [-0.4, -0.2, 0.0]])[:, :dimension])
-    return [ball(0.2, dimension), tilted], pose, dish(1.0, dimension), [rim(2, dimension=dimension)], COARSE[dimension]
+    bodies, walls = [ball(0.2, dimension), tilted], [rim(2, dimension=dimension)]
+    return FluidDomain(bodies, pose, dish(1.0, dimension), walls), COARSE[dimension]
 
 
 def square(half=0.2):
@@ -50,9 +52,9 @@ def facet_set(mesh, markers):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_all_facets_stay_and_lie_on_the_shapes(dimension):
-    arguments = in_a_dish(dimension)
-    bodies, pose, domain = arguments[:3]
-    surface, mesh = surface_mesh(*arguments), fill_mesh(*arguments)
+    around, sizes = in_a_dish(dimension)
+    bodies, pose, domain = around.bodies, around.pose, around.domain
+    surface, mesh = surface_mesh(around, sizes), fill_mesh(around, sizes)
     assert facet_set(mesh, [0, 1, 2]) == facet_set(surface, [0, 1, 2])
     check_mesh(mesh, quality=0.1)
     for i, body in enumerate(bodies):
@@ -66,15 +68,14 @@ def test_all_facets_stay_and_lie_on_the_shapes(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_grading_keeps_the_facets(dimension):
-    arguments = in_a_dish(dimension)
-    mesh = initial_mesh(*arguments, FILL)
-    assert facet_set(mesh, [0, 1, 2]) >= facet_set(surface_mesh(*arguments), [0, 1, 2])
+    around, sizes = in_a_dish(dimension)
+    mesh = initial_mesh(around, sizes, FILL)
+    assert facet_set(mesh, [0, 1, 2]) >= facet_set(surface_mesh(around, sizes), [0, 1, 2])
     assert cell_quality(mesh.points, mesh.cells).min() > 0.3
 
 
 def test_walls_are_halved_near_bodies_and_nowhere_else():
-    arguments = [ball(0.2)], upright([0.72, 0.0]), dish(), [rim(1)], COARSE[2]
-    surface = surface_mesh(*arguments)
+    surface = surface_mesh(FluidDomain([ball(0.2)], upright([0.72, 0.0]), dish(), [rim(1)]), COARSE[2])
     corners = surface.points[surface.facets[surface.markers == 1]]
     length = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
     assert length[corners.mean(axis=1)[:, 0] > 0.97].max() < 0.1
@@ -82,8 +83,8 @@ def test_walls_are_halved_near_bodies_and_nowhere_else():
 
 
 def test_corners_of_a_body_of_facets_stay_and_long_sides_are_halved():
-    arguments = [square()], replace(upright([0.3, 0.1]), orientation=np.array([[0.4]])), dish(), [rim(1)], COARSE[2]
-    mesh = initial_mesh(*arguments)
+    pose = replace(upright([0.3, 0.1]), orientation=np.array([[0.4]]))
+    mesh = initial_mesh(FluidDomain([square()], pose, dish(), [rim(1)]), COARSE[2])
     on_body = np.unique(mesh.facets[mesh.markers == 0])
     turn = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
     corners = square().facets.points @ turn.T + [0.3, 0.1]
@@ -93,8 +94,7 @@ def test_corners_of_a_body_of_facets_stay_and_long_sides_are_halved():
 
 
 def test_a_flat_wall_is_filled_too():
-    arguments = [ball(0.1)], upright([0.6, 0.3]), wedge(), [], Sizes(0.3, 0.04)
-    mesh = initial_mesh(*arguments, FILL)
+    mesh = initial_mesh(FluidDomain([ball(0.1)], upright([0.6, 0.3]), wedge(), []), Sizes(0.3, 0.04), FILL)
     assert np.unique(mesh.markers).tolist() == [0, 1, 2, 3]
     assert cell_quality(mesh.points, mesh.cells).min() > 0.3
 
@@ -102,10 +102,10 @@ def test_a_flat_wall_is_filled_too():
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 def test_lengths_may_be_in_any_unit(scale):
     sizes = Sizes(0.3 * scale, 0.06 * scale)
-    arguments = [ball(0.2 * scale)], upright([0.5 * scale, 0.4 * scale]), dish(scale), [rim(1, scale)]
-    cells = len(fill_mesh(*arguments, sizes).cells)
+    around = FluidDomain([ball(0.2 * scale)], upright([0.5 * scale, 0.4 * scale]), dish(scale), [rim(1, scale)])
+    cells = len(fill_mesh(around, sizes).cells)
     assert cells == pytest.approx(
-        len(fill_mesh([ball(0.2)], upright([0.5, 0.4]), dish(), [rim(1)], Sizes(0.3, 0.06)).cells), rel=0.1
+        len(fill_mesh(FluidDomain([ball(0.2)], upright([0.5, 0.4]), dish(), [rim(1)]), Sizes(0.3, 0.06)).cells), rel=0.1
     )
 
 
@@ -118,7 +118,7 @@ def test_by_default_shapes_decide():
 
 def test_a_shape_without_cad_is_refused_by_name_where_cad_is_asked_for():
     with pytest.raises(MeshError, match=r"mesh.inserter: found .cad. with body.0 made of facets; .* 'fill'"):
-        initial_mesh([square()], upright([0.0, 0.0]), dish(), [rim(1)], COARSE[2], Inserter("cad"))
+        initial_mesh(FluidDomain([square()], upright([0.0, 0.0]), dish(), [rim(1)]), COARSE[2], Inserter("cad"))
 
 
 @pytest.mark.parametrize(
@@ -135,37 +135,37 @@ def test_what_cannot_be_filled_is_refused_with_its_place(monkeypatch, positions,
     monkeypatch.setattr(fill, "filled", None)  # the mesher is not called
     bodies = [ball(0.2), ball(0.1 if positions[0] == positions[1] else 0.2)]
     with pytest.raises(MeshError, match=message):
-        fill_mesh(bodies, upright(*positions), dish(), [rim(2)], COARSE[2])
+        fill_mesh(FluidDomain(bodies, upright(*positions), dish(), [rim(2)]), COARSE[2])
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_an_open_surface_is_refused_with_its_place(dimension):
-    bodies, pose, domain, walls, sizes = in_a_dish(dimension)
-    whole = surface_mesh(bodies, pose, domain, walls, sizes)
+    around, sizes = in_a_dish(dimension)
+    whole = surface_mesh(around, sizes)
     left = np.arange(len(whole.facets)) != np.flatnonzero(whole.markers == 1)[0]
     leaking = replace(whole, facets=whole.facets[left], markers=whole.markers[left])
     with pytest.raises(MeshError, match=r"body.1: found a surface that is open.* at \(-0"):
-        refuse_unfillable(leaking, bodies, pose, domain)
+        refuse_unfillable(leaking, around)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_surface_turned_inside_out_is_refused(dimension):
-    bodies, pose, domain, walls, sizes = in_a_dish(dimension)
-    whole = surface_mesh(bodies, pose, domain, walls, sizes)
+    around, sizes = in_a_dish(dimension)
+    whole = surface_mesh(around, sizes)
     for marker, message in ((0, "body.0: found facets that enclose"), (2, "domain: found facets around a fluid")):
         facets = whole.facets.copy()
         facets[whole.markers == marker] = facets[whole.markers == marker][:, ::-1]
         with pytest.raises(MeshError, match=message):
-            refuse_unfillable(replace(whole, facets=facets), bodies, pose, domain)
+            refuse_unfillable(replace(whole, facets=facets), around)
 
 
 def test_one_facet_turned_over_is_refused():
-    bodies, pose, domain, walls, sizes = in_a_dish(3)
-    whole = surface_mesh(bodies, pose, domain, walls, sizes)
+    around, sizes = in_a_dish(3)
+    whole = surface_mesh(around, sizes)
     facets = whole.facets.copy()
     facets[0] = facets[0, ::-1]
     with pytest.raises(MeshError, match="open, folded or turned over"):
-        refuse_unfillable(replace(whole, facets=facets), bodies, pose, domain)
+        refuse_unfillable(replace(whole, facets=facets), around)
 
 
 def test_a_mesher_without_end_is_stopped(monkeypatch):
@@ -182,13 +182,13 @@ def test_a_mesher_that_breaks_off_is_told(monkeypatch):
 
 def test_cells_that_leave_a_body_out_are_refused(monkeypatch):
     """Netgen has returned such a mesh without a word."""
-    arguments = in_a_dish(2)
-    alone = fill_mesh([], nobody(2), *arguments[2:])
+    around, sizes = in_a_dish(2)
+    alone = fill_mesh(replace(around, bodies=[], pose=nobody(2)), sizes)
     monkeypatch.setattr(fill, "filled", lambda *_: (alone.points, alone.cells))
     with pytest.raises(MeshError, match="a vertex lost by Netgen"):
-        fill_mesh(*arguments)
+        fill_mesh(around, sizes)
 
 
 def test_enclosed_is_the_volume():
-    surface = surface_mesh([], nobody(3), box([0, 0, 0], [1, 2, 3]), [], COARSE[3])
+    surface = surface_mesh(FluidDomain([], nobody(3), box([0, 0, 0], [1, 2, 3]), []), COARSE[3])
     assert enclosed_volume(surface.points, surface.facets) == pytest.approx(-6.0, rel=1e-13)

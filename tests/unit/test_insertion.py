@@ -13,6 +13,7 @@ from mesh_tools import ball, box, ellipsoid, upright
 from typer.testing import CliRunner
 
 from rigidfluid.cli import app
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
@@ -76,7 +77,9 @@ def small_mesh(dimension: int) -> Mesh:
     sizes = Sizes(0.4, 0.15, 0.5)
     egg = ellipsoid(0.25, 0.15) if dimension == 2 else ellipsoid(0.25, 0.15, 0.2)
     pose = upright(*np.array([[0.4, 0.4, 0.4], [1.3, 1.2, 1.2]])[:, :dimension])
-    return initial_mesh([ball(0.2, dimension), egg], pose, box([0.0] * dimension, [2.0] * dimension), [], sizes)
+    return initial_mesh(
+        FluidDomain([ball(0.2, dimension), egg], pose, box([0.0] * dimension, [2.0] * dimension), []), sizes
+    )
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -9,6 +9,7 @@ from insertion_cases import CASES, Outcome, outcome, peanut, peanut_in_a_tube
 
 from rigidfluid.core.mechanics.facet_moments import facet_moments
 from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.size_field import Sizes
@@ -39,7 +40,7 @@ def test_a_body_in_a_bent_tube(way: Way) -> None:
 
 def test_a_body_with_sharp_edges_keeps_its_facets_to_the_last_bit() -> None:
     body, pose, domain = peanut(), *peanut_in_a_tube()
-    mesh = fill_mesh([body], pose, domain, (), Sizes(0.4, 0.2, 0.3))
+    mesh = fill_mesh(FluidDomain([body], pose, domain, ()), Sizes(0.4, 0.2, 0.3))
     assert body.facets is not None
     given = body.facets.points + pose.position[0]
     number = {tuple(point): k for k, point in enumerate(given.tolist())}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box, box_walls, upright
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.kept_cells import LAYERS, kept_cells
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
@@ -18,8 +19,8 @@ def meshed(dimension, height):
     place[-1] = height
     body, pose = ball(0.25, dimension), upright(place)
     sizes = Sizes(0.4, 0.08 if dimension == 2 else 0.15)
-    surroundings = [body], pose, box(lower, upper), box_walls(lower, upper, 1), sizes
-    return initial_mesh(*surroundings), surroundings
+    around = FluidDomain([body], pose, box(lower, upper), box_walls(lower, upper, 1))
+    return initial_mesh(around, sizes), around, sizes
 
 
 def cells_at(mesh, chosen):
@@ -29,11 +30,10 @@ def cells_at(mesh, chosen):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_good_cells_near_a_body_are_kept_to_the_last_bit(dimension):
-    mesh, surroundings = meshed(dimension, 1.0)
-    bodies, pose, _, walls, sizes = surroundings
+    mesh, around, sizes = meshed(dimension, 1.0)
 
     def size_at(points):
-        return wanted_size(points, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
+        return wanted_size(points, around, sizes)
 
     squeezed = mesh.points + 0.02 * np.sin(9.0 * mesh.points[:, ::-1]) * ~_near(mesh)[:, None]
     inside = np.setdiff1d(np.arange(len(mesh.points)), np.unique(mesh.facets))
@@ -42,7 +42,7 @@ def test_good_cells_near_a_body_are_kept_to_the_last_bit(dimension):
     moved = type(mesh)(points, mesh.cells, mesh.facets, mesh.markers)
     kept = kept_cells(moved, 1, size_at, LAYERS)
     assert kept.sum() > 20
-    made = remesh(moved, *surroundings, LAYERS)
+    made = remesh(moved, around, sizes, LAYERS)
     assert cells_at(moved, kept) <= cells_at(made, slice(None))
     assert len(made.cells) != len(moved.cells), "MMG has done something elsewhere"
 
@@ -50,7 +50,7 @@ def test_good_cells_near_a_body_are_kept_to_the_last_bit(dimension):
 @pytest.mark.parametrize("wanted", [0.02, 0.4])
 def test_cells_of_another_size_than_wanted_are_not_kept(wanted):
     """Gaps ask for shorter edges; where a gap has opened longer ones do."""
-    mesh, _ = meshed(2, 1.0)
+    mesh, _, _ = meshed(2, 1.0)
     assert kept_cells(mesh, 1, lambda points: np.full(len(points), 0.09), LAYERS).any()
     assert not kept_cells(mesh, 1, lambda points: np.full(len(points), wanted), LAYERS).any()
 

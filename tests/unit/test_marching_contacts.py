@@ -6,6 +6,7 @@ from marching_meshes import naive_distances, stars
 from mesh_tools import ball, box, box_walls, random_ellipsoids, upright
 from numba import njit
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.simplices import facet_to_facet
@@ -107,10 +108,10 @@ def test_threads_give_the_same_bits(ellipsoids):
 def test_a_detector_goes_on_with_a_mesh_that_moves_and_with_another():
     bodies, walls = [ball(0.3)], box_walls(np.zeros(2), np.ones(2), 1)
     detector, pose = narrow_band(bodies, walls), upright([0.5, 0.5])
-    mesh = generate_mesh(bodies, pose, box(np.zeros(2), np.ones(2)), 0.2, 0.02, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), 0.2, 0.02, 0.5)
     outside = np.clip((np.linalg.norm(mesh.points - 0.5, axis=1) - 0.3) / 0.2, 0.0, 1.0)
     moved = replace(mesh, points=mesh.points + np.outer(1.0 - outside, [0.0, 0.05]))
-    finer = generate_mesh(bodies, pose, box(np.zeros(2), np.ones(2)), 0.1, 0.01, 0.5)
+    finer = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), 0.1, 0.01, 0.5)
     places = [(pose, mesh), (upright([0.5, 0.55]), moved), (pose, finer)]
     gaps = [detector.detect(*place, np.inf).gap for place in places]
     np.testing.assert_allclose(gaps, [[0.2] * 4, [0.2, 0.2, 0.25, 0.15], [0.2] * 4], atol=1e-3)
@@ -156,7 +157,7 @@ def test_bodies_far_apart_are_not_marched(monkeypatch):
     monkeypatch.setattr(contacts, "march_from", refuse)
     bodies, walls = [ball(0.1), ball(0.1)], box_walls(np.zeros(2), np.full(2, 2.0), 2)
     pose = upright([0.6, 0.6], [1.4, 1.4])
-    mesh = generate_mesh(bodies, pose, box(np.zeros(2), np.full(2, 2.0)), 0.3, 0.05, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.full(2, 2.0)), ()), 0.3, 0.05, 0.5)
     assert len(narrow_band(bodies, walls).detect(pose, mesh, 0.4)) == 0
 
 

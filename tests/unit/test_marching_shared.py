@@ -9,6 +9,7 @@ from mesh_tools import ball, box, box_walls, random_ellipsoids, upright
 from threaded_ranks import ThreadedRanks, on_ranks
 
 from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
@@ -175,7 +176,7 @@ def test_a_body_in_another_part_is_not_marched_from():
 
 def test_where_nothing_is_near_nobody_is_asked(monkeypatch):
     bodies, pose = [ball(0.2), ball(0.2)], upright([0.5, 0.5], [1.5, 0.5])
-    mesh = generate_mesh(bodies, pose, box(np.zeros(2), np.array([2.0, 1.0])), 0.2, 0.1, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.array([2.0, 1.0])), ()), 0.2, 0.1, 0.5)
 
     def work(ranks):
         part, detector = part_of(mesh, ranks), made(NarrowBandDetector, bodies, [])

@@ -13,6 +13,7 @@ from mesh_files import CUBE, FLUID, TRIANGLES, meshed, write_by_meshio, write_gm
 from mesh_tools import ball, nobody, upright
 from scipy.spatial import Delaunay
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -27,13 +28,13 @@ from rigidfluid.errors import SceneError
 @pytest.fixture(scope="module")
 def tube(tmp_path_factory: pytest.TempPathFactory) -> tuple[Mesh, list[str]]:
     domain = drawn(bent_tube(), tmp_path_factory.mktemp("tube"))
-    return generate_mesh([], nobody(3), domain, 1.0, 1.0, 0.3), list(domain.names)
+    return generate_mesh(FluidDomain([], nobody(3), domain, ()), 1.0, 1.0, 0.3), list(domain.names)
 
 
 @pytest.fixture(scope="module")
 def sheet(tmp_path_factory: pytest.TempPathFactory) -> tuple[Mesh, list[str]]:
     domain = drawn(plate(), tmp_path_factory.mktemp("sheet"), 2)
-    return generate_mesh([], nobody(2), domain, 0.4, 0.4, 0.3), list(domain.names)
+    return generate_mesh(FluidDomain([], nobody(2), domain, ()), 0.4, 0.4, 0.3), list(domain.names)
 
 
 def volume(mesh: Mesh) -> float:
@@ -128,7 +129,7 @@ def test_bodies_are_meshed_in_a_file_and_keep_its_facets(tmp_path: Path, tube: t
     mesh, names = tube
     write_gmsh41(tmp_path / "tube.msh", mesh, names)
     domain, body, pose = meshed(tmp_path / "tube.msh"), ball(0.3, 3), upright([0.0, 0.0, 2.0])
-    made = initial_mesh([body], pose, domain, surfaces_of(domain, 1), Sizes(1.0, 0.3))
+    made = initial_mesh(FluidDomain([body], pose, domain, surfaces_of(domain, 1)), Sizes(1.0, 0.3))
     check_mesh(made, quality=0.1)
     body_volume = volume(mesh) - volume(made)
     assert body_volume == pytest.approx(4.0 / 3.0 * np.pi * 0.027, rel=0.2)

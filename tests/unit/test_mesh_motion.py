@@ -8,6 +8,7 @@ from threaded_ranks import on_ranks
 
 from rigidfluid.core.mechanics.frames import to_body_frame
 from rigidfluid.core.mesh.distribution import distributed
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
@@ -25,19 +26,19 @@ def domain_of(mesh):
 @pytest.fixture(scope="module")
 def disk():
     pose = upright([1, 2])
-    return [ball(0.125)], pose, generate_mesh([ball(0.125)], pose, BOX, 0.2, 0.02, 0.2)
+    return [ball(0.125)], pose, generate_mesh(FluidDomain([ball(0.125)], pose, BOX, ()), 0.2, 0.02, 0.2)
 
 
 @pytest.fixture(scope="module")
 def ellipse():
     pose, body = Pose(np.array([[0.9, 1.2]]), np.array([[0.7]])), ellipsoid(0.3, 0.1)
-    return [body], pose, generate_mesh([body], pose, BOX, 0.2, 0.02, 0.2)
+    return [body], pose, generate_mesh(FluidDomain([body], pose, BOX, ()), 0.2, 0.02, 0.2)
 
 
 @pytest.fixture(scope="module")
 def solid():
     pose, body = upright([0, 0, 0]), ellipsoid(0.5, 0.25, 0.3)
-    return [body], pose, generate_mesh([body], pose, CUBE, 0.6, 0.2, 0.4)
+    return [body], pose, generate_mesh(FluidDomain([body], pose, CUBE, ()), 0.6, 0.2, 0.4)
 
 
 def test_the_reference_pose_gives_the_reference_mesh(ellipse):
@@ -97,7 +98,7 @@ def test_free_vertices_are_in_balance(ellipse):
 
 
 def test_the_stiffness_weighs_each_cell_by_the_papers_tau():
-    mesh = generate_mesh([ball(0.125)], upright([1, 2]), BOX, 0.4, 0.1, 0.5)
+    mesh = generate_mesh(FluidDomain([ball(0.125)], upright([1, 2]), BOX, ()), 0.4, 0.1, 0.5)
     field = mesh.points @ [0.3, -0.7]
     volume = cell_volumes(mesh.points, mesh.cells)
     weight = 1 + (1 - volume.min() / volume.max()) / (volume / volume.max())
@@ -115,7 +116,7 @@ def test_small_cells_keep_their_shape_better_than_large_ones(disk):
 
 
 def test_a_box_without_bodies_stands_still():
-    mesh = generate_mesh([], nobody(2), BOX, 0.4, 0.1, 0.5)
+    mesh = generate_mesh(FluidDomain([], nobody(2), BOX, ()), 0.4, 0.1, 0.5)
     assert np.array_equal(MeshMotion(mesh, [], domain_of(mesh), nobody(2)).move(nobody(2)), mesh.points)
 
 

@@ -12,6 +12,7 @@ import pytest
 from mesh_tools import ball, upright
 
 from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.periodic import with_exact_images
@@ -62,10 +63,10 @@ def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None
     domain.periodic = ((0, 1),) if d == 2 else ((0, 1), (5, 4))
     body, sizes = ball(0.15, d), Sizes(0.3, 0.1) if d == 2 else Sizes(0.5, 0.25)
     poses = [upright([x, 0.6, 0.5][:d]) for x in (0.6, 0.8, 1.0)]
-    mesh = initial_mesh([body], poses[0], domain, [], sizes)
+    mesh = initial_mesh(FluidDomain([body], poses[0], domain, []), sizes)
     for before, pose in pairwise(poses):
         mesh = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(pose))
-        mesh = remesh(mesh, [body], pose, domain, [], sizes)
+        mesh = remesh(mesh, FluidDomain([body], pose, domain, []), sizes)
         for pair in domain.periodic:
             one, two = (across(mesh, 1 + piece, pair[0] // 2) for piece in pair)
             assert len(one) > d
@@ -75,7 +76,7 @@ def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None
 def test_images_are_put_exactly_where_they_belong_and_lost_ones_are_told() -> None:
     domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
     domain.periodic = ((0, 1),)
-    mesh = initial_mesh([ball(0.15)], upright([0.6, 0.6]), domain, [], Sizes(0.3, 0.1))
+    mesh = initial_mesh(FluidDomain([ball(0.15)], upright([0.6, 0.6]), domain, []), Sizes(0.3, 0.1))
     right = np.unique(mesh.facets[mesh.markers == 2])
     points = mesh.points.copy()
     points[right, 1] += 1e-9 * np.sin(np.arange(len(right)))
@@ -89,9 +90,9 @@ def test_facets_of_periodic_surfaces_are_not_halved() -> None:
     """Though they are longer than wanted by now, as those of the ball are."""
     domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
     domain.periodic = ((0, 1),)
-    around = [ball(0.15)], upright([0.3, 0.6]), domain, []
-    mesh = initial_mesh(*around, Sizes(0.3, 0.1))
-    edges, _, _ = long_edges(mesh, *around, Sizes(0.02, 0.01), LONGEST)
+    around = FluidDomain([ball(0.15)], upright([0.3, 0.6]), domain, [])
+    mesh = initial_mesh(around, Sizes(0.3, 0.1))
+    edges, _, _ = long_edges(mesh, around, Sizes(0.02, 0.01), LONGEST)
     assert len(edges)
     assert set(edges.ravel()) <= set(mesh.facets[mesh.markers == 0].ravel())
 

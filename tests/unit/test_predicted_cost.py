@@ -90,6 +90,7 @@ def test_a_mesher_takes_its_tables_whatever_the_mesh() -> None:
 import sys
 from pathlib import Path
 import mmgpy
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.setup.build import build_system
@@ -97,16 +98,15 @@ from rigidfluid.core.setup.load import load_scene
 scene = load_scene(sys.argv[1], ["mesh.size=3.0", "mesh.size_body=0.6"])
 system = build_system(scene, to_run=False)
 sizes = sizes_of(scene.mesh, system.domain)
-domain = system.meshed(system.pose)
-surroundings = system.bodies, system.pose, domain, system.walls, sizes
-mesh = inserted_mesh(*surroundings, inserter_of(scene.mesh))
+around = fluid_domain_at(system, system.pose)
+mesh = inserted_mesh(around, sizes, inserter_of(scene.mesh))
 
 def peak():
     status = dict(line.split(":") for line in Path("/proc/self/status").read_text().splitlines())
     return 1024 * int(status["VmHWM"].split()[0])  # ru_maxrss begins with the parent's
 
 before = peak()
-remesh(mesh, *surroundings)
+remesh(mesh, around, sizes)
 print(peak() - before)
 """
     command = [sys.executable, "-c", script, str(SCENES / "falling_sphere.toml")]

@@ -5,6 +5,7 @@ from falling import falling_disk
 from mesh_tools import ball, box, box_walls, upright
 
 from rigidfluid.checks import check
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.refine_surface import LONGEST
 from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, Wake, curved_walls
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -49,7 +50,8 @@ def test_a_wake_is_where_its_body_has_been_and_a_body_at_rest_has_none():
 def test_the_size_wanted_in_a_region_grows_from_there_and_is_never_coarser():
     bodies, pose = [ball(0.1)], upright([0.0, 1.0])
     plain, refined = Sizes(0.5, 0.01, 0.2), Sizes(0.5, 0.01, 0.2, regions=(BOX,))
-    before, after = (wanted_size(POINTS, bodies, pose, (), sizes) for sizes in (plain, refined))
+    around = FluidDomain(bodies, pose, box([-2.0, -2.0], [2.0, 2.0]), ())
+    before, after = (wanted_size(POINTS, around, sizes) for sizes in (plain, refined))
     np.testing.assert_allclose(after, np.minimum(before, 0.05 + 0.2 * BOX.distance(POINTS)))
     assert (after < before).any()
     assert (after[BOX.distance(POINTS) == 0.0] <= 0.05).all()
@@ -58,10 +60,10 @@ def test_the_size_wanted_in_a_region_grows_from_there_and_is_never_coarser():
 def test_the_first_mesh_has_the_cells_of_a_box_that_lies_between_the_vertices_of_a_coarse_one():
     lower, upper = np.zeros(2), np.array([2.0, 6.0])
     place = RefinedBox(np.array([0.9, 1.0]), np.array([1.1, 1.2]), 0.01)
-    args = [ball(0.125)], upright([1.0, 4.0]), box(lower, upper), box_walls(lower, upper, 1)
+    around = FluidDomain([ball(0.125)], upright([1.0, 4.0]), box(lower, upper), box_walls(lower, upper, 1))
     cells = [
         np.sum(place.distance(mesh.points[mesh.cells].mean(axis=1)) == 0.0)
-        for mesh in (initial_mesh(*args, Sizes(0.4, 0.05)), initial_mesh(*args, Sizes(0.4, 0.05, regions=(place,))))
+        for mesh in (initial_mesh(around, Sizes(0.4, 0.05)), initial_mesh(around, Sizes(0.4, 0.05, regions=(place,))))
     ]
     expected = 0.2**2 / (np.sqrt(0.1875) * 0.01**2)
     assert cells[0] < 5
@@ -112,7 +114,7 @@ def test_the_size_of_curved_walls_may_be_given():
 def test_curved_walls_are_as_fine_as_they_ask_for():
     body, pose, domain = ball(0.5), upright([-8.0, 0.0]), stenosis()
     sizes = Sizes(1.0, 0.3, regions=curved_walls(domain, 1.0, 0.25))
-    mesh = initial_mesh([body], pose, domain, surfaces_of(domain, 1), sizes)
+    mesh = initial_mesh(FluidDomain([body], pose, domain, surfaces_of(domain, 1)), sizes)
     ends = mesh.points[mesh.facets[mesh.markers >= 5]]
     assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max() <= LONGEST * 0.25
 

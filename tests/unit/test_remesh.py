@@ -19,6 +19,7 @@ from mesh_tools import (
 
 from rigidfluid.core.mesh import refine_surface as surface
 from rigidfluid.core.mesh import remesh as module
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.kept_cells import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
@@ -48,7 +49,7 @@ def bridges(mesh, bodies, first, others):
 def drive(bodies, poses, gap, sizes, upper=UPPER):
     """Move along poses, re-mesh when a cell gets bad or the gap has halved; meshes made, with their pose and gap."""
     walls, domain = box_walls(LOWER, upper, len(bodies)), box(LOWER, upper)
-    mesh, start = initial_mesh(bodies, poses[0], domain, walls, sizes), poses[0]
+    mesh, start = initial_mesh(FluidDomain(bodies, poses[0], domain, walls), sizes), poses[0]
     motion, made = MeshMotion(mesh, bodies, domain, start), [(mesh, start, gap(start))]
     for pose in poses[1:]:
         points = motion.move(pose)
@@ -56,9 +57,9 @@ def drive(bodies, poses, gap, sizes, upper=UPPER):
         assert quality > 0.05
         if quality < 0.3 or (gap(pose) < 0.5 * made[-1][2] and gap(pose) < sizes.cells_per_gap * sizes.size_body):
             moved = Mesh(points, mesh.cells, mesh.facets, mesh.markers)
-            mesh = remesh(moved, bodies, pose, domain, walls, sizes, LAYERS)
+            mesh = remesh(moved, FluidDomain(bodies, pose, domain, walls), sizes, LAYERS)
             assert_valid(mesh, bodies, pose, LOWER, upper)
-            unsplit = refine_surface(moved, bodies, pose, domain, walls, sizes)
+            unsplit = refine_surface(moved, FluidDomain(bodies, pose, domain, walls), sizes)
             assert body_facets(mesh, len(bodies)) == body_facets(unsplit, len(bodies))
             motion = MeshMotion(mesh, bodies, domain, pose)
             made.append((mesh, pose, gap(pose)))
@@ -113,16 +114,16 @@ def test_the_cells_grow_again_after_the_wall_is_left_but_the_kept_facets_stay():
 def test_a_sphere_moves_towards_a_wall_in_space():
     lower, upper, body, sizes = np.full(3, -1.0), np.ones(3), ball(0.4, 3), Sizes(0.6, 0.2, growth=0.4)
     walls, cube = box_walls(lower, upper, 1), box(lower, upper)
-    mesh = initial_mesh([body], upright([0, 0, 0]), cube, walls, sizes)
+    mesh = initial_mesh(FluidDomain([body], upright([0, 0, 0]), cube, walls), sizes)
     assert_valid(mesh, [body], upright([0, 0, 0]), lower, upper)
     pose = upright([0, 0, -0.3])
     moved = replace(mesh, points=MeshMotion(mesh, [body], cube, upright([0, 0, 0])).move(pose))
-    halfway = remesh(moved, [body], pose, cube, walls, sizes)
+    halfway = remesh(moved, FluidDomain([body], pose, cube, walls), sizes)
     assert_valid(halfway, [body], pose, lower, upper)
     assert body_facets(halfway, 1) == body_facets(moved, 1)
     near = upright([0, 0, -0.45])
     moved = replace(halfway, points=MeshMotion(halfway, [body], cube, pose).move(near))
-    split = remesh(moved, [body], near, cube, walls, sizes)
+    split = remesh(moved, FluidDomain([body], near, cube, walls), sizes)
     assert_valid(split, [body], near, lower, upper)
     assert np.sum(split.markers == 0) > np.sum(moved.markers == 0)
     assert cell_quality(split.points, split.cells).min() > 0.15
@@ -132,7 +133,7 @@ def test_a_sphere_moves_towards_a_wall_in_space():
 def test_a_box_without_bodies_is_meshed(dimension):
     lower, upper = np.zeros(dimension), np.ones(dimension)
     walls = box_walls(lower, upper, 0)
-    mesh = initial_mesh([], nobody(dimension), box(lower, upper), walls, Sizes(0.3, 0.1))
+    mesh = initial_mesh(FluidDomain([], nobody(dimension), box(lower, upper), walls), Sizes(0.3, 0.1))
     assert_valid(mesh, [], nobody(dimension), lower, upper)
 
 
@@ -142,7 +143,7 @@ def test_a_box_without_bodies_is_meshed(dimension):
 def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
     alone, pair = upright([1 + shift, RADIUS + gap]), upright([1 + shift, 3], [1 + shift + 2 * RADIUS + gap, 3])
     bodies, pose = [DISK] * count, alone if count == 1 else pair
-    mesh = initial_mesh(bodies, pose, BOX, box_walls(LOWER, UPPER, count), COARSE)
+    mesh = initial_mesh(FluidDomain(bodies, pose, BOX, box_walls(LOWER, UPPER, count)), COARSE)
     assert_valid(mesh, bodies, pose, LOWER, UPPER)
     assert bridges(mesh, count, 0, [3 if count == 1 else 1]) == 0 or gap < 2 * COARSE.smallest
     assert cell_quality(mesh.points, mesh.cells).min() > (0.3 if gap > 2 * COARSE.smallest else 0.1)
@@ -150,11 +151,11 @@ def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
 
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.01, 0.2)
-    split = refine_surface(mesh, [DISK], pose, BOX, walls, FINE)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.01, 0.2)
+    split = refine_surface(mesh, FluidDomain([DISK], pose, BOX, walls), FINE)
     assert np.array_equal(split.points[: len(mesh.points)], mesh.points)
     edges = np.sort(split.facets[split.markers == 0], axis=1)
-    wanted = wanted_size(split.points[edges].mean(axis=1), [DISK], pose, walls, FINE)
+    wanted = wanted_size(split.points[edges].mean(axis=1), FluidDomain([DISK], pose, BOX, walls), FINE)
     assert np.all(edge_lengths(split.points, edges) <= 1.5 * wanted)
     upper_half = {facet for facet in body_facets(mesh, 1) if min(point[1] for point in facet[1]) > RADIUS}
     assert upper_half <= body_facets(split, 1)
@@ -166,21 +167,21 @@ def test_the_wanted_size_follows_its_formula():
     points = np.array([[1.0, 2 * RADIUS + 2e-3], [1.0, 0.9], [1.0, 5.9], [1.0, 1e-3], [1.1, 0.0]])
     beside = np.hypot(0.1, RADIUS + 2e-3) - RADIUS
     expected = [0.01, 0.01 + 0.2 * (0.9 - 2 * RADIUS - 2e-3), 0.15, 1e-3, 0.01 + 0.2 * beside]
-    np.testing.assert_allclose(wanted_size(points, [DISK], pose, walls, FINE), expected, rtol=1e-12)
-    closest = wanted_size(np.array([[1.0, 0.0]]), [DISK], upright([1, RADIUS + 1e-6]), walls, FINE)
+    np.testing.assert_allclose(wanted_size(points, FluidDomain([DISK], pose, BOX, walls), FINE), expected, rtol=1e-12)
+    closest = wanted_size(np.array([[1.0, 0.0]]), FluidDomain([DISK], upright([1, RADIUS + 1e-6]), BOX, walls), FINE)
     assert closest == 0.01 / 64
 
 
 def test_two_bodies_make_a_gap_and_walls_that_do_not_repel_make_none():
     pair, between = upright([1, 3], [1.251, 3]), np.array([[1.1255, 3.0]])
-    assert wanted_size(between, [DISK] * 2, pair, [], FINE) == pytest.approx(5e-4, rel=1e-9)
+    assert wanted_size(between, FluidDomain([DISK] * 2, pair, BOX, []), FINE) == pytest.approx(5e-4, rel=1e-9)
     near_wall = upright([1, RADIUS + 2e-3])
-    assert wanted_size(np.array([[1.0, 1e-3]]), [DISK], near_wall, [], FINE) > 0.01
+    assert wanted_size(np.array([[1.0, 1e-3]]), FluidDomain([DISK], near_wall, BOX, []), FINE) > 0.01
 
 
 def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
     pose, walls = upright([1, RADIUS + 0.01]), box_walls(LOWER, UPPER, 1)
-    first, second = (initial_mesh([DISK], pose, BOX, walls, FINE) for _ in range(2))
+    first, second = (initial_mesh(FluidDomain([DISK], pose, BOX, walls), FINE) for _ in range(2))
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.cells, second.cells)
 
@@ -214,16 +215,16 @@ SPOILERS = [spoil_lose_a_facet, spoil_move_a_body_vertex, spoil_invert_a_cell, s
 @pytest.mark.parametrize("spoil", SPOILERS)
 def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
     good = module.run_mmg
     monkeypatch.setattr(module, "run_mmg", lambda *arguments: spoil(good(*arguments)))
     with pytest.raises(MeshError):
-        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
+        remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
 
 
 def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
     good = module.run_mmg
 
     def without_corner(*arguments):
@@ -234,22 +235,22 @@ def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
     monkeypatch.setattr(module, "run_mmg", without_corner)
     monkeypatch.setattr(module, "put_back", lambda mesh, *_, **__: mesh)
     with pytest.raises(MeshError, match="volume"):
-        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
+        remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
 
 
 def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
     monkeypatch.setattr(module, "run_mmg", lambda mesh, *_: mesh)
     with pytest.raises(MeshError):
-        remesh(mesh, [DISK], pose, BOX, walls, COARSE)
+        remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
 
 
 def with_a_vertex_below_the_surface():
     """A disk near the floor, with a vertex added between a facet and the disk's arc above it; and that facet."""
     pose, walls = upright([1, RADIUS + 0.02]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
-    edges, middles, _ = long_edges(mesh, [DISK], pose, BOX, walls, COARSE, 1.5)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    edges, middles, _ = long_edges(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE, 1.5)
     added = 0.5 * (middles[0] + mesh.points[edges[0]].mean(axis=0))
     split = np.flatnonzero(np.isin(mesh.cells, edges[0]).sum(axis=1) == 2)
     assert len(split) == 1
@@ -263,28 +264,28 @@ def with_a_vertex_below_the_surface():
 def test_a_bisection_that_would_invert_a_cell_waits_for_better_cells():
     mesh, pose, walls, edge = with_a_vertex_below_the_surface()
     assert cell_volumes(mesh.points, mesh.cells).min() > 0
-    refined = refine_surface(mesh, [DISK], pose, BOX, walls, COARSE)
+    refined = refine_surface(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
     assert cell_volumes(refined.points, refined.cells).min() > 0
     assert len(refined.points) > len(mesh.points)
-    left, _, _ = long_edges(refined, [DISK], pose, BOX, walls, COARSE, 1.5)
+    left, _, _ = long_edges(refined, FluidDomain([DISK], pose, BOX, walls), COARSE, 1.5)
     assert left.tolist() == [edge.tolist()]
-    new = remesh(mesh, [DISK], pose, BOX, walls, COARSE)
+    new = remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
     assert_valid(new, [DISK], pose, LOWER, UPPER)
-    assert not len(long_edges(new, [DISK], pose, BOX, walls, COARSE, 1.5)[0])
+    assert not len(long_edges(new, FluidDomain([DISK], pose, BOX, walls), COARSE, 1.5)[0])
 
 
 def test_edges_that_never_fit_stay(monkeypatch):
     mesh, pose, walls, _ = with_a_vertex_below_the_surface()
     tried = []
     monkeypatch.setattr(surface, "spares_cells", lambda _, edges, __: tried.append(1) or np.zeros(len(edges), bool))
-    new = remesh(mesh, [DISK], pose, BOX, walls, COARSE)
+    new = remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
     assert len(tried) >= module.ROUNDS
     assert body_facets(new, 1) == body_facets(mesh, 1)
 
 
 def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh([DISK], pose, BOX, 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
     good, gradations = module.run_mmg, []
 
     def fails_once(*arguments):
@@ -293,5 +294,5 @@ def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
         return spoil_lose_a_facet(made) if len(gradations) == 1 else made
 
     monkeypatch.setattr(module, "run_mmg", fails_once)
-    assert_valid(remesh(mesh, [DISK], pose, BOX, walls, COARSE), [DISK], pose, LOWER, UPPER)
+    assert_valid(remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE), [DISK], pose, LOWER, UPPER)
     assert len(set(gradations)) == 2

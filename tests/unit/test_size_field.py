@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from mesh_tools import ball, box_walls, ellipsoid, upright
+from mesh_tools import ball, box, box_walls, ellipsoid, upright
 
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 
 
@@ -18,7 +19,9 @@ def test_it_is_what_the_formula_says_everywhere(cells: float) -> None:
     gap = away[0] + np.minimum(away[1], wall)
     open_size = np.minimum(0.05 + 0.2 * away[0], 0.3)
     expected = np.minimum(open_size, np.maximum(gap / cells, sizes.smallest))
-    np.testing.assert_array_equal(wanted_size(points, bodies, pose, walls, sizes), expected)
+    np.testing.assert_array_equal(
+        wanted_size(points, FluidDomain(bodies, pose, box([0.0, 0.0], [2.0, 2.0]), walls), sizes), expected
+    )
     assert np.mean(expected < open_size) > 0.001
 
 
@@ -29,5 +32,7 @@ def test_walls_are_not_asked_far_from_bodies(monkeypatch: pytest.MonkeyPatch) ->
         type(walls[0].shape), "signed_distance", lambda self, points: asked.append(len(points)) or plain(self, points)
     )
     points = np.random.default_rng(2).uniform(0.0, 10.0, (1000, 2))
-    wanted_size(points, [ball(0.2)], upright([5.0, 5.0]), walls, Sizes(0.3, 0.05))
+    wanted_size(
+        points, FluidDomain([ball(0.2)], upright([5.0, 5.0]), box([0.0, 0.0], [10.0, 10.0]), walls), Sizes(0.3, 0.05)
+    )
     assert max(asked) < 50

@@ -13,6 +13,7 @@ from drawn import drawn, oblique_tube, polyhedron, straight, written
 from mesh_files import meshed, write_gmsh41
 from mesh_tools import ball, nobody, upright
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
@@ -60,7 +61,11 @@ def domain_of(shape: Any, dimension: int, kind: str, folder: Path) -> Domain:
     if kind == "cad":
         return cad
     size = 0.2 * float(cad.size.max())
-    write_gmsh41(folder / "shape.msh", generate_mesh([], nobody(dimension), cad, size, size, 0.3), list(cad.names))
+    write_gmsh41(
+        folder / "shape.msh",
+        generate_mesh(FluidDomain([], nobody(dimension), cad, ()), size, size, 0.3),
+        list(cad.names),
+    )
     return meshed(folder / "shape.msh", dimension)
 
 
@@ -85,13 +90,13 @@ def test_sloped_walls_stay_through_ten_meshes(name: str, kind: str, tmp_path: Pa
     sizes = Sizes(0.3 * size, 0.025 * size, 0.5) if d == 2 else Sizes(0.5 * size, 0.1 * size, 0.9)
     body, walls = ball((0.05 if d == 2 else 0.1) * size, d), list(surfaces_of(domain, 1))
     poses = [upright(np.array(centre) + 0.002 * size * step) for step in range(11)]
-    mesh = initial_mesh([body], poses[0], domain, walls, sizes)
+    mesh = initial_mesh(FluidDomain([body], poses[0], domain, walls), sizes)
     before = float(cell_volumes(mesh.points, mesh.cells).sum())
     allowed = MISSED if name == "pyramid" else 4.0 * EPSILON * float(np.abs(mesh.points).max()) / size
     assert off_its_planes(mesh, domain) <= allowed
     for start, end in pairwise(poses):
         moved = Mesh(MeshMotion(mesh, [body], domain, start).move(end), mesh.cells, mesh.facets, mesh.markers)
-        mesh = remesh(moved, [body], end, domain, walls, sizes)
+        mesh = remesh(moved, FluidDomain([body], end, domain, walls), sizes)
         assert off_its_planes(mesh, domain) <= allowed
     assert float(cell_volumes(mesh.points, mesh.cells).sum()) == pytest.approx(before, rel=1e-14 * max(1.0, 1.0 / size))
 
@@ -102,8 +107,8 @@ def test_rims_of_curved_walls_in_sloped_planes_are_on_both(way: Way, tmp_path: P
     domain = drawn(oblique_tube(), tmp_path)
     body, pose, sizes = ball(0.25, 3), upright([0.55, 0.0, 0.2]), Sizes(0.6, 0.15, 0.8)
     walls = list(surfaces_of(domain, 1))
-    mesh = initial_mesh([body], pose, domain, walls, sizes, Inserter(way))
-    for made in (mesh, remesh(mesh, [body], pose, domain, walls, sizes)):
+    mesh = initial_mesh(FluidDomain([body], pose, domain, walls), sizes, Inserter(way))
+    for made in (mesh, remesh(mesh, FluidDomain([body], pose, domain, walls), sizes)):
         for number, piece in enumerate(domain.pieces, start=1):
             vertices = made.points[np.unique(made.facets[made.markers == number])]
             assert np.abs(piece.shape.signed_distance(vertices)).max() < 4.0 * EPSILON

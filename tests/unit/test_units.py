@@ -13,6 +13,7 @@ from mesh_tools import nobody, upright
 from other_units import Table, Units, in_units
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
@@ -133,7 +134,7 @@ def around_a_ball(domain: Any, scale: float, inserter: Inserter) -> Mesh:
     centre = scale * np.array({2: [2.7, 1.1], 3: [0.1, 0.0, 2.0]}[d])
     body, pose = Sphere(SphereOptions(radius=0.3 * scale), d), upright(centre)
     sizes = Sizes(1.0 * scale, 0.5 * scale)
-    return initial_mesh([body], pose, domain, surfaces_of(domain, 1), sizes, inserter)
+    return initial_mesh(FluidDomain([body], pose, domain, surfaces_of(domain, 1)), sizes, inserter)
 
 
 DRAWN = {2: plate, 3: bent_tube}
@@ -159,7 +160,7 @@ def test_a_mesh_in_a_bent_tube_is_the_same(tmp_path: Path) -> None:
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_a_mesh_in_a_domain_of_facets_is_the_same(scale: float, tmp_path: Path) -> None:
     box, sizes = Box(BoxOptions(lower=(0.0, 0.0), upper=(4.0, 2.0)), 2), Sizes(0.6, 0.25)
-    write_by_meshio(tmp_path / "box.msh", initial_mesh([], nobody(2), box, [], sizes), list(box.names))
+    write_by_meshio(tmp_path / "box.msh", initial_mesh(FluidDomain([], nobody(2), box, []), sizes), list(box.names))
     options = {by: MeshOptions(file=str(tmp_path / "box.msh"), scale=by) for by in (1.0, scale)}
     first, other = (around_a_ball(MeshDomain(given, 2), by, Inserter()) for by, given in options.items())
     np.testing.assert_array_equal(other.cells, first.cells)

@@ -12,6 +12,7 @@ from rigidfluid.checks.resolution import narrowest_gaps
 from rigidfluid.checks.settled_pose import settled_pose
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mesh.cell_count import Count, expected_count
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.mmg import MESHER_MEMORY
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.system import System
@@ -93,7 +94,7 @@ def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
 
 
 def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
-    return expected_count(system.meshed(pose), system.bodies, pose, system.walls, sizes)
+    return expected_count(fluid_domain_at(system, pose), sizes)
 
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:

@@ -151,9 +151,10 @@ def in_a_box(
     walls = surfaces_of(box, len(bodies))
 
     def make_mesh() -> Mesh:
+        from rigidfluid.core.mesh.fluid_domain import FluidDomain
         from rigidfluid.core.mesh.meshing import generate_mesh
 
-        return generate_mesh(bodies, pose, box, *sizes, 0.5)
+        return generate_mesh(FluidDomain(bodies, pose, box, walls), *sizes, 0.5)
 
     return Arrangement(semi_axes, pose, tuple(walls[face] for face in faces), make_mesh)
 

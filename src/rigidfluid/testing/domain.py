@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.refine_surface import bisect, edges_of_facets, middles_on_surfaces, one_per_cell
@@ -194,8 +195,8 @@ def _identity(domain: Domain) -> Hashable:
 def _mesh(domain: Domain, relative_size: float) -> Mesh:
     size = relative_size * _size(domain)
     if domain.facets is not None:
-        return fill_mesh([], _nobody(domain), domain, [], Sizes(size, size, 0.3))
-    return generate_mesh([], _nobody(domain), domain, size, size, 0.3)
+        return fill_mesh(FluidDomain([], _nobody(domain), domain, []), Sizes(size, size, 0.3))
+    return generate_mesh(FluidDomain([], _nobody(domain), domain, ()), size, size, 0.3)
 
 
 def _nobody(domain: Domain) -> Pose:
@@ -212,7 +213,7 @@ def _halved(mesh: Mesh, domain: Domain) -> Mesh:
             return mesh
         length = np.linalg.norm(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]], axis=1)
         edges = edges[one_per_cell(mesh.cells, edges, length, len(mesh.points))]
-        mesh = bisect(mesh, edges, middles_on_surfaces(mesh, edges, [], _nobody(domain), domain))
+        mesh = bisect(mesh, edges, middles_on_surfaces(mesh, edges, FluidDomain([], _nobody(domain), domain, ())))
 
 
 def _middles(mesh: Mesh, piece: int) -> FloatArray:

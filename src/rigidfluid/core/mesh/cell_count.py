@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.made_size import made_size
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray
 
 _CELLS = {2: 2.42, 3: 11.1}
 """Number of cells in a volume of h^d, fitted to meshes made; of regular simplices with edges h it would be 2.3 and
@@ -33,12 +31,13 @@ class Count(NamedTuple):
     facets: float
 
 
-def expected_count(domain: Domain, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Count:
+def expected_count(fluid_domain: FluidDomain, sizes: Sizes) -> Count:
     """Expected number of cells c ∫ h^-d over the fluid, within 15 %, and of boundary facets f ∫ h^-d within h/2 of its
     boundary, h the `made_size`.
 
     Boxes are halved until they are smaller than the size at their middle, and count if that is in the fluid.
     """
+    domain = fluid_domain.domain
     lower, upper = domain.extent
     dimension = len(lower)
     coarsest = max(sizes.size, float(np.prod(upper - lower) / _MOST_BOXES) ** (1.0 / dimension))
@@ -48,7 +47,7 @@ def expected_count(domain: Domain, bodies: Sequence[Body], pose: Pose, walls: Se
     steps = np.stack(np.meshgrid(*map(np.arange, count), indexing="ij"), axis=-1).reshape(-1, dimension)
     middle, cells, facets = lower + (steps + 0.5) * edge, 0.0, 0.0
     while len(middle):
-        size, to_body = made_size(middle, bodies, pose, walls, sizes)
+        size, to_body = made_size(middle, fluid_domain, sizes)
         split = (edge.max() > size) & (len(middle) * len(halves) <= _MOST_BOXES)
         counted = ~split & (to_body > 0.0)
         counted[counted] = domain.contains(middle[counted])

@@ -6,18 +6,15 @@ leaves twice the cells behind, and every contact adds its own.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.refine_surface import LONGEST, edges_of_facets
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import check_mesh, share_no_cell
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import significant
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.errors import MeshError
 
 SHORTEST = 0.5
@@ -33,7 +30,7 @@ MOST_TURNED = 0.5
 """Least cosine of the angle by which a facet may turn when a vertex is taken off."""
 
 
-def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+def coarsen_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
     """Collapse edges of smooth bodies in 3D that are too short, shortest first, until none can be collapsed.
 
     One end of the edge is taken off the mesh and its cells are drawn to the other one, which stays where it is, on the
@@ -42,10 +39,12 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
     fold. The mesh is returned unchanged if no edge is too short, or if the result is not closed by its facets.
     """
     given = mesh
-    longest = np.array([0.0 if body.least_radius is None else body.least_radius / PER_RADIUS for body in bodies])
+    longest = np.array(
+        [0.0 if body.least_radius is None else body.least_radius / PER_RADIUS for body in fluid_domain.bodies]
+    )
     refused: set[tuple[int, int]] = set()
     while True:
-        pairs, wanted = _short_edges(mesh, longest, bodies, pose, walls, sizes)
+        pairs, wanted = _short_edges(mesh, longest, fluid_domain, sizes)
         left = np.array([(a, b) not in refused for a, b in pairs.tolist()], dtype=bool)
         if not left.any():
             break
@@ -65,7 +64,7 @@ def coarsen_surface(mesh: Mesh, bodies: Sequence[Body], pose: Pose, walls: Seque
 
 
 def _short_edges(
-    mesh: Mesh, longest: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
+    mesh: Mesh, longest: FloatArray, fluid_domain: FluidDomain, sizes: Sizes
 ) -> tuple[IntArray, FloatArray]:
     """Short edges as pairs (E, 2) of the vertex to take off and the one that stays, both ways, and the wanted size
     (E,), no more than the ``longest`` (n,) of their body; the shortest over that first."""
@@ -75,7 +74,7 @@ def _short_edges(
     ends = mesh.points[edges]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     short = np.flatnonzero(length < SHORTEST * sizes.size_body)
-    wanted = np.minimum(wanted_size(ends[short].mean(axis=1), bodies, pose, walls, sizes), longest[body[short]])
+    wanted = np.minimum(wanted_size(ends[short].mean(axis=1), fluid_domain, sizes), longest[body[short]])
     relative = significant(length[short] / wanted)
     order = np.argsort(relative, kind="stable")
     chosen = order[relative[order] < SHORTEST]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_sizes
 from rigidfluid.core.mesh.size_field import Sizes, size_away_from_gaps
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose
 
@@ -25,13 +23,13 @@ def has_coarsened(made: FloatArray, now: FloatArray, ranks: Ranks) -> bool:
     return bool(ranks.greatest(float((now / np.maximum(made, 1.0)).max())) > MOST_COARSENED)
 
 
-def relative_sizes(points: FloatArray, cells: IntArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:
+def relative_sizes(points: FloatArray, cells: IntArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
     """Each cell's size over the one wanted at its centre, (M,) [1].
 
     Gaps are left out of the wanted size: cells in a gap are squeezed with it, and a rule of their own watches them.
     """
     centres = points[cells].mean(axis=1)
-    return cell_sizes(points, cells) / size_away_from_gaps(centres, bodies, pose, sizes)
+    return cell_sizes(points, cells) / size_away_from_gaps(centres, fluid_domain, sizes)
 
 
 def is_due(reference: Pose, before: Pose, after: Pose, sizes: Sizes) -> bool:

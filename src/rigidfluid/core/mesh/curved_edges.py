@@ -6,20 +6,17 @@ surface's point at its middle it follows the surface to order 4 in L.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
 from rigidfluid.core.mesh.curved_cells import CurvedCells
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces, on_surface
-from rigidfluid.core.mesh.size_field import two_nearest_bodies
+from rigidfluid.core.mesh.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces
 from rigidfluid.core.mesh.smooth_fluid import smooth_fluid
-from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, CurvedEdges, IntArray, Mesh
 
 SQUEEZED = 0.3
 """An edge stays straight where bending it would leave less than this of a cell's volume anywhere in the cell."""
@@ -38,19 +35,19 @@ FLAT = 1e-9
 """An edge is straight when the surface is nearer to its middle than this many of its lengths."""
 
 
-def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
+def with_curved_edges(mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
     """Bend the edges on bodies and curved walls of a whole, straight mesh through the nearest points of the surface.
 
     In 3D, vertices in the fluid give way where bent edges come near. Edges in which surfaces meet stay straight, and
     those of cells too thin to bend.
     """
-    edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
+    edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, fluid_domain))
     apart = ~_on_others(mesh, edges, surface)
     edges, surface = edges[apart], surface[apart]
     straight = mesh.points[edges].mean(axis=1)
     middles = straight.copy()
     for i in np.unique(surface):
-        middles[surface == i] = on_surface(i, straight[surface == i], bodies, pose, domain)
+        middles[surface == i] = fluid_domain.closest_points(i, straight[surface == i])
     length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
     bends = np.linalg.norm(middles - straight, axis=1) > FLAT * length
     if not bends.any():
@@ -60,14 +57,14 @@ def with_curved_edges(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Do
         if mesh.points.shape[1] == 3:  # in 2D a cell has seldom more than one bent edge, and is left enough of
             curved = smooth_fluid(curved)
         cells = CurvedCells(curved)
-        thin = _too_thin(curved, cells, bodies, pose, domain)
+        thin = _too_thin(curved, cells, fluid_domain)
         if curved.curved is None or not len(thin):
             return curved
         kept = np.setdiff1d(np.arange(len(curved.curved.surface)), cells.bent[thin])
         curved = replace(curved, curved=_chosen(curved.curved, kept))
 
 
-def _too_thin(mesh: Mesh, cells: CurvedCells, bodies: Sequence[Body], pose: Pose, domain: Domain) -> IntArray:
+def _too_thin(mesh: Mesh, cells: CurvedCells, fluid_domain: FluidDomain) -> IntArray:
     """Numbers of the ``cells`` that are bent too much."""
     left = cells.least_jacobian(mesh.geometry)
     doubtful = np.flatnonzero(left < DOUBTFUL)
@@ -75,17 +72,9 @@ def _too_thin(mesh: Mesh, cells: CurvedCells, bodies: Sequence[Body], pose: Pose
     corners = mesh.points[vertices]
     pairs = np.array(list(combinations(range(corners.shape[1]), 2)))
     longest = np.linalg.norm(np.diff(corners[:, pairs], axis=2), axis=-1).max(axis=(1, 2), initial=0.0)
-    in_a_gap = gap_widths(corners.mean(axis=1), bodies, pose, domain) < NARROW * longest
+    in_a_gap = fluid_domain.gap_widths(corners.mean(axis=1)) < NARROW * longest
     bad = left * cell_quality(mesh.points, vertices) < LEAST_QUALITY
     return np.asarray(doubtful[in_a_gap | bad | (left < SQUEEZED)])
-
-
-def gap_widths(points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
-    """Distance to the nearest body and that to the next surface together, (N,) [length]."""
-    first, second = two_nearest_bodies(points, bodies, pose, np.inf)
-    for piece in domain.pieces:
-        np.minimum(second, np.abs(piece.shape.signed_distance(points)), out=second)
-    return first + second
 
 
 def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:

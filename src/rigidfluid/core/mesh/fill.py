@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_checks import refuse_unfillable
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, orient
-from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import enclosed_volume
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.errors import MeshError
 
 MESHER = [sys.executable, "-m", "rigidfluid.core.mesh.netgen_fill"]
@@ -28,10 +25,7 @@ MESHER = [sys.executable, "-m", "rigidfluid.core.mesh.netgen_fill"]
 
 
 def fill_mesh(
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
-    walls: Sequence[Wall],
+    fluid_domain: FluidDomain,
     sizes: Sizes,
     timeout: float = MESHER_TIMEOUT,
 ) -> Mesh:
@@ -41,8 +35,8 @@ def fill_mesh(
     Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises MeshError where a surface is open, two
     cross, a body is outside, or Netgen makes no valid mesh within ``timeout`` [s].
     """
-    surface = surface_mesh(bodies, pose, domain, walls, sizes)
-    refuse_unfillable(surface, bodies, pose, domain)
+    surface = surface_mesh(fluid_domain, sizes)
+    refuse_unfillable(surface, fluid_domain)
     return fill_between(surface, sizes, timeout)
 
 

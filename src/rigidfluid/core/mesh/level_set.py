@@ -5,26 +5,22 @@ Here for comparison with `fill_mesh`, which keeps edges and corners of bodies; a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fill import fill_between
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.meshing import points_on_bodies
 from rigidfluid.core.mesh.mmg import from_mmg, keep_facets, mmg_mesh, run_mmg, with_kept_facets
-from rigidfluid.core.mesh.refine_surface import on_surface
 from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.surface_mesh import part_of, surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, boundary_facets, check_mesh, orient
-from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import mesher_unit
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.errors import MeshError
 
 ADAPTATIONS = 4
@@ -58,9 +54,7 @@ CHORD = 0.25
 """A facet whose middle is farther off the shape than this, over its longest edge, cuts through the body."""
 
 
-def level_set_mesh(
-    bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes, timeout: float
-) -> Mesh:
+def level_set_mesh(fluid_domain: FluidDomain, sizes: Sizes, timeout: float) -> Mesh:
     """Mesh of the domain minus the bodies, {x ∈ Ω: min_i d_i(x) > 0}, its facets on bodies cut by MMG.
 
     The domain's facets, halved near bodies, stay. Vertices of the cut are moved onto the exact shapes as far as the
@@ -71,31 +65,31 @@ def level_set_mesh(
     """
 
     def size_at(points: FloatArray) -> FloatArray:
-        return wanted_size(points, bodies, pose, walls, sizes)
+        return wanted_size(points, fluid_domain, sizes)
 
-    surface = surface_mesh(bodies, pose, domain, walls, sizes)
-    outer = part_of(surface, surface.markers >= len(bodies))
+    surface = surface_mesh(fluid_domain, sizes)
+    outer = part_of(surface, surface.markers >= len(fluid_domain.bodies))
     mesh = background = fill_between(outer, sizes, timeout)
-    if not bodies:
+    if not fluid_domain.bodies:
         return background
     for _ in range(ADAPTATIONS):
         mesh = orient(_improved(mesh, size_at(mesh.points)))
-    mesh = _cut(mesh, bodies, pose, size_at(mesh.points), DEVIATION[domain.dimension] * sizes.size_body)
+    mesh = _cut(mesh, fluid_domain, size_at(mesh.points), DEVIATION[fluid_domain.domain.dimension] * sizes.size_body)
     for _ in range(ROUNDS):
-        target = _on_shapes(mesh, bodies, pose, domain)
+        target = points_on_bodies(mesh, fluid_domain)
         mesh = replace(mesh, points=_move_within_quality(mesh, target))
         mesh = orient(_improved(mesh, size_at(mesh.points)))
-        off = np.linalg.norm(_on_shapes(mesh, bodies, pose, domain) - mesh.points, axis=1)
+        off = np.linalg.norm(points_on_bodies(mesh, fluid_domain) - mesh.points, axis=1)
         if off.max() <= ON_SHAPE * sizes.size_body:
             break
     else:
         body = mesh.markers[(mesh.facets == off.argmax()).any(axis=1)][0]
         found = f"vertices up to {off.max():.3g} off the shape after cutting"
         raise MeshError(f"body.{body}", found, "all on it", "Use mesh.inserter = 'fill'.")
-    mesh = replace(mesh, points=_on_shapes(mesh, bodies, pose, domain))
+    mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
     kept = keep_facets(background, np.ones(len(background.facets), dtype=bool))
-    mesh = orient(with_kept_facets(mesh, mesh.markers < len(bodies), background, kept, background.points))
-    _refuse_chords(mesh, bodies, pose)
+    mesh = orient(with_kept_facets(mesh, mesh.markers < len(fluid_domain.bodies), background, kept, background.points))
+    _refuse_chords(mesh, fluid_domain)
     check_mesh(mesh, quality=0.0)
     return mesh
 
@@ -108,13 +102,13 @@ def _improved(mesh: Mesh, metric: FloatArray) -> Mesh:
     return replace(made, points=unit * made.points)
 
 
-def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, deviation: float) -> Mesh:
+def _cut(mesh: Mesh, fluid_domain: FluidDomain, metric: FloatArray, deviation: float) -> Mesh:
     """The fluid's part of a mesh that is cut along the bodies, facets there marked by the nearest body."""
     unit, d = mesher_unit(np.ptp(mesh.points, axis=0)), mesh.points.shape[1]
     shifted = replace(mesh, points=mesh.points / unit, markers=mesh.markers + CUT + 1)
     mmg = mmg_mesh(shifted, keep_facets(mesh, np.ones(len(mesh.facets), dtype=bool)), 0, metric / unit)
     mmg.set_multi_materials([{"ref": 0, "split": 1, "ref_minus": SOLID, "ref_plus": FLUID}])
-    level = _distances(mesh.points, bodies, pose).min(axis=0)
+    level = fluid_domain.body_distances(mesh.points).min(axis=0)
     try:
         with kept_signals():
             mmg.remesh_levelset(level[:, None] / unit, verbose=-1, hgrad=GRADATION, hausd=deviation / unit)
@@ -128,25 +122,11 @@ def _cut(mesh: Mesh, bodies: Sequence[Body], pose: Pose, metric: FloatArray, dev
     marks = dict(zip(map(tuple, np.sort(made.facets, axis=1).tolist()), made.markers.tolist(), strict=True))
     markers = np.array([marks.get(tuple(facet), CUT) for facet in used[facets].tolist()]) - CUT - 1
     on_cut = markers < 0
-    nearest = np.abs(_distances(points[facets[on_cut]].mean(axis=1), bodies, pose)).argmin(axis=0)
+    nearest = np.abs(fluid_domain.body_distances(points[facets[on_cut]].mean(axis=1))).argmin(axis=0)
     markers[on_cut] = nearest
-    for i in np.setdiff1d(np.arange(len(bodies)), nearest):
+    for i in np.setdiff1d(np.arange(len(fluid_domain.bodies)), nearest):
         raise MeshError(f"body.{i}", "no facet of its own after the cut", "one at least", REMEDY)
     return orient(Mesh(points, cells, facets, markers))
-
-
-def _distances(points: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:
-    """Distance of points (N, d) from each body, (n, N) [length]."""
-    return np.array([distance_to_body(pose, i, body, points) for i, body in enumerate(bodies)])
-
-
-def _on_shapes(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
-    """The points (N, d) with those of each body's facets on its shape."""
-    points = mesh.points.copy()
-    for i in range(len(bodies)):
-        mine = surface_vertices(mesh, i)
-        points[mine] = on_surface(i, points[mine], bodies, pose, domain)
-    return points
 
 
 def _move_within_quality(mesh: Mesh, target: FloatArray) -> FloatArray:
@@ -160,14 +140,14 @@ def _move_within_quality(mesh: Mesh, target: FloatArray) -> FloatArray:
     return points
 
 
-def _refuse_chords(mesh: Mesh, bodies: Sequence[Body], pose: Pose) -> None:
+def _refuse_chords(mesh: Mesh, fluid_domain: FluidDomain) -> None:
     """All vertices may be on a shape and a facet still cut through it; of shapes with corners all facets there do."""
-    for i, body in enumerate(bodies):
+    for i, body in enumerate(fluid_domain.bodies):
         if body.facets is not None:
             continue
         corners = mesh.points[mesh.facets[mesh.markers == i]]
         longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-        off = np.abs(distance_to_body(pose, i, body, corners.mean(axis=1))) / longest
+        off = np.abs(distance_to_body(fluid_domain.pose, i, body, corners.mean(axis=1))) / longest
         if off.max() > CHORD:
             found = f"a facet whose middle is {off.max():.3g} of its length off the shape"
             raise MeshError(f"body.{i}", found, f"at most {CHORD:g}", "Use mesh.inserter = 'fill'.")

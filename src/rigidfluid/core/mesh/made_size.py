@@ -3,20 +3,19 @@ the cells next to them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.refine_surface import LONGEST
 from rigidfluid.core.mesh.regions import CurvedWall
 from rigidfluid.core.mesh.size_field import Sizes, reach_of_bodies, size_between
 from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray
 
 _MOST_GROWTH = 0.4
 """Growth of the size with the distance that MMG's ratio of 1.3 between neighbouring edges comes to, fitted."""
@@ -31,15 +30,14 @@ _EDGES_PER_RADIUS = 2.0
 """Netgen makes edges no longer than the radius of curvature over this."""
 
 
-def made_size(
-    points: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
-) -> tuple[FloatArray, FloatArray]:
+def made_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> tuple[FloatArray, FloatArray]:
     """Edge length of cells to be expected at points, min(h, eᵢ + 0.83 dᵢ) over the bodies i, (N,) [length].
 
     h is the `wanted_size`, its growth at most 0.4; eᵢ is the mean edge of the body's facets, and dᵢ its distance.
     Curved walls count as bodies do. Beside it the distance to the nearest body, negative inside, infinite where it is
     so far that it decides nothing, (N,) [length].
     """
+    bodies, pose = fluid_domain.bodies, fluid_domain.pose
     sizes = replace(sizes, growth=min(sizes.growth, _MOST_GROWTH))
     first, second, kept = np.full((3, len(points)), np.inf)
     shapes = {shape_key(body): body for body in bodies}
@@ -52,7 +50,7 @@ def made_size(
         first[near] = np.minimum(first[near], distance)
         beside = edge[shape_key(body)] + _GROWTH_FROM_FACETS * np.maximum(distance, 0.0)
         kept[near] = np.minimum(kept[near], beside)
-    size = size_between(points, np.maximum(first, 0.0), np.maximum(second, 0.0), walls, sizes)
+    size = size_between(points, np.maximum(first, 0.0), np.maximum(second, 0.0), fluid_domain, sizes)
     np.minimum(size, kept, out=size)
     for region in sizes.regions:
         if isinstance(region, CurvedWall):

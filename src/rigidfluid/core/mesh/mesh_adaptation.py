@@ -17,6 +17,7 @@ from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_size
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.kept_cells import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -78,8 +79,8 @@ class MeshUpdater:
             return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
-            args = s.bodies, s.pose, s.meshed(s.pose), s.walls, self._sizes, self._inserter
-            mesh = self._curved(initial_mesh(*args), s.pose) if ranks.is_root else None
+            around = fluid_domain_at(s, s.pose)
+            mesh = self._curved(initial_mesh(around, self._sizes, self._inserter), around) if ranks.is_root else None
         return distributed(mesh, ranks)
 
     def deform(self, state: State, pose: Pose) -> Mesh | None:
@@ -133,19 +134,18 @@ class MeshUpdater:
         with ranks.raise_on_all():
             made = None
             if present is not None:
-                domain = s.meshed(pose)
-                if domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
-                    present = coarsen_surface(present, s.bodies, pose, s.walls, sizes)
-                made = self._curved(remesh(present, s.bodies, pose, domain, s.walls, sizes, LAYERS), pose)
+                around = fluid_domain_at(s, pose)
+                if around.domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
+                    present = coarsen_surface(present, around, sizes)
+                made = self._curved(remesh(present, around, sizes, LAYERS), around)
         return distributed(made, ranks)
 
-    def _curved(self, mesh: Mesh, pose: Pose) -> Mesh:
+    def _curved(self, mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
         """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
-        s = self._system
         assert self._sizes is not None
-        if self._sizes.order == 1 or not s.backend.curved_cells:
+        if self._sizes.order == 1 or not self._system.backend.curved_cells:
             return mesh
-        return with_curved_edges(mesh, s.bodies, pose, s.meshed(pose))
+        return with_curved_edges(mesh, fluid_domain)
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
@@ -168,15 +168,15 @@ class MeshUpdater:
             return True
         if not is_due(reference.pose, state.pose, pose, sizes):
             return False
-        mesh, bodies = reference.mesh, self._system.bodies
-        now = relative_sizes(points, mesh.cells, bodies, pose, sizes)
+        mesh = reference.mesh
+        now = relative_sizes(points, mesh.cells, fluid_domain_at(self._system, pose), sizes)
         return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
         """Relative sizes of the reference's cells, (M,), kept for the next look."""
         if self._made is None or self._made[0] is not reference:
-            mesh, bodies = reference.mesh, self._system.bodies
-            self._made = reference, relative_sizes(mesh.points, mesh.cells, bodies, reference.pose, sizes)
+            mesh, around = reference.mesh, fluid_domain_at(self._system, reference.pose)
+            self._made = reference, relative_sizes(mesh.points, mesh.cells, around, sizes)
         return self._made[1]
 
     def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:

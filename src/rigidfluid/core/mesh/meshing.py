@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
-from rigidfluid.core.mesh.refine_surface import on_surface
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
@@ -27,9 +27,7 @@ ROUNDING = 1e-9
 
 
 def generate_mesh(
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
+    fluid_domain: FluidDomain,
     size: float,
     size_body: float,
     growth: float,
@@ -42,20 +40,19 @@ def generate_mesh(
     long as given there [length]. Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises
     MeshError where a body leaves the domain, or Netgen makes no valid mesh.
     """
-    refuse_bodies_outside(pose, domain)
-    arguments = bodies, pose, domain, size, _size_to_ask(bodies, pose, domain, size, size_body, growth, finer)
-    mesh = put_back(orient(run_netgen(*arguments, growth, finer)), len(bodies), domain, curved=True)
-    mesh = _on_bodies(mesh, bodies, pose, domain)
-    mesh = with_exact_images(mesh, len(bodies), domain)
-    refuse_touching_bodies(mesh, len(bodies))
+    bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
+    refuse_bodies_outside(fluid_domain.pose, domain)
+    asked = _size_to_ask(fluid_domain, size, size_body, growth, finer)
+    mesh = put_back(orient(run_netgen(fluid_domain, size, asked, growth, finer)), bodies, domain, curved=True)
+    mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
+    mesh = with_exact_images(mesh, bodies, domain)
+    refuse_touching_bodies(mesh, bodies)
     check_mesh(mesh, quality=0.0)
     return mesh
 
 
 def _size_to_ask(
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
+    fluid_domain: FluidDomain,
     size: float,
     size_body: float,
     growth: float,
@@ -65,10 +62,10 @@ def _size_to_ask(
 
     Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost.
     """
-    asked = np.full(len(bodies), size_body)
+    asked = np.full(len(fluid_domain.bodies), size_body)
     for _ in range(ATTEMPTS):
-        surfaces = run_netgen(bodies, pose, domain, size, asked, growth, finer, surfaces_alone=True)
-        excess = longest_edges(surfaces, len(bodies)) / size_body
+        surfaces = run_netgen(fluid_domain, size, asked, growth, finer, surfaces_alone=True)
+        excess = longest_edges(surfaces, len(fluid_domain.bodies)) / size_body
         if np.all(excess <= 1.0 + ROUNDING):
             return asked
         asked = np.where(excess > 1.0 + ROUNDING, 0.95 * asked / np.maximum(excess, 1.0), asked)
@@ -107,9 +104,7 @@ def refuse_touching_bodies(mesh: Mesh, count: int) -> None:
 
 
 def run_netgen(
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
+    fluid_domain: FluidDomain,
     size: float,
     size_body: FloatArray,
     growth: float,
@@ -120,9 +115,10 @@ def run_netgen(
     [length]."""
     from netgen import occ
 
+    domain = fluid_domain.domain
     unit = mesher_unit(domain.size)
     try:
-        shape = fluid_shape(bodies, pose, domain, size_body, unit)
+        shape = fluid_shape(fluid_domain, size_body, unit)
     except (occ.OCCException, RuntimeError) as error:
         raise _netgen_failed(error) from error
     near = [(in_unit(point, unit), float(in_unit(length, unit))) for point, length in finer]
@@ -177,20 +173,21 @@ def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
     return replace(mesh, points=put_on_surfaces(mesh.points, shapes, belongs))
 
 
-def _on_bodies(mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> Mesh:
-    """The mesh with the vertices on bodies exactly there."""
+def points_on_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> FloatArray:
+    """The mesh's points (N, d) with those of each body's facets exactly on its shape [length]."""
     points = mesh.points.copy()
-    for i in range(len(bodies)):
+    for i in range(len(fluid_domain.bodies)):
         vertices = surface_vertices(mesh, i)
-        points[vertices] = on_surface(i, points[vertices], bodies, pose, domain)
-    return replace(mesh, points=points)
+        points[vertices] = fluid_domain.closest_points(i, points[vertices])
+    return points
 
 
-def fluid_shape(bodies: Sequence[Body], pose: Pose, domain: Domain, size_body: FloatArray, unit: float) -> Any:
+def fluid_shape(fluid_domain: FluidDomain, size_body: FloatArray, unit: float) -> Any:
     """The domain minus the bodies as a ``netgen.occ`` shape with lengths over ``unit``, whose faces (edges in 2D) are
     named by surface number."""
     from netgen import occ
 
+    bodies, pose, domain = fluid_domain.bodies, fluid_domain.pose, fluid_domain.domain
     shape, placed = numbered_shape(domain, len(bodies), unit), []
     centre, longest = in_unit(pose.position, unit), in_unit(size_body, unit).tolist()
     for i, body in enumerate(bodies):

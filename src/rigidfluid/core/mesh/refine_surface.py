@@ -3,21 +3,17 @@ surface."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
-from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import significant
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 
 LONGEST = 1.5
 """An edge on a body or a curved wall is bisected when it is longer than this many times the wanted size."""
@@ -26,9 +22,7 @@ FLAT = 1e-3
 """Quality that a bisected cell must exceed."""
 
 
-def refine_surface(
-    mesh: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes
-) -> Mesh:
+def refine_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
     """Bisect edges of bodies and curved walls, longest first, until none is longer than LONGEST times the wanted size.
 
     Every cell has at most one edge bisected at a time, so each becomes two. Edges already short enough stay, and so do
@@ -38,7 +32,7 @@ def refine_surface(
     """
     refused: set[tuple[int, int]] = set()
     while True:
-        edges, middles, _ = long_edges(mesh, bodies, pose, domain, walls, sizes, LONGEST)
+        edges, middles, _ = long_edges(mesh, fluid_domain, sizes, LONGEST)
         left = np.array([(a, b) not in refused for a, b in edges.tolist()], dtype=bool)
         if not left.any():
             return mesh
@@ -54,48 +48,44 @@ def refine_surface(
 
 def long_edges(
     mesh: Mesh,
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
-    walls: Sequence[Wall],
+    fluid_domain: FluidDomain,
     sizes: Sizes,
     longest: float,
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Edges (E, 2) of bodies and curved walls longer than ``longest`` times the size wanted at their middles; on the
     surface above those, points (E, d) and the size wanted there (E,)."""
-    edges, _ = edges_of_facets(mesh, on_kept_surfaces(mesh, len(bodies), domain))
-    periodic, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(bodies), domain))
+    edges, _ = edges_of_facets(mesh, on_kept_surfaces(mesh, fluid_domain))
+    periodic, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(fluid_domain.bodies), fluid_domain.domain))
     if len(periodic):
         edges = edges[edge_numbers(edges, (0, 1), periodic, len(mesh.points)) < 0]
     middles = mesh.points[edges].mean(axis=1)
-    wanted = wanted_size(middles, bodies, pose, walls, sizes)
+    wanted = wanted_size(middles, fluid_domain, sizes)
     long = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) > longest * wanted
     edges = edges[long]
-    middles = middles_on_surfaces(mesh, edges, bodies, pose, domain)
-    return edges, middles, wanted_size(middles, bodies, pose, walls, sizes)
+    middles = middles_on_surfaces(mesh, edges, fluid_domain)
+    return edges, middles, wanted_size(middles, fluid_domain, sizes)
 
 
-def middles_on_surfaces(
-    mesh: Mesh, edges: IntArray, bodies: Sequence[Body], pose: Pose, domain: Domain
-) -> FloatArray:
+def middles_on_surfaces(mesh: Mesh, edges: IntArray, fluid_domain: FluidDomain) -> FloatArray:
     """Points (E, d) of the exact surface above the middles of ``edges`` (E, 2), which are sorted; of all that meet
     there."""
     middles = np.asarray(mesh.points[edges].mean(axis=1))
     if not len(edges):
         return middles
-    belongs = np.zeros((len(edges), len(bodies) + len(domain.pieces)), dtype=bool)
+    belongs = np.zeros((len(edges), len(fluid_domain.bodies) + len(fluid_domain.domain.pieces)), dtype=bool)
     for pair in combinations(range(mesh.facets.shape[1]), 2):
         number = edge_numbers(mesh.facets, pair, edges, len(mesh.points))
         belongs[number[number >= 0], mesh.markers[number >= 0]] = True
-    on_bodies, on_domain = np.split(belongs, [len(bodies)], axis=1)
+    on_bodies, on_domain = np.split(belongs, [len(fluid_domain.bodies)], axis=1)
     for i in np.flatnonzero(on_bodies.any(axis=0)).tolist():
-        middles[on_bodies[:, i]] = on_surface(i, middles[on_bodies[:, i]], bodies, pose, domain)
-    return put_on_surfaces(middles, [piece.shape for piece in domain.pieces], on_domain)
+        middles[on_bodies[:, i]] = fluid_domain.closest_points(i, middles[on_bodies[:, i]])
+    return put_on_surfaces(middles, [piece.shape for piece in fluid_domain.domain.pieces], on_domain)
 
 
-def on_kept_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
+def on_kept_surfaces(mesh: Mesh, fluid_domain: FluidDomain) -> BoolArray:
     """Whether each facet lies on a body or on a surface of the domain that is not flat, or periodic, and that MMG must
     not move, (F,)."""
+    bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
     kept = [True] * bodies + [piece.shape.plane is None for piece in domain.pieces]
     return np.array(kept)[mesh.markers] | on_periodic_surfaces(mesh, bodies, domain)
 
@@ -108,13 +98,6 @@ def edges_of_facets(mesh: Mesh, chosen: BoolArray) -> tuple[IntArray, IntArray]:
     edges = np.sort(np.concatenate([facets[:, pair] for pair in pairs]), axis=1)
     edges, index = np.unique(edges, axis=0, return_index=True)
     return edges, np.tile(markers, len(pairs))[index]
-
-
-def on_surface(surface: int, points: FloatArray, bodies: Sequence[Body], pose: Pose, domain: Domain) -> FloatArray:
-    """The closest points (N, d) of a surface, by its number, to ``points`` (N, d)."""
-    if surface < len(bodies):
-        return to_world(pose, surface, bodies[surface].closest_point(to_body_frame(pose, surface, points)))
-    return domain.pieces[surface - len(bodies)].shape.closest_point(points)
 
 
 def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import combinations, product
@@ -10,6 +10,7 @@ from itertools import combinations, product
 import numpy as np
 
 from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.kept_cells import kept_cells
 from rigidfluid.core.mesh.level_set import level_set_mesh
@@ -19,11 +20,8 @@ from rigidfluid.core.mesh.mmg import Kept, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
-from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import mesher_unit, significant
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.errors import MeshError
 
 GRADATIONS = (1.3, 1.4, 1.2)
@@ -50,10 +48,7 @@ LONGEST_EDGE = 2.5
 
 
 def initial_mesh(
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
-    walls: Sequence[Wall],
+    fluid_domain: FluidDomain,
     sizes: Sizes,
     inserter: Inserter = BY_SHAPE,
 ) -> Mesh:
@@ -62,22 +57,20 @@ def initial_mesh(
     Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.meshing.generate_mesh`. Raises MeshError where no
     valid mesh can be made.
     """
-    inserted = inserted_mesh(bodies, pose, domain, walls, sizes, inserter)
-    return remesh(inserted, bodies, pose, domain, walls, sizes)
+    inserted = inserted_mesh(fluid_domain, sizes, inserter)
+    return remesh(inserted, fluid_domain, sizes)
 
 
-def inserted_mesh(
-    bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes, inserter: Inserter
-) -> Mesh:
+def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -> Mesh:
     """The first mesh before it is graded; as for `initial_mesh`."""
-    way = inserter.chosen(bodies, domain)
+    way = inserter.chosen(fluid_domain.bodies, fluid_domain.domain)
     if way != "cad":
         insert = fill_mesh if way == "fill" else level_set_mesh
-        return insert(bodies, pose, domain, walls, sizes, inserter.timeout)
+        return insert(fluid_domain, sizes, inserter.timeout)
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
-        mesh = generate_mesh(bodies, pose, domain, sizes.size, sizes.size_body, sizes.growth, finer)
-        _, points, wanted = long_edges(mesh, bodies, pose, domain, walls, sizes, BISECTABLE)
+        mesh = generate_mesh(fluid_domain, sizes.size, sizes.size_body, sizes.growth, finer)
+        _, points, wanted = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
         if not len(points):
             break
         finer += zip(points, wanted, strict=True)
@@ -86,10 +79,7 @@ def inserted_mesh(
 
 def remesh(
     mesh: Mesh,
-    bodies: Sequence[Body],
-    pose: Pose,
-    domain: Domain,
-    walls: Sequence[Wall],
+    fluid_domain: FluidDomain,
     sizes: Sizes,
     layers: int = 0,
 ) -> Mesh:
@@ -104,15 +94,14 @@ def remesh(
     far as they are good, and the flow there as it is. Raises MeshError where MMG fails, loses a facet or leaves a bad
     cell with every gradation.
     """
-    size_at = partial(wanted_size, bodies=bodies, pose=pose, walls=walls, sizes=sizes)
+    size_at = partial(wanted_size, fluid_domain=fluid_domain, sizes=sizes)
     check_mesh(mesh, quality=0.0)
-    surroundings = bodies, pose, domain, walls, sizes
-    new = best_remeshed(refine_surface(mesh, *surroundings), len(bodies), domain, size_at, layers)
+    new = best_remeshed(refine_surface(mesh, fluid_domain, sizes), fluid_domain, size_at, layers)
     for _ in range(ROUNDS):
         well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
-        if well_shaped and not len(long_edges(new, *surroundings, LONGEST)[0]):
+        if well_shaped and not len(long_edges(new, fluid_domain, sizes, LONGEST)[0]):
             break
-        new = best_remeshed(refine_surface(new, *surroundings), len(bodies), domain, size_at, layers)
+        new = best_remeshed(refine_surface(new, fluid_domain, sizes), fluid_domain, size_at, layers)
     check_mesh(new, quality=WORST_QUALITY)
     excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
@@ -122,7 +111,7 @@ def remesh(
 
 
 def best_remeshed(
-    mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int
+    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int
 ) -> Mesh:
     """Re-mesh by MMG with the first gradation that gives good cells, else take the best of all gradations.
 
@@ -132,7 +121,7 @@ def best_remeshed(
     failures: list[MeshError] = []
     for kept, gradation in product(sorted({layers, 0}, reverse=True), GRADATIONS):
         try:
-            made.append(remeshed_once(mesh, bodies, domain, size_at, kept, gradation))
+            made.append(remeshed_once(mesh, fluid_domain, size_at, kept, gradation))
         except MeshError as error:
             failures.append(error)
         else:
@@ -144,18 +133,18 @@ def best_remeshed(
 
 
 def remeshed_once(
-    mesh: Mesh, bodies: int, domain: Domain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
+    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
 ) -> Mesh:
     """Re-mesh by one call of MMG, repair round-off and check the result; ``size_at(points)`` is the wanted size
     (N,)."""
-    unit = mesher_unit(np.ptp(mesh.points, axis=0))
+    bodies, unit = len(fluid_domain.bodies), mesher_unit(np.ptp(mesh.points, axis=0))
     given = rounded(replace(mesh, points=mesh.points / unit))
-    kept = Kept(on_kept_surfaces(mesh, bodies, domain), kept_cells(mesh, bodies, size_at, layers))
+    kept = Kept(on_kept_surfaces(mesh, fluid_domain), kept_cells(mesh, bodies, size_at, layers))
     placed = unit * given.points
     made = run_mmg(given, kept, bodies, significant(size_at(placed) / unit), gradation)
-    outer, made = ~on_kept_surfaces(made, bodies, domain), replace(made, points=unit * made.points)
+    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=unit * made.points)
     restored = with_kept_facets(made, outer, mesh, kept, placed)
-    new = orient(put_back(restored, bodies, domain, curved=False))
+    new = orient(put_back(restored, bodies, fluid_domain.domain, curved=False))
     check_mesh(new, quality=0.0)
     check_volume(new, float(cell_volumes(mesh.points, mesh.cells).sum()), "before re-meshing")
     return new

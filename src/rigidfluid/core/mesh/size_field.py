@@ -3,16 +3,13 @@ elsewhere."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.regions import Region
-from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,37 +36,35 @@ class Sizes:
         return self.size_body / 2.0**self.refinements
 
 
-def wanted_size(
-    points: FloatArray, bodies: Sequence[Body], pose: Pose, walls: Sequence[Wall], sizes: Sizes
-) -> FloatArray:
+def wanted_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
     """Wanted edge length at points (N, d), h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)), (N,) [length].
 
     h_open is `size_away_from_gaps`, h_min `Sizes.smallest`, d₁ the distance to the nearest body, d₂ that to the next
     body or the nearest wall, so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off
     it. Two walls make no gap.
     """
-    first, second = two_nearest_bodies(points, bodies, pose, reach_of_bodies(sizes))
-    return size_between(points, first, second, walls, sizes)
+    first, second = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
+    return size_between(points, first, second, fluid_domain, sizes)
 
 
 def size_between(
-    points: FloatArray, first: FloatArray, second: FloatArray, walls: Sequence[Wall], sizes: Sizes
+    points: FloatArray, first: FloatArray, second: FloatArray, fluid_domain: FluidDomain, sizes: Sizes
 ) -> FloatArray:
     """`wanted_size` of points at distances ``first`` and ``second`` (N,) from the two nearest bodies, (N,) [length]."""
     open_size = _size_at(first, points, sizes)
     near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
-    gap = first[near] + np.minimum(second[near], nearest_wall(points[near], walls))
+    gap = first[near] + np.minimum(second[near], fluid_domain.nearest_wall(points[near]))
     wanted = open_size.copy()
     wanted[near] = np.minimum(open_size[near], np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
     return wanted
 
 
-def size_away_from_gaps(points: FloatArray, bodies: Sequence[Body], pose: Pose, sizes: Sizes) -> FloatArray:
+def size_away_from_gaps(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
     """Wanted edge length without regard to gaps, (N,) [length].
 
     h = min(size, size_body + growth·d₁, size_r + growth·d_r for each region r at the distance d_r).
     """
-    first, _ = two_nearest_bodies(points, bodies, pose, reach_of_bodies(sizes))
+    first, _ = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
     return _size_at(first, points, sizes)
 
 
@@ -84,25 +79,3 @@ def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
 def reach_of_bodies(sizes: Sizes) -> float:
     """The distance beyond which bodies decide no size [length]."""
     return max((sizes.size - sizes.size_body) / sizes.growth, sizes.cells_per_gap * sizes.size)
-
-
-def two_nearest_bodies(
-    points: FloatArray, bodies: Sequence[Body], pose: Pose, reach: float
-) -> tuple[FloatArray, FloatArray]:
-    """Distances to the nearest and to the second nearest body, each (N,), infinite where beyond ``reach`` [length]."""
-    first, second = np.full((2, len(points)), np.inf)
-    for i, body in enumerate(bodies):
-        from_centre = np.linalg.norm(points - pose.position[i], axis=1)
-        near = np.flatnonzero(from_centre - body.bounding_radius < np.minimum(reach, second))
-        distance = np.maximum(distance_to_body(pose, i, body, points[near]), 0.0)
-        second[near] = np.minimum(second[near], np.maximum(first[near], distance))
-        first[near] = np.minimum(first[near], distance)
-    return first, second
-
-
-def nearest_wall(points: FloatArray, walls: Sequence[Wall]) -> FloatArray:
-    """Distance to the nearest wall, (N,), infinite without walls [length]."""
-    distance = np.full(len(points), np.inf)
-    for wall in walls:
-        np.minimum(distance, np.maximum(wall.shape.signed_distance(points), 0.0), out=distance)
-    return distance

@@ -8,33 +8,33 @@ import numpy as np
 
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.distribution import surface_vertices
-from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.model.facets import enclosed_volume, place
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.ridges import ridges_of
-from rigidfluid.core.model.types import BoolArray, Mesh, Pose
+from rigidfluid.core.model.types import BoolArray, Mesh
 from rigidfluid.errors import MeshError
 
 _MEND = "Mend the surface: each edge of a facet belongs to one other facet, all normals point to the same side."
 
 
-def refuse_unfillable(surface: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain) -> None:
+def refuse_unfillable(surface: Mesh, fluid_domain: FluidDomain) -> None:
     """Refuse a closed surface of `surface_mesh` that a mesher would fail on, or never end with.
 
     The MeshError names the surface and the place: where it is open, where two cross, which body is outside or in
     another.
     """
+    bodies, pose, domain = fluid_domain.bodies, fluid_domain.pose, fluid_domain.domain
     names = [*(f"body.{i}" for i in range(len(bodies))), *(f"domain surface {name!r}" for name in domain.names)]
     _refuse_open(surface, names)
     _refuse_inside_out(surface, len(bodies))
     _refuse_crossing(surface, names)
-    for i, body in enumerate(bodies):
+    for i in range(len(bodies)):
         mine = surface.points[surface_vertices(surface, i)]
         outside = mine[~domain.contains(mine)]
         if len(outside):
             allowed, remedy = f"all of it inside the {domain.name}", "Move the body or enlarge the domain."
             raise MeshError(f"body.{i}.position", f"a vertex outside, at {place(outside[:1])}", allowed, remedy)
-        for k in np.flatnonzero(_within_reach(i, body, bodies, pose)):
+        for k in np.flatnonzero(_overlaps_ball(i, fluid_domain)):
             if distance_to_body(pose, int(k), bodies[int(k)], mine[:1])[0] < 0.0:
                 found = f"a vertex inside body.{k}, at {place(mine[:1])}"
                 raise MeshError(f"body.{i}.position", found, "a body apart from all others", "Move it.")
@@ -76,9 +76,10 @@ def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
     raise MeshError(names[one], found, "surfaces that do not cross", remedy)
 
 
-def _within_reach(number: int, body: Body, bodies: Sequence[Body], pose: Pose) -> BoolArray:
+def _overlaps_ball(number: int, fluid_domain: FluidDomain) -> BoolArray:
     """Whether each other body's bounding ball overlaps that of one, (n,)."""
-    radii = np.array([other.bounding_radius for other in bodies])
-    distance = np.linalg.norm(pose.position - pose.position[number], axis=1)
+    position = fluid_domain.pose.position
+    radii = np.array([body.bounding_radius for body in fluid_domain.bodies])
+    distance = np.linalg.norm(position - position[number], axis=1)
     distance[number] = np.inf
-    return np.asarray(distance < radii + body.bounding_radius)
+    return np.asarray(distance < radii + radii[number])

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import (
     ATTEMPTS,
     ROUNDING,
@@ -33,11 +34,10 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import MeshError
 
 
-def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes) -> Mesh:
+def surface_mesh(fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
     """Mesh without cells: all facets around the fluid, none longer than LONGEST times the wanted size, normals into the
     fluid.
 
@@ -45,16 +45,18 @@ def surface_mesh(bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequ
     Edges still too long, as those of walls near bodies, are halved. Markers are surface numbers: bodies 0 … n-1, then
     the domain's pieces. Raises MeshError where Netgen cannot mesh a shape.
     """
-    parts = []
+    bodies, domain, parts = fluid_domain.bodies, fluid_domain.domain, []
     for i, body in enumerate(bodies):
         own = _mesh_of_facets(body.facets) if body.facets is not None else _meshed_body(i, body, sizes)
-        parts.append(replace(own, points=to_world(pose, i, own.points), markers=np.full(len(own.facets), i)))
+        parts.append(
+            replace(own, points=to_world(fluid_domain.pose, i, own.points), markers=np.full(len(own.facets), i))
+        )
     if domain.facets is None:
         outer = _meshed_domain(domain, sizes)
     else:
         outer = put_back(_mesh_of_facets(domain.facets), 0, domain, curved=False)
     parts.append(replace(outer, markers=len(bodies) + outer.markers))
-    return _halved(_joined(parts), bodies, pose, domain, walls, sizes)
+    return _halved(_joined(parts), fluid_domain, sizes)
 
 
 def part_of(surface: Mesh, chosen: BoolArray) -> Mesh:
@@ -96,7 +98,7 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
 def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
     """Facets of a domain that has a CAD shape; markers are the numbers of its pieces."""
     nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
-    found = run_netgen([], nobody, domain, sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
+    found = run_netgen(FluidDomain([], nobody, domain, ()), sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
     surface = put_back(_mesh_of_facets(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
     return _into_fluid(surface, [piece.shape for piece in domain.pieces])
 
@@ -120,17 +122,15 @@ def _joined(parts: Sequence[Mesh]) -> Mesh:
     )
 
 
-def _halved(
-    surface: Mesh, bodies: Sequence[Body], pose: Pose, domain: Domain, walls: Sequence[Wall], sizes: Sizes
-) -> Mesh:
+def _halved(surface: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
     """The surface with too long edges halved, the longest of each facet first, new vertices on the exact surface."""
     while True:
         edges, _ = edges_of_facets(surface, np.ones(len(surface.facets), dtype=bool))
         start, end = surface.points[edges[:, 0]], surface.points[edges[:, 1]]
         length = np.linalg.norm(end - start, axis=1)
-        long = length > LONGEST * wanted_size(0.5 * (start + end), bodies, pose, walls, sizes)
+        long = length > LONGEST * wanted_size(0.5 * (start + end), fluid_domain, sizes)
         if not long.any():
             return surface
         edges, length = edges[long], length[long]
         edges = edges[one_per_cell(surface.facets, edges, length, len(surface.points))]
-        surface = bisect(surface, edges, middles_on_surfaces(surface, edges, bodies, pose, domain))
+        surface = bisect(surface, edges, middles_on_surfaces(surface, edges, fluid_domain))

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
@@ -56,7 +57,7 @@ def collision_rows(most_bodies: int = 125, repeats: int = 5) -> Iterator[Collisi
 
 def _row(dimension: int, bodies: int, counts: tuple[int, int], repeats: int) -> CollisionRow:
     balls, pose, box, walls = balls_in_a_box(dimension, bodies)
-    mesh = initial_mesh(balls, pose, box, walls, mesh_sizes(dimension, bodies))
+    mesh = initial_mesh(FluidDomain(balls, pose, box, walls), mesh_sizes(dimension, bodies))
     detectors = (
         SphereDetector(PartOptions(), balls, walls),
         NarrowBandDetector(NarrowBandOptions(), balls, walls),

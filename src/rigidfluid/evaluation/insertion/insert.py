@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.core.output.writer import writing
@@ -43,15 +44,14 @@ def insert(
     with _timed(seconds, "scene"):
         progress("checking the scene")
         system, inserter = build_system(scene), inserter_of(table)
-        domain = system.meshed(system.pose)
-        way = inserter.chosen(system.bodies, domain)
-    around = system.bodies, system.pose, domain, system.walls, sizes_of(table, system.domain)
+        around, sizes = fluid_domain_at(system, system.pose), sizes_of(table, system.domain)
+        way = inserter.chosen(around.bodies, around.domain)
     with _timed(seconds, "insertion"):
         progress(_WAYS[way])
-        mesh = inserted_mesh(*around, inserter)
+        mesh = inserted_mesh(around, sizes, inserter)
     with _timed(seconds, "grading"):
         progress("grading the cells")
-        mesh = remesh(mesh, *around)
+        mesh = remesh(mesh, around, sizes)
     figures = measured(scene.name, way, mesh, system, seconds)
     progress("writing mesh and report")
     out = Path("out") / f"{scene.name}_mesh" if out is None else Path(out)

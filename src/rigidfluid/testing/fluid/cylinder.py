@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
@@ -51,7 +52,7 @@ class CylinderContract(FluidContract):
 @cache
 def _mesh() -> Mesh:
     cylinder = Sphere(SphereOptions(radius=0.05), 2)
-    return initial_mesh([cylinder], POSE, CHANNEL, (), Sizes(0.05, 0.005))
+    return initial_mesh(FluidDomain([cylinder], POSE, CHANNEL, ()), Sizes(0.05, 0.005))
 
 
 def _inflow(time: float, points: FloatArray) -> FloatArray:

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
@@ -122,7 +123,9 @@ class DetectorGaps(Kernel):
 
     def _mesh(self, bodies: list[Body], pose: Pose) -> Mesh:
         corners = BoxOptions(lower=(0.0,) * self.dimension, upper=(float(self._side),) * self.dimension)
-        return generate_mesh(bodies, pose, Box(corners, self.dimension), max(FAR_SIZE, self.size), self.size, 0.5)
+        return generate_mesh(
+            FluidDomain(bodies, pose, Box(corners, self.dimension), ()), max(FAR_SIZE, self.size), self.size, 0.5
+        )
 
     @property
     def _side(self) -> int:
