@@ -1,4 +1,4 @@
-"""What a spring is, and springs between bodies and the ground."""
+"""Interface of springs, and springs between bodies and the ground."""
 
 from __future__ import annotations
 
