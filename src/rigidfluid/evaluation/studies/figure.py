@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.joints.coordinates import units_by_name
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.tables import KINDS
 from rigidfluid.core.run.summary import ENERGIES, FIGURES
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.joint_kinds import build_joints
 from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.studies.model import FigureTable
@@ -33,8 +31,7 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
         if table == "energy":
             _refuse_unknown("", rest, ENERGIES)
         return
-    coordinates = units_by_name(joint.coordinate for joint in build_joints(scene))
-    names = columns(scene.dimension, tuple(coordinates))[str(figure.table)]
+    names = columns(scene.dimension)[str(figure.table)]
     _refuse_unknown(".column", str(figure.column), [name for name in names if KINDS.get(name) is not str])
     if figure.table == "probes" and (figure.probe or 0) >= len(scene.output.probes):
         allowed = f"the number of one of {len(scene.output.probes)} probes, from 0"
