@@ -12,7 +12,6 @@ from rigidfluid.core.mechanics.rigid import lab_inertia
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.errors import SceneError
 from rigidfluid.reports import report
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
