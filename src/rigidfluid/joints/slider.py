@@ -26,7 +26,7 @@ class SliderOptions(CoordinateOptions):
     stiffness: Positive | None = Field(default=None, description="Of a spring; none if not given [force/length]")
     rest_length: float | None = Field(
         default=None,
-        description="Displacement at which that spring rests, of the first body seen from the second, along the axis; "
+        description="Displacement at which the spring rests, of the first body seen from the second, along the axis; "
         "0, that at the start, if not given [length]",
     )
     damping: Positive | None = Field(default=None, description="Of a damper; none if not given [force·time/length]")

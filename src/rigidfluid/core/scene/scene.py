@@ -281,7 +281,9 @@ class JointTable(_OpenTable):
     name: str = Field(
         default="", pattern=PRINTABLE, description="Name in the results; `joint0`, `joint1`, … if not given"
     )
-    type: str = Field(description="Name of a joint type")
+    type: str = Field(
+        description="Name of a joint type; `rod` has no keys of its own: the bodies move as if they were one"
+    )
     between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
         description="Names of two bodies or components, or of one, which is joined to the ground"
     )
