@@ -8,7 +8,7 @@ from linked_runs import bar, body, hinge, linked_scene, misfit, momenta
 
 import rigidfluid
 from rigidfluid.checks import check
-from rigidfluid.core.mechanics.rigid import lab_inertia
+from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
@@ -58,6 +58,23 @@ def test_a_mass_on_a_spring_along_an_axis_oscillates_to_second_order(dimension):
     assert it.system.linkage.frequency == pytest.approx(4.0)
     assert errors[0] < 2e-3
     assert falls(errors)
+
+
+@DIMENSIONS
+def test_the_torque_of_a_slider_is_told_about_its_point(dimension):
+    """A body that does not turn feels none about its centre, wherever the axis is, its spring included: that is of the
+    end of a step, the rest of its mean."""
+    rest = [2.0] * (dimension - 2)
+    point = np.array([2.3, 2.1, *rest])
+    spring = slider("body0", axis=AXES[dimension], stiffness=0.1, rest_length=0.2, at=point.tolist())
+    it = run(linked_scene([body(2.0, 2.0, *rest)], [spring], gravity=[0.3, -1.0, 0.2][:dimension], step=0.005))
+    told, names = of_joint(it), "xyz"[:dimension]
+    force = np.stack([told[f"f{axis}"] for axis in names], axis=1)
+    torque = told["t"][:, None] if dimension == 2 else np.stack([told[f"t{axis}"] for axis in names], axis=1)
+    arm = point - [2.0, 2.0, *rest]
+    assert np.abs(torque[1:]).max() > 1e-3
+    expected = -moment(np.broadcast_to(arm, force.shape), force)[1:]
+    np.testing.assert_allclose(torque[1:], expected, atol=0.02 * np.abs(expected).max())
 
 
 def test_the_period_of_a_mass_on_a_slider():

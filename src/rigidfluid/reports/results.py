@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -147,7 +147,7 @@ def _summary(path: Path) -> dict[str, Any]:
 
 
 def _table(
-    folder: Path, name: str, dimension: int, *, coordinates: Sequence[str] = COORDINATES, complete: bool = True
+    folder: Path, name: str, dimension: int, *, coordinates: Iterable[str] = COORDINATES, complete: bool = True
 ) -> dict[str, NDArray[Any]]:
     """A table by column; every row must be whole, and every column but the names a number."""
     path, names = folder / f"{name}.csv", columns(dimension, coordinates)[name]

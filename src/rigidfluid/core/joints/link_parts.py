@@ -39,9 +39,7 @@ class LinkParts:
         """Gap, coordinate, force and torque of the link at poses ``bodies``, with the markers of its constraints
         ``placed`` and the ``force`` of its rows (r,)."""
         held, torque = self._constraint_wrench(placed, force)
-        pull = nothing(bodies)
-        for spring in self.springs:
-            spring.add_wrench(bodies, pull)
+        pull, pull_torque = self._spring_wrench(placed, bodies)
         pairs = list(zip(self.constraints, placed, strict=True))
         gaps = [one.misfit(at, time) for one, at in pairs if one.joins_points]
         value, rate, seen = np.nan, np.nan, self.coordinate
@@ -53,9 +51,17 @@ class LinkParts:
             coordinate=None if seen is None else seen.name,
             value=value,
             rate=rate,
-            force=held + pull.force[self.first],
-            torque=torque + pull.torque[self.first],
+            force=held + pull,
+            torque=torque + pull_torque,
         )
+
+    def _spring_wrench(self, placed: Sequence[PlacedPair], bodies: Pose) -> tuple[FloatArray, FloatArray]:
+        """Force and torque of the springs on the first body, about its point; without rows that is its centre."""
+        wrench = nothing(bodies)
+        for spring in self.springs:
+            spring.add_wrench(bodies, wrench)
+        force, torque = wrench.force[self.first], wrench.torque[self.first]
+        return force, torque - placed[0].levers[0].T @ force if placed else torque
 
     def _constraint_wrench(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and torque of the rows on the first body."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ class History:
         dimension: int,
         records: Records | None = None,
         folder: Path | None = None,
-        coordinates: Sequence[str] = COORDINATES,
+        coordinates: Iterable[str] = COORDINATES,
     ) -> None:
         self.dimension, self._coordinates = dimension, tuple(coordinates)
         self.summary: dict[str, Any] = {}

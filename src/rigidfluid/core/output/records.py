@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,11 +23,11 @@ LEDGER_COLUMNS = (
 )
 
 
-COORDINATES = ("angle",)
-"""Coordinates of joints that have a column in any case."""
+COORDINATES: Mapping[str, str] = {"angle": "rad"}
+"""Coordinates of joints that have a column in any case, with their units."""
 
 
-def columns(dimension: int, coordinates: Sequence[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
+def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
     """Column names of each table, in order; ``coordinates`` are those of joints, by name."""
     axes = "xyz"[:dimension]
     along = tuple(axes)
@@ -76,9 +76,9 @@ def records(
     }
 
 
-def joint_coordinates(system: System) -> tuple[str, ...]:
-    """Names of the coordinates of a system's joints, for `columns`."""
-    return COORDINATES if system.linkage is None else tuple(system.linkage.coordinates)
+def joint_coordinates(system: System) -> Mapping[str, str]:
+    """Units of the coordinates of a system's joints, by the names of their columns, in order."""
+    return COORDINATES if system.linkage is None else system.linkage.coordinates
 
 
 def moving(system: System) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ Ranks that share a run write each its part of the fields and its checkpoint, and
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -45,7 +45,7 @@ class Writer:
         dimension: int,
         resumed: Checkpoint | None,
         ranks: Ranks,
-        coordinates: Sequence[str] = COORDINATES,
+        coordinates: Iterable[str] = COORDINATES,
     ) -> None:
         self.out, self._ranks = out, ranks
         self._tables: dict[str, Table] = {}
