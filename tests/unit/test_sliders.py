@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 
+import jsonschema
 import numpy as np
 import pytest
 from linked_runs import bar, body, hinge, linked_scene, misfit, momenta
@@ -12,6 +13,7 @@ from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.reports import report
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
@@ -298,3 +300,12 @@ def test_a_scene_of_sliders_is_read_back_as_it_was():
     scene = linked_scene([body(2.0, 2.0)], [slider("body0", axis=[1, 0], drive=WAVE)])
     assert scene_from_dict(scene.to_dict()) == scene
     assert scene.to_dict()["joint"][0]["drive"]["repeat"] is True
+
+
+def test_the_schema_has_the_keys_of_each_type():
+    schema = jsonschema.Draft202012Validator(json_schema())
+    rail = slider("body0", axis=[1.0, 0.0], stiffness=1.0, rest_length=0.1, drive=WAVE)
+    for given, wrong in ((rail, {"rest_angle": 0.1}), ({"type": "rod", "between": ["body0"]}, {"stiffness": 1.0})):
+        scene = linked_scene([body(2.0, 2.0)], []).to_dict()
+        assert not list(schema.iter_errors(scene | {"joint": [given]}))
+        assert list(schema.iter_errors(scene | {"joint": [given | wrong]}))
