@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.types import Pose, Twist
-from rigidfluid.errors import SceneError, StepRejected
+from rigidfluid.errors import PluginError, SceneError, StepRejected
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
@@ -306,6 +306,14 @@ def test_parts_of_one_mechanism_are_not_joined(carried):
         JointLinkage(
             pose, [joint("rod", 1, 2, pose.position[1])], [], np.ones(3), inertia, held, lambda _: None, bodies
         )
+
+
+def test_a_joint_that_holds_nothing_is_an_error_of_its_author():
+    pose = placed(2, 2)
+    given = joint("hinge", 0, 1, pose.position[0])
+    given.kind.constraints = lambda name, markers: []
+    with pytest.raises(PluginError, match=r"joint 'joint0'.*no constraints by type 'hinge'.*JointContract"):
+        linkage(pose, [given])
 
 
 def test_one_held_rotation_of_three_is_refused():

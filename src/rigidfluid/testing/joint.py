@@ -54,7 +54,7 @@ class JointContract:
             case = _Case(joint, second)
             constraints = joint.constraints("joint 'it'", case.markers)
             assert constraints
-            assert constraints[0].markers == case.markers
+            assert constraints[0].markers is case.markers
             for one in constraints:
                 along, about = one.directions(case.placed(case.start))
                 rows, rigid = len(one.compliance), int(np.sum(one.compliance == 0.0))

@@ -11,14 +11,17 @@ from rigidfluid.core.joints.markers import MarkerPair, marker
 from rigidfluid.core.joints.springs import GroundSpring, Spring
 from rigidfluid.core.model.linkage import GroundLink
 from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import PluginError, SceneError
 
 
 def joint_parts(joint: PlacedJoint, pose: Pose) -> LinkParts:
     """Constraints and springs of a joint between bodies whose initial poses are ``pose``; raises SceneError as they
-    do."""
+    do, PluginError if there are none."""
     kind, markers = joint.kind, joint_markers(joint, pose)
     rows, springs = kind.constraints(f"joint {joint.name!r}", markers), kind.springs(markers)
+    if not rows:
+        remedy = "Mend the joint; JointContract in rigidfluid.testing shows more."
+        raise PluginError(f"joint {joint.name!r}", f"no constraints by type {kind.name!r}", "one or more", remedy)
     return LinkParts(joint.name, joint.first, joint.second, rows, springs, kind.coordinate)
 
 
