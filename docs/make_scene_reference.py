@@ -25,7 +25,7 @@ Schema = dict[str, Any]
 
 def reference() -> str:
     """The whole page, in Markdown."""
-    return "\n".join([HEAD, *_sections(), *_parts()])
+    return "\n".join(dict.fromkeys([HEAD, *_sections(), *_parts()]))  # some parts have tables of one kind
 
 
 def _sections() -> Iterator[str]:
@@ -60,7 +60,7 @@ def _parts() -> Iterator[str]:
 
 def _named(entry: Entry) -> str:
     table, _, key = entry.kind.field.partition(".")
-    place = {"body": "[[body]]", "contact.law": "[contact] or [[interaction]]"}
+    place = {"body": "[[body]]", "joint": "[[joint]]", "contact.law": "[contact] or [[interaction]]"}
     return f'{place.get(entry.kind.field, place.get(table, f"[{table}]"))} {key} = "{entry.name}"'
 
 

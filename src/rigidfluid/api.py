@@ -14,6 +14,19 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.joints.along_coordinate import CoordinateDamper, CoordinateSpring, DrivenCoordinate
+from rigidfluid.core.joints.constraints import (
+    Constraint,
+    OnAxis,
+    RotationDamper,
+    SameAxis,
+    SameOrientation,
+    SamePoint,
+)
+from rigidfluid.core.joints.coordinates import Angle, Coordinate, Displacement, Drive
+from rigidfluid.core.joints.joint import Joint
+from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
+from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.domain import Domain
@@ -53,8 +66,9 @@ from rigidfluid.core.model.types import (
     Wrench,
 )
 from rigidfluid.core.model.wall import Wall, require_plane
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.scene import Scene, StrokeTable
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
+from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import (
     MeshError,
@@ -72,6 +86,7 @@ from rigidfluid.registry import (
     DOMAIN,
     FLUID_BACKEND,
     FORCE_LAW,
+    JOINT,
     MECHANISM,
     Registry,
     missing_packages,
@@ -87,17 +102,26 @@ __all__ = [
     "DOMAIN",
     "FLUID_BACKEND",
     "FORCE_LAW",
+    "JOINT",
     "MECHANISM",
     "Advance",
+    "Angle",
     "Body",
     "BoolArray",
     "BoundaryCondition",
     "Box",
     "BoxOptions",
     "Component",
+    "Constraint",
     "Contacts",
+    "Coordinate",
+    "CoordinateDamper",
+    "CoordinateSpring",
     "Detector",
+    "Displacement",
     "Domain",
+    "Drive",
+    "DrivenCoordinate",
     "Ellipsoid",
     "EllipsoidOptions",
     "FacetSurface",
@@ -109,16 +133,20 @@ __all__ = [
     "FluidState",
     "ForceLaw",
     "IntArray",
+    "Joint",
     "Kinematics",
     "Loads",
+    "MarkerPair",
     "Mechanism",
     "Mesh",
     "MeshError",
     "Motion",
+    "OnAxis",
     "OutputError",
     "Part",
     "PartOptions",
     "Piece",
+    "PlacedPair",
     "Plane",
     "PluginError",
     "Polygon",
@@ -129,19 +157,27 @@ __all__ = [
     "Registry",
     "Response",
     "RigidfluidError",
+    "RotationDamper",
+    "SameAxis",
+    "SameOrientation",
+    "SamePoint",
     "Scene",
     "SceneError",
     "Simulation",
     "SolverCost",
     "Sphere",
     "SphereOptions",
+    "Spring",
     "Step",
     "StepError",
     "StepRejected",
+    "StrokeTable",
     "Surface",
     "Twist",
     "Wall",
     "Wrench",
+    "axes_along",
+    "build_stroke",
     "component_twist",
     "free_wrench",
     "hookimpl",

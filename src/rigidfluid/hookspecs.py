@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
+    from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism
 
@@ -51,3 +52,8 @@ def rigidfluid_domains() -> list[type[Domain]]:  # type: ignore[empty-body]
 @hookspec
 def rigidfluid_mechanisms() -> list[type[Mechanism]]:  # type: ignore[empty-body]
     """Classes of several rigid bodies that move as one."""
+
+
+@hookspec
+def rigidfluid_joints() -> list[type[Joint]]:  # type: ignore[empty-body]
+    """Classes of joints between two bodies."""

@@ -16,6 +16,7 @@ from typing import Any, Generic, TypeVar, cast
 import pluggy
 
 from rigidfluid import hookspecs
+from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
@@ -42,7 +43,8 @@ FORCE_LAW = Kind("force law", "rigidfluid_force_laws", ForceLaw, "contact.law") 
 BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
 DOMAIN = Kind("domain", "rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
 MECHANISM = Kind("mechanism", "rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
-KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM)
+JOINT = Kind("joint", "rigidfluid_joints", Joint, "joint.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM, JOINT)
 
 
 @dataclass(frozen=True)

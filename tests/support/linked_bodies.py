@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.joints.joint import Joint, PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import rotate
-from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.model.linkage import GroundLink
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.registry import JOINT, Registry
 
 AXIS = np.array([0.48, 0.6, 0.64])
-"""Of hinges in 3D."""
+"""Of hinges in 3D and of sliders."""
 
 
 def placed(count: int, dimension: int, seed: int = 0) -> Pose:
@@ -31,13 +35,38 @@ def masses(count: int, dimension: int) -> tuple[FloatArray, FloatArray]:
     return mass, mass[:, None, None] * moments
 
 
-def joint(kind: str, first: int, second: int | None, at: Sequence[float], **keys: Any) -> Joint:
-    """In 3D a hinge is about `AXIS` unless ``keys`` say otherwise."""
+class GivenDrive:
+    """A function that gives value and rate."""
+
+    period = None
+
+    def __init__(self, value_and_rate: Callable[[float], tuple[float, float]]) -> None:
+        self._value_and_rate = value_and_rate
+
+    def value(self, time: float) -> float:
+        return self._value_and_rate(time)[0]
+
+    def rate(self, time: float) -> float:
+        return self._value_and_rate(time)[1]
+
+    def next_corner(self, time: float) -> float:
+        return inf
+
+
+def build_joint(kind: str, dimension: int, drive: Any = None, **keys: Any) -> Joint:
+    """In 3D about or along `AXIS`, in 2D along the same in the plane, unless ``keys`` say otherwise."""
+    part = Registry.load().get(JOINT, kind)
+    if kind == "slider" or (kind == "hinge" and dimension == 3):
+        keys = {"axis": AXIS[:dimension].tolist()} | keys
+    built = part(read_table(part.Options, keys), dimension)
+    built.drive = None if drive is None else GivenDrive(drive)
+    return built
+
+
+def joint(kind: str, first: int, second: int | None, at: Sequence[float], name: str = "", **keys: Any) -> PlacedJoint:
+    """Of a kind by `build_joint`."""
     point = np.array(at, dtype=float)
-    axis = AXIS if kind == "hinge" and len(point) == 3 else None
-    return Joint(
-        **{"name": f"joint{first}", "type": kind, "first": first, "second": second, "at": point, "axis": axis} | keys
-    )
+    return PlacedJoint(name or f"joint{first}", build_joint(kind, len(point), **keys), first, second, point)
 
 
 def ground_link(body: int, dimension: int, held: Sequence[int] = (), **keys: Any) -> GroundLink:
@@ -51,7 +80,7 @@ def ground_link(body: int, dimension: int, held: Sequence[int] = (), **keys: Any
 
 def linkage(
     pose: Pose,
-    joints: Sequence[Joint] = (),
+    joints: Sequence[PlacedJoint] = (),
     ground: Sequence[GroundLink] = (),
     controlled: Sequence[int] = (),
     given: Any = None,

@@ -7,12 +7,14 @@ from linked_bodies import AXIS, ground_link, joint, linkage, moved, placed, spli
 from mechanism_parts import PairOptions
 
 from rigidfluid.core.joints.joint_forces import joint_forces
+from rigidfluid.core.joints.joint_parts import joint_markers
 from rigidfluid.core.joints.linkage import JointLinkage
+from rigidfluid.core.joints.markers import Markers, add_relative_rows
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.types import Pose, Twist
-from rigidfluid.errors import SceneError, StepRejected
+from rigidfluid.errors import PluginError, SceneError, StepRejected
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
@@ -62,6 +64,33 @@ def test_rows_are_the_rates_of_misfits(dimension):
     twist = split(np.random.default_rng(2).normal(size=flat(links.spring_wrench(pose, 0.0)).shape), dimension)
     assert np.abs(there.position - pose.position).max() > 0.1
     assert_rates(links, there, twist, 0.4)
+
+
+@DIMENSIONS
+def test_a_sliders_axis_turns_with_the_second_body(dimension):
+    """Separation across and displacement along it change by their rows for bodies anywhere, whatever the twist; without
+    the term of the turning axis they do not."""
+    pose, small = placed(2, dimension), 1e-5
+    slider = joint("slider", 0, 1, pose.position.mean(axis=0))
+    twist = np.random.default_rng(6).normal(size=(2, 3 if dimension == 2 else 6))
+    there, markers = moved(pose, twist[::-1], 0.7), joint_markers(slider, pose)
+    off, along = slider.kind.constraints("it", markers)[0], slider.kind.coordinate
+    place = Markers([markers], dimension)
+
+    def separation(way):
+        at = place.placed(moved(there, twist, way))[0]
+        return np.array([*off.misfit(at, 0.0), along.value(at)])
+
+    slope, at = (separation(small) - separation(-small)) / (2.0 * small), place.placed(there)[0]
+    rows, wrong = np.zeros((2, dimension, *twist.shape))
+    for part, first in ((off, 0), (along, dimension - 1)):
+        directions = part.directions(at)
+        here = slice(first, first + len(directions[0]))
+        add_relative_rows(markers.bodies, part.levers(at), directions, rows[here])
+        add_relative_rows(markers.bodies, at.levers, directions, wrong[here])
+    assert np.linalg.norm(off.misfit(at, 0.0)) > 0.3
+    np.testing.assert_allclose(np.einsum("cni,ni->c", rows, twist), slope, atol=1e-8)
+    assert np.abs(np.einsum("cni,ni->c", wrong, twist) - slope).min() > 0.1
 
 
 @DIMENSIONS
@@ -277,6 +306,14 @@ def test_parts_of_one_mechanism_are_not_joined(carried):
         JointLinkage(
             pose, [joint("rod", 1, 2, pose.position[1])], [], np.ones(3), inertia, held, lambda _: None, bodies
         )
+
+
+def test_a_joint_that_holds_nothing_is_an_error_of_its_author():
+    pose = placed(2, 2)
+    given = joint("hinge", 0, 1, pose.position[0])
+    given.kind.constraints = lambda name, markers: []
+    with pytest.raises(PluginError, match=r"joint 'joint0'.*no constraints by type 'hinge'.*JointContract"):
+        linkage(pose, [given])
 
 
 def test_one_held_rotation_of_three_is_refused():

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from falling import SCENES
+from linked_runs import body, linked_scene
 
 import rigidfluid
 from rigidfluid.core.output.records import columns
@@ -148,6 +149,21 @@ def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> No
         .replace("request.param)", "request.param[1])")
     )
     refuse_failed_contract(folder, of_both, tmp_path / "test_dumbbell.py")
+
+
+def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
+    """A ball on the sleeve swings along its axis, and goes on turning about it; its contract holds."""
+    page = section(text("docs/plugins.md"), "A joint, from nothing")
+    code, contract = blocks(page, "python")
+    (table,) = (tomllib.loads(block)["joint"] for block in blocks(page, "toml"))
+    folder = install(code, name="sleeve", module="rigidfluid_sleeve")
+    piston = body(2.0, 2.0, 2.0, name="piston", velocity=[0.0, 0.0, 1.0], angular_velocity=[0.0, 0.0, 3.0])
+    history = rigidfluid.run(linked_scene([piston], table, step=5e-4, end=0.2))
+    frequency = np.sqrt(2.0 / (4.0 / 3.0 * np.pi * 1e-3))
+    expected = np.sin(frequency * history.joints["time"]) / frequency
+    np.testing.assert_allclose(history.joints["displacement"], expected, atol=1e-4)
+    np.testing.assert_allclose(history.bodies["wz"], 3.0)
+    refuse_failed_contract(folder, contract, tmp_path / "test_sleeve.py")
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,9 +30,10 @@ PARTS = {
     "forces": "core.contact",
     "domains": "core.mesh core.scene core.setup registry",
     "mechanisms": "core.scene core.setup registry",
+    "joints": "core.joints core.scene core.setup",
 }
-"""What built-in parts import besides the model and mechanics; obstacles of domains and components of mechanisms are
-tables in a scene."""
+"""What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
+of joints are tables in a scene."""
 
 
 def imports(path: Path) -> Iterator[str]:

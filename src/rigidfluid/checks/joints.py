@@ -1,4 +1,4 @@
-"""Freedoms that joints leave, frequencies of their springs, and angles to which hinges can turn."""
+"""Freedoms that joints leave, frequencies of their springs, and how far they can move."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from functools import partial
 import numpy as np
 
 from rigidfluid.checks.finding import Finding, figure, round_down
+from rigidfluid.core.joints.joint import PlacedJoint
+from rigidfluid.core.joints.joint_parts import joint_markers
+from rigidfluid.core.joints.markers import Markers
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Detector
-from rigidfluid.core.model.linkage import Joint, Linkage
+from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.joints import joints_of
 from rigidfluid.core.setup.parts import Parts
@@ -22,16 +25,17 @@ QUESTION = "joints"
 _WELL_RESOLVED = 0.2
 """Greatest frequency times step at which a spring's period errs by less than 0.2 % [1]."""
 
-_SCAN = np.linspace(0.0, np.pi, 73)[1:]
+_SCAN = np.linspace(0.0, 1.0, 73)[1:]
 _BISECTIONS = 10
 _STROKE_SAMPLES = 400
 
 
 def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
-    """Count freedoms, compare springs with the step, and turn hinges between two bodies until these touch.
+    """Count freedoms, compare springs with the step, and move joints of one coordinate between two bodies until these
+    touch.
 
-    A warning where frequency times step is above 0.2, or bodies touch within half a turn; an error where a drive leads
-    there.
+    A warning where frequency times step is above 0.2, or bodies touch within half a turn or the domain; an error where
+    a drive leads there.
     """
     if system.linkage is None:
         return
@@ -40,7 +44,7 @@ def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
     if system.linkage.frequency > 0.0:
         yield _spring_finding(scene, system, system.linkage)
     for joint in joints_of(scene, system.pose):
-        if joint.type == "hinge" and joint.second is not None:
+        if joint.kind.coordinate is not None and joint.second is not None:
             yield _clearance_finding(parts, system, joint, joint.second)
 
 
@@ -77,64 +81,83 @@ def _spring_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
     return Finding("warning", QUESTION, (), f"{text}: few steps for that", remedy, found, enough)
 
 
-def _clearance_finding(parts: Parts, system: System, joint: Joint, second: int) -> Finding:
-    """Report how far the first body can turn either way before it touches the second."""
-    names = system.surfaces[joint.first], system.surfaces[second]
-    gap = partial(_gap, parts.exact_detector, system, joint, second)
-    up, down = _touching_angle(gap, 1.0), _touching_angle(gap, -1.0)
-    found = {"gap": gap(0.0), "least_angle": -down, "greatest_angle": up}
-    text = f"hinge {joint.name} of {names[0]} and {names[1]}, a gap of {figure(gap(0.0))} apart, "
+def _clearance_finding(parts: Parts, system: System, joint: PlacedJoint, second: int) -> Finding:
+    """Report how far the coordinate can go either way before the first body touches the second."""
+    names, coordinate = (system.surfaces[joint.first], system.surfaces[second]), joint.kind.coordinate
+    assert coordinate is not None
+    gap = partial(_gap, parts.exact_detector, system, _path(system, joint), (joint.first, second))
+    turning = np.isfinite(coordinate.period)
+    farthest = 0.5 * coordinate.period if turning else float(np.linalg.norm(parts.domain.size))
+    up, down = _touching_value(gap, farthest), _touching_value(gap, -farthest)
+    kind, moves = joint.kind.name, "turns" if turning else "moves"
+    found = {"gap": gap(0.0), f"least_{coordinate.name}": -down, f"greatest_{coordinate.name}": up}
+    text = f"{kind} {joint.name} of {names[0]} and {names[1]}, a gap of {figure(gap(0.0))} apart, {moves} "
     if np.isinf(up) and np.isinf(down):
-        return Finding("note", QUESTION, names, text + "turns all around", found=found)
-    text += f"turns from {figure(-down)} to {figure(up)} until they touch"
-    least, greatest = _drive_angles(parts.scene, joint)
+        free = "all around" if turning else "either way without touching"
+        return Finding("note", QUESTION, names, text + free, found=found)
+    text += f"from {figure(-down)} to {figure(up)} until they touch"
+    least, greatest = _drive_range(parts.scene, joint)
     if least <= -down or greatest >= up:
         text += f", and its drive from {figure(least)} to {figure(greatest)}"
         return Finding("error", QUESTION, names, text, "Move them apart, or drive it less far.", found)
-    remedy = "Move them apart, or hold them by a spring in the hinge: joined bodies do not repel each other."
-    if joint.drive is not None:
+    remedy = f"Move them apart, or hold them by a spring in the {kind}: joined bodies do not repel each other."
+    if joint.kind.drive is not None:
         return Finding("note", QUESTION, names, text, found=found)
     return Finding("warning", QUESTION, names, text, remedy, found)
 
 
-def _drive_angles(scene: Scene, joint: Joint) -> tuple[float, float]:
-    """Least and greatest angle of a joint's drive; 0 without one."""
-    if joint.drive is None:
+def _drive_range(scene: Scene, joint: PlacedJoint) -> tuple[float, float]:
+    """Least and greatest value of a joint's drive; 0 without one."""
+    if joint.kind.drive is None:
         return 0.0, 0.0
-    angles = [joint.drive(time)[0] for time in np.linspace(0.0, scene.time.end, _STROKE_SAMPLES)]
-    return min(angles), max(angles)
+    values = [joint.kind.drive.value(time) for time in np.linspace(0.0, scene.time.end, _STROKE_SAMPLES)]
+    return min(values), max(values)
 
 
-def _touching_angle(gap: Callable[[float], float], sign: float) -> float:
-    """Angle at which the two bodies touch either way, infinite where they do not within half a turn [rad]."""
+def _touching_value(gap: Callable[[float], float], farthest: float) -> float:
+    """How far the coordinate goes towards the value ``farthest`` until the two bodies touch, infinite where they do
+    not [length | rad]."""
     before = 0.0
-    for angle in _SCAN:
-        if gap(sign * angle) <= 0.0:
+    for value in _SCAN:
+        if gap(value * farthest) <= 0.0:
             break
-        before = float(angle)
+        before = float(value)
     else:
         return np.inf
-    after = float(angle)
+    after = float(value)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (before + after)
-        before, after = (middle, after) if gap(sign * middle) > 0.0 else (before, middle)
-    return before
+        before, after = (middle, after) if gap(middle * farthest) > 0.0 else (before, middle)
+    return before * abs(farthest)
 
 
-def _gap(detector: type[Detector], system: System, joint: Joint, second: int, angle: float) -> float:
-    """Gap between the two bodies where the first has turned by an ``angle`` [length]."""
-    pair = [joint.first, second]
-    position, orientation = system.pose.position[pair], system.pose.orientation[pair]
-    turn = _turn(joint, angle)
-    zero = np.zeros((1, 1)) if len(joint.at) == 2 else np.eye(1, 4)
-    matrix = rotation_matrices(rotate(zero, turn))[0]
-    turned = Pose(
-        np.stack([joint.at + matrix @ (position[0] - joint.at), position[1]]),
-        np.concatenate([rotate(orientation[:1], turn), orientation[1:]]),
+def _path(system: System, joint: PlacedJoint) -> Callable[[float], Pose]:
+    """Pose of the first body, one row, by the value of the joint's coordinate: it goes along the directions of that at
+    the start."""
+    coordinate, first, pair = joint.kind.coordinate, joint.first, joint_markers(joint, system.pose)
+    assert coordinate is not None
+    at = Markers([pair], system.dimension).placed(system.pose)[0]
+    along, about = coordinate.directions(at)
+    position, orientation = system.pose.position[first], system.pose.orientation[first : first + 1]
+    zero = np.zeros((1, 1)) if system.dimension == 2 else np.eye(1, 4)
+
+    def pose_at(value: float) -> Pose:
+        turn = value * about
+        matrix = rotation_matrices(rotate(zero, turn))[0]
+        centre = joint.at + matrix @ (position - joint.at) + value * along[0]
+        return Pose(centre[None], rotate(orientation, turn))
+
+    return pose_at
+
+
+def _gap(
+    detector: type[Detector], system: System, path: Callable[[float], Pose], pair: tuple[int, int], value: float
+) -> float:
+    """Gap between the two bodies of a pair where the first has gone along its path [length]."""
+    moved, second = path(value), pair[1]
+    pose = Pose(
+        np.concatenate([moved.position, system.pose.position[second : second + 1]]),
+        np.concatenate([moved.orientation, system.pose.orientation[second : second + 1]]),
     )
     bodies = tuple(system.bodies[body] for body in pair)
-    return float(detector(detector.Options(), bodies, ()).detect(turned, None, np.inf).gap.min())
-
-
-def _turn(joint: Joint, angle: float) -> FloatArray:
-    return np.array([[angle]]) if joint.axis is None else angle * joint.axis[None]
+    return float(detector(detector.Options(), bodies, ()).detect(pose, None, np.inf).gap.min())

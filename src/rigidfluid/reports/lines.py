@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
+from rigidfluid.core.output.records import joint_coordinates
 from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.reports.curves import add_legend, draw_bodies, widen
 from rigidfluid.reports.paths import draw_paths
@@ -101,13 +102,13 @@ def force_plot(results: Results) -> Figure:
 
 
 def joint_plot(results: Results) -> Figure:
-    """The angles of hinges, and the size of the force in each joint."""
-    figure, (above, below) = time_panels(2)
+    """The angles of hinges and other coordinates of joints, and the size of the force in each."""
+    units = joint_coordinates(results.system)
+    shown = [name for name in units if not np.isnan(results.joints[name]).all()] or ["angle"]
+    figure, panels = time_panels(len(shown) + 1)
     force = np.sqrt(sum(results.joints[f"f{axis}"] ** 2 for axis in results.axes))
-    for axes, values, label in (
-        (above, results.joints["angle"], "angle of hinges\n[rad]"),
-        (below, force, "force in joints\n[force]"),
-    ):
+    drawn = [(results.joints[name], f"{name} of joints\n[{units[name]}]") for name in shown]
+    for axes, (values, label) in zip(panels, [*drawn, (force, "force in joints\n[force]")], strict=True):
         draw_bodies(axes, results.time, values, results.joint_names)
         axes.set_ylabel(label)
     add_legend(figure)

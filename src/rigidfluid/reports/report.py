@@ -123,7 +123,7 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     if results.contact_counts.any():
         yield "contacts", "Contacts: how many, the largest force, the least gap.", contact_plot(results), both
     if results.joints:
-        yield "joints", "How far hinges have turned, and what acts in joints.", joint_plot(results), both
+        yield "joints", "How far joints have moved, and what acts in them.", joint_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.scene.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both

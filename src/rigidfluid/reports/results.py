@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns, moving
+from rigidfluid.core.output.records import COORDINATES, Row, columns, joint_coordinates, moving
 from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
@@ -113,7 +113,9 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     by_state = {name: _per_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
     count = len(system.bodies)
     links = len(_joint_names(system))
-    joints = _table(folder, "joints", scene.dimension) if links and not motion_only else {}
+    joints = {}
+    if links and not motion_only:
+        joints = _table(folder, "joints", scene.dimension, coordinates=joint_coordinates(system))
     steps = by_state["step"][:, 0]
     return Results(
         summary=summary,
@@ -144,11 +146,13 @@ def _summary(path: Path) -> dict[str, Any]:
     return dict(summary)
 
 
-def _table(folder: Path, name: str, dimension: int, *, complete: bool = True) -> dict[str, NDArray[Any]]:
+def _table(
+    folder: Path, name: str, dimension: int, *, coordinates: Iterable[str] = COORDINATES, complete: bool = True
+) -> dict[str, NDArray[Any]]:
     """A table by column; every row must be whole, and every column but the names a number."""
-    path, names = folder / f"{name}.csv", columns(dimension)[name]
+    path, names = folder / f"{name}.csv", columns(dimension, coordinates)[name]
     rows = _rows(path, names, complete=complete)
-    history = History(dimension, {name: rows})
+    history = History(dimension, {name: rows}, coordinates=coordinates)
     return {key: values.astype(np.float64) for key, values in history.table(name).items() if KINDS.get(key) is not str}
 
 

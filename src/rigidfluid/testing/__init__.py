@@ -14,7 +14,7 @@
 
 import pytest
 
-_MODULES = ("arrangement", "body", "detector", "domain", "fluid", "fluid_backend", "force_law", "mechanism")
+_MODULES = ("arrangement", "body", "detector", "domain", "fluid", "fluid_backend", "force_law", "joint", "mechanism")
 pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
 
 from rigidfluid.testing.arrangement import Arrangement
@@ -23,6 +23,7 @@ from rigidfluid.testing.detector import DetectorContract
 from rigidfluid.testing.domain import DomainContract
 from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
+from rigidfluid.testing.joint import JointContract
 from rigidfluid.testing.mechanism import MechanismContract
 
 __all__ = [
@@ -32,5 +33,6 @@ __all__ = [
     "DomainContract",
     "FluidBackendContract",
     "ForceLawContract",
+    "JointContract",
     "MechanismContract",
 ]

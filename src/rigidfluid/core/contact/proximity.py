@@ -69,7 +69,7 @@ def refuse_overlap(system: System, body: int, gap: float) -> None:
     if not gap > 0.0:
         remedy = "Strengthen the contact force, widen its range or refine mesh.size_body."
         if body in system.joined:
-            remedy += " Joined bodies do not repel each other: they need a spring in the hinge, or more room."
+            remedy += " Joined bodies do not repel each other: they need a spring in the joint, or more room."
         raise StepRejected(
             f"body {system.surfaces[body]}",
             f"a gap of {gap:.3e}",

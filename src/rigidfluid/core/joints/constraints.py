@@ -4,13 +4,12 @@ ground."""
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import remainder, tau
+from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.joints.markers import MarkerPair, PlacedPair
+from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, add_relative_rows
 from rigidfluid.core.model.types import FloatArray
 
 
@@ -18,6 +17,9 @@ from rigidfluid.core.model.types import FloatArray
 class Constraint(ABC):
     """Rows on the motion of the first marker relative to the second, E (v₁ - v₂) + A (ω₁ - ω₂) + compliance · force =
     rate, with v the velocities of the points; rigid, and at rate zero, unless said otherwise."""
+
+    joins_points: ClassVar[bool] = False
+    """Whether the misfit is by how much the points are apart that it holds together [length]."""
 
     name: str
     markers: MarkerPair
@@ -40,17 +42,21 @@ class Constraint(ABC):
         """Prescribed rate of each row (r,) [length/time | rad/time]."""
         return np.zeros_like(self.compliance)
 
+    def levers(self, at: PlacedPair) -> FloatArray:
+        """Levers (2, d, k), about both centres of mass, of the points whose velocities v are: the markers', unless said
+        otherwise [length]."""
+        return at.levers
+
     def add_rows(self, at: PlacedPair, rows: FloatArray) -> None:
         """Put those on the bodies' twists into ``rows`` (r, n, d+k), zero before."""
-        along, about = self.directions(at)
-        for sign, body, lever in zip((1.0, -1.0), self.markers.bodies, at.levers, strict=True):
-            if body is not None:
-                rows[:, body] += sign * np.concatenate([along, along @ lever + about], axis=1)
+        add_relative_rows(self.markers.bodies, self.levers(at), self.directions(at), rows)
 
 
 @dataclass(frozen=True)
 class SamePoint(Constraint):
     """The points stay together along ``along`` (r, d), axes of space."""
+
+    joins_points: ClassVar[bool] = True
 
     along: FloatArray
 
@@ -101,38 +107,42 @@ class SameAxis(Constraint):
 
 
 @dataclass(frozen=True)
-class DrivenAngle(Constraint):
-    """The angle about the last axis is that of a ``drive``, which gives angle and rate at a time; whole turns of
-    difference are none."""
+class OnAxis(Constraint):
+    """The first point stays on the second marker's last axis.
 
-    drive: Callable[[float], tuple[float, float]]
+    The axis turns with the second body, so velocities are taken where the first point is: forces on both bodies then
+    have one line, however far they have slid.
+    """
+
+    joins_points: ClassVar[bool] = True
 
     @property
     def compliance(self) -> FloatArray:
-        return np.zeros(1)
+        return np.zeros(len(self.markers.first.point) - 1)
 
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
-        return np.zeros((1, len(at.gap))), at.spin_axis[None]
+        across = at.axes[1][:, :-1].T
+        return across, np.zeros((len(across), self.markers.spins))
+
+    def levers(self, at: PlacedPair) -> FloatArray:
+        return at.levers_at_first
 
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
-        return np.array([remainder(at.angle - self.drive(time)[0], tau)])
-
-    def rate(self, time: float) -> FloatArray:
-        return np.array([self.drive(time)[1]])
+        return np.asarray(at.axes[1][:, :-1].T @ at.gap)
 
 
 @dataclass(frozen=True)
-class HingeDamper(Constraint):
-    """Resists the rate of the angle about the last axis."""
+class RotationDamper(Constraint):
+    """Resists all relative rotation alike."""
 
     damping: float
 
     @property
     def compliance(self) -> FloatArray:
-        return np.array([1.0 / self.damping])
+        return np.full(self.markers.spins, 1.0 / self.damping)
 
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
-        return np.zeros((1, len(at.gap))), at.spin_axis[None]
+        return np.zeros((self.markers.spins, len(at.gap))), np.eye(self.markers.spins)
 
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         return np.zeros(0)

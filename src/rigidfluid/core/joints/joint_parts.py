@@ -2,66 +2,40 @@
 
 from __future__ import annotations
 
-from math import remainder, tau
-
 import numpy as np
 
-from rigidfluid.core.joints.constraints import (
-    Constraint,
-    DrivenAngle,
-    GroundDamper,
-    HingeDamper,
-    SameAxis,
-    SameOrientation,
-    SamePoint,
-)
+from rigidfluid.core.joints.constraints import Constraint, GroundDamper, SameAxis, SameOrientation, SamePoint
+from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.link_parts import LinkParts
-from rigidfluid.core.joints.markers import MarkerPair, axes_about, marker
-from rigidfluid.core.joints.springs import GroundSpring, HingeSpring, Spring
-from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.joints.markers import MarkerPair, marker
+from rigidfluid.core.joints.springs import GroundSpring, Spring
+from rigidfluid.core.model.linkage import GroundLink
 from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.errors import SceneError
-
-_ROUNDING = 1e-9
+from rigidfluid.errors import PluginError, SceneError
 
 
-def joint_parts(joint: Joint, pose: Pose) -> LinkParts:
+def joint_parts(joint: PlacedJoint, pose: Pose) -> LinkParts:
     """Constraints and springs of a joint between bodies whose initial poses are ``pose``; raises SceneError as they
-    do."""
-    rows, springs = joint_constraints(joint, pose), joint_springs(joint, pose)
-    return LinkParts(joint.name, joint.first, joint.second, rows, springs, joint.type == "hinge")
+    do, PluginError if there are none."""
+    kind, markers = joint.kind, joint_markers(joint, pose)
+    rows, springs = kind.constraints(f"joint {joint.name!r}", markers), kind.springs(markers)
+    if not rows:
+        remedy = "Mend the joint; JointContract in rigidfluid.testing shows more."
+        raise PluginError(f"joint {joint.name!r}", f"no constraints by type {kind.name!r}", "one or more", remedy)
+    return LinkParts(joint.name, joint.first, joint.second, rows, springs, kind.coordinate)
+
+
+def joint_markers(joint: PlacedJoint, pose: Pose) -> MarkerPair:
+    """Markers of a joint on its bodies, whose initial poses are ``pose``."""
+    ends = [marker(body, joint.at, joint.kind.axes, pose) for body in (joint.first, joint.second)]
+    return MarkerPair(*ends)
 
 
 def ground_parts(link: GroundLink, pose: Pose) -> LinkParts:
     """Constraints and springs of a ground link to a body whose initial pose is in ``pose``; raises SceneError as they
     do."""
     rows, springs = ground_constraints(link, pose), ground_springs(link, pose)
-    return LinkParts(link.name, link.body, None, rows, springs, has_angle=False)
-
-
-def joint_constraints(joint: Joint, pose: Pose) -> list[Constraint]:
-    """Constraints of a joint between bodies whose initial poses are ``pose``; raises SceneError if its drive does not
-    start at the angle zero."""
-    markers, name = _joint_markers(joint, pose), f"joint {joint.name!r}"
-    d = len(joint.at)
-    parts: list[Constraint] = [SamePoint(name, markers, np.eye(d))]
-    if joint.type == "rod":
-        return [*parts, SameOrientation(name, markers)]
-    if d == 3:
-        parts.append(SameAxis(name, markers))
-    if joint.drive is not None:
-        _refuse_offset(name, joint.drive(0.0)[0])
-        parts.append(DrivenAngle(name, markers, joint.drive))
-    if joint.damping > 0.0:
-        parts.append(HingeDamper(name, markers, joint.damping))
-    return parts
-
-
-def joint_springs(joint: Joint, pose: Pose) -> list[Spring]:
-    """Spring of a joint's hinge, if there is one."""
-    if joint.stiffness == 0.0:
-        return []
-    return [HingeSpring(_joint_markers(joint, pose), joint.stiffness, joint.rest_angle)]
+    return LinkParts(link.name, link.body, None, rows, springs, coordinate=None)
 
 
 def ground_constraints(link: GroundLink, pose: Pose) -> list[Constraint]:
@@ -96,17 +70,6 @@ def ground_springs(link: GroundLink, pose: Pose) -> list[Spring]:
     return [GroundSpring(link.body, stiffness, rest, pose.orientation[link.body])]
 
 
-def _joint_markers(joint: Joint, pose: Pose) -> MarkerPair:
-    axes = np.eye(len(joint.at)) if joint.axis is None else axes_about(joint.axis)
-    return MarkerPair(marker(joint.first, joint.at, axes, pose), marker(joint.second, joint.at, axes, pose))
-
-
 def _ground_markers(link: GroundLink, pose: Pose, axes: FloatArray) -> MarkerPair:
     centre = pose.position[link.body]
     return MarkerPair(marker(link.body, centre, axes, pose), marker(None, centre, axes, pose))
-
-
-def _refuse_offset(name: str, angle: float) -> None:
-    if abs(remainder(angle, tau)) > _ROUNDING:
-        found, allowed = f"a drive that starts at the angle {angle:g}", "0, since the bodies are placed at the start"
-        raise SceneError(name, found, allowed, "Let the drive start at 0, or turn the body by its angle.")

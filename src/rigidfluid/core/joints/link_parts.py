@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.joints.constraints import Constraint, SamePoint
+from rigidfluid.core.joints.constraints import Constraint
+from rigidfluid.core.joints.coordinates import Coordinate
 from rigidfluid.core.joints.markers import PlacedPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -18,14 +19,14 @@ from rigidfluid.core.model.types import FloatArray, Pose, Twist
 @dataclass(frozen=True, slots=True)
 class LinkParts:
     """The rows and springs of a link named ``name`` on its ``first`` body, joined to the ``second`` one or, None, to
-    the ground; ``has_angle``: whether it is a hinge, and then its first rows are those of its markers."""
+    the ground; ``coordinate``: of its markers, which are those of its first constraint."""
 
     name: str
     first: int
     second: int | None
     constraints: Sequence[Constraint]
     springs: Sequence[Spring]
-    has_angle: bool
+    coordinate: Coordinate | None
 
     @property
     def rows(self) -> int:
@@ -35,23 +36,32 @@ class LinkParts:
     def reading(
         self, placed: Sequence[PlacedPair], bodies: Pose, twist: Twist, time: float, force: FloatArray
     ) -> LinkReading:
-        """Gap, angle, force and torque of the link at poses ``bodies``, with the markers of its constraints ``placed``
-        and the ``force`` of its rows (r,)."""
+        """Gap, coordinate, force and torque of the link at poses ``bodies``, with the markers of its constraints
+        ``placed`` and the ``force`` of its rows (r,)."""
         held, torque = self._constraint_wrench(placed, force)
-        pull = nothing(bodies)
-        for spring in self.springs:
-            spring.add_wrench(bodies, pull)
+        pull, pull_torque = self._spring_wrench(placed, bodies)
         pairs = list(zip(self.constraints, placed, strict=True))
-        gaps = [one.misfit(at, time) for one, at in pairs if isinstance(one, SamePoint)]
-        angle, rate = self._turn(placed[0], twist) if self.has_angle else (np.nan, np.nan)
+        gaps = [one.misfit(at, time) for one, at in pairs if one.joins_points]
+        value, rate, seen = np.nan, np.nan, self.coordinate
+        if seen is not None:
+            value, rate = self._value_and_rate(seen, placed[0], twist)
         return LinkReading(
             name=self.name,
             gap=float(np.linalg.norm(np.concatenate([np.zeros(0), *gaps]))),
-            angle=angle,
+            coordinate=None if seen is None else seen.name,
+            value=value,
             rate=rate,
-            force=held + pull.force[self.first],
-            torque=torque + pull.torque[self.first],
+            force=held + pull,
+            torque=torque + pull_torque,
         )
+
+    def _spring_wrench(self, placed: Sequence[PlacedPair], bodies: Pose) -> tuple[FloatArray, FloatArray]:
+        """Force and torque of the springs on the first body, about its point; without rows that is its centre."""
+        wrench = nothing(bodies)
+        for spring in self.springs:
+            spring.add_wrench(bodies, wrench)
+        force, torque = wrench.force[self.first], wrench.torque[self.first]
+        return force, torque - placed[0].levers[0].T @ force if placed else torque
 
     def _constraint_wrench(self, placed: Sequence[PlacedPair], force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and torque of the rows on the first body."""
@@ -62,7 +72,11 @@ class LinkParts:
             pulled, turned = pulled + own @ along, turned + own @ about
         return pulled, turned
 
-    def _turn(self, hinge: PlacedPair, twist: Twist) -> tuple[float, float]:
-        """Angle and rate of the first body seen from the second."""
-        spins = [0.0 if body is None else twist.angular_velocity[body] for body in (self.first, self.second)]
-        return hinge.angle, float(hinge.spin_axis @ (spins[0] - spins[1]))
+    def _value_and_rate(self, coordinate: Coordinate, at: PlacedPair, twist: Twist) -> tuple[float, float]:
+        (along, about), bodies = coordinate.directions(at), (self.first, self.second)
+        shift, spin = np.zeros(along.shape[1]), np.zeros(about.shape[1])
+        for sign, body, lever in zip((1.0, -1.0), bodies, coordinate.levers(at), strict=True):
+            if body is not None:
+                shift += sign * (twist.velocity[body] + lever @ twist.angular_velocity[body])
+                spin += sign * twist.angular_velocity[body]
+        return coordinate.value(at), float(along[0] @ shift + about[0] @ spin)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from itertools import pairwise
 from math import inf
@@ -11,6 +11,8 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.joints.constraints import Constraint
+from rigidfluid.core.joints.coordinates import units_by_name
+from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.joints.joint_parts import ground_parts, joint_parts
 from rigidfluid.core.joints.link_parts import LinkParts
@@ -19,7 +21,7 @@ from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refus
 from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing
-from rigidfluid.core.model.linkage import GroundLink, Joint, LinkReading
+from rigidfluid.core.model.linkage import GroundLink, LinkReading
 from rigidfluid.core.model.system import Mechanisms
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -33,10 +35,9 @@ _MOST_ITERATIONS = 30
 class JointLinkage:
     """Joints and ground links between n bodies, as a `Linkage` of the N motions that carry them.
 
-    Its rows are, in this order, those of the joints as they are given, then those of the ground links. A joint has d
-    rows for its force on the first body along the axes of space; then torques on that, all k for a rod, two across the
-    axis for a hinge in 3D; then that of its drive or its damper about the axis. A ground link has rows for the forces
-    and torques that hold the body, then those of its dampers.
+    Its rows are, in this order, those of the joints as they are given, then those of the ground links. A joint has the
+    rows of its kind's constraints. A ground link has rows for the forces and torques that hold the body, then those of
+    its dampers.
 
     ``pose``, ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the bodies' frames [mass·length²] and ``controlled`` (n,)
     are those of the bodies at the start; ``controlled_twist`` gives the prescribed twists (N, d+k) at a time;
@@ -54,7 +55,7 @@ class JointLinkage:
     def __init__(
         self,
         pose: Pose,
-        joints: Sequence[Joint],
+        joints: Sequence[PlacedJoint],
         ground: Sequence[GroundLink],
         mass: FloatArray,
         inertia: FloatArray,
@@ -76,14 +77,16 @@ class JointLinkage:
         self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
         lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
         self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
-        self._corners = [joint.next_corner for joint in joints if joint.next_corner is not None]
+        self.coordinates: Mapping[str, str] = units_by_name(joint.kind.coordinate for joint in joints)
+        drives = [joint.kind.drive for joint in joints if joint.kind.drive is not None]
+        self._corners = [drive.next_corner for drive in drives]
         if mechanisms is not None:
             self._corners.append(mechanisms.next_corner)
         self.linked, self.clusters = self._link_clusters(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
         moved = mechanisms is not None and mechanisms.driven
-        self.driven = moved or bool(self._controlled.any()) or any(joint.drive is not None for joint in joints)
+        self.driven = moved or bool(self._controlled.any()) or bool(drives)
         start = pose if mechanisms is None else mechanisms.pose
         refuse_void(self._constraints, self._carrier, self._controlled)
         refuse_redundant(self._constraints, self._mass_weighted_rows(self._rigid(self.links(start, 0.0).rows), start))

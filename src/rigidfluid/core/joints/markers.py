@@ -80,6 +80,12 @@ class PlacedPair(NamedTuple):
         return atan2(float(first[:, 0] @ second[:, 1]), float(first[:, 0] @ second[:, 0]))
 
     @property
+    def levers_at_first(self) -> FloatArray:
+        """Levers (2, d, k) of the first point about both centres of mass: with the second, the velocity is that of the
+        second body where the first point is [length]."""
+        return np.stack([self.levers[0], self.levers[1] + levers(self.gap[None])[0]])
+
+    @property
     def spin_axis(self) -> FloatArray:
         """Axis about which the angle is counted (k,) [1]."""
         return np.ones(1) if self.levers.shape[-1] == 1 else self.axes[1][:, 2]
@@ -113,8 +119,21 @@ class Markers:
         ]
 
 
-def axes_about(axis: FloatArray) -> FloatArray:
-    """Right-handed axes (3, 3), columns, the last of them along a unit vector (3,)."""
+def add_relative_rows(
+    bodies: tuple[int | None, int | None], at: FloatArray, directions: tuple[FloatArray, FloatArray], rows: FloatArray
+) -> None:
+    """Add rows E (v₁ - v₂) + A (ω₁ - ω₂) on the twists of two ``bodies`` to ``rows`` (r, n, d+k); ``directions``: E
+    (r, d) and A (r, k), ``at``: levers (2, d, k) of the points whose velocities v are."""
+    along, about = directions
+    for sign, body, lever in zip((1.0, -1.0), bodies, at, strict=True):
+        if body is not None:
+            rows[:, body] += sign * np.concatenate([along, along @ lever + about], axis=1)
+
+
+def axes_along(axis: FloatArray) -> FloatArray:
+    """Right-handed axes (d, d), columns, the last of them along a unit vector (d,)."""
+    if len(axis) == 2:
+        return np.array([[axis[1], axis[0]], [-axis[0], axis[1]]])
     side = np.eye(3)[int(np.argmin(np.abs(axis)))]
     across = side - (side @ axis) * axis
     across /= np.linalg.norm(across)

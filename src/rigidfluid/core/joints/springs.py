@@ -1,4 +1,4 @@
-"""Springs in hinges, and between bodies and the ground."""
+"""Interface of springs, and springs between bodies and the ground."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.joints.markers import MarkerPair, Markers
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import FloatArray, Pose, Wrench
 
@@ -23,32 +22,6 @@ class Spring(Protocol):
 
     def stretch(self, pose: Pose) -> FloatArray:
         """Rows B (r, n, d+k) of d energy = ½ |B δ|², δ displacements from where nothing is stretched [√stiffness]."""
-
-
-class HingeSpring:
-    """½ ``stiffness`` (angle - ``rest``)² of the angle about the last axis of ``markers``."""
-
-    def __init__(self, markers: MarkerPair, stiffness: float, rest: float) -> None:
-        self._bodies, self._markers = markers.bodies, Markers([markers], len(markers.first.point))
-        self._stiffness, self._rest = stiffness, rest
-
-    def energy(self, pose: Pose) -> float:
-        return 0.5 * self._stiffness * (self._markers.placed(pose)[0].angle - self._rest) ** 2
-
-    def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
-        at = self._markers.placed(pose)[0]
-        torque = -self._stiffness * (at.angle - self._rest) * at.spin_axis
-        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
-            if body is not None:
-                wrench.torque[body] += sign * torque
-
-    def stretch(self, pose: Pose) -> FloatArray:
-        axis, (count, d) = self._markers.placed(pose)[0].spin_axis, pose.position.shape
-        rows = np.zeros((1, count, d + len(axis)))
-        for sign, body in zip((1.0, -1.0), self._bodies, strict=True):
-            if body is not None:
-                rows[0, body, d:] = sign * np.sqrt(self._stiffness) * axis
-        return rows
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,5 @@
 """Abstract classes of a fluid backend, a detector, a force law, a body type and a mechanism; `domain` has that of a
-domain.
+domain, `core.joints.joint` that of a joint.
 
 Every part names itself (``name``), the packages it needs (``requires``: import name → what to install) and the keys it
 reads from its table of the scene file (``Options``). Importing the class must not import those packages.

@@ -2,36 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Protocol
 
 from rigidfluid.core.model.types import BoolArray, FloatArray, Links, Pose, Twist, Wrench
-
-
-@dataclass(frozen=True, slots=True)
-class Joint:
-    """Two bodies that are joined at a point: a ``rod`` leaves no relative motion, a ``hinge`` a rotation.
-
-    ``first``, ``second``: numbers of the bodies, the second None for the ground. ``at`` (d,): the point at the start
-    [length]; ``axis`` (3,): of a hinge in 3D, there, a unit vector. The hinge's angle is that of the first body seen
-    from the second, zero at the start, counter-clockwise [rad]. On the first act a spring, -``stiffness`` times
-    (angle - ``rest_angle``) [force·length/rad], and a damper, -``damping`` times the rate [force·length·time/rad]; or
-    the hinge is driven: ``drive(time)`` is angle and rate, None where it is free. ``next_corner(time)``: when the rate
-    jumps after that, infinite if never; None where there are no such times.
-    """
-
-    name: str
-    type: Literal["rod", "hinge"]
-    first: int
-    second: int | None
-    at: FloatArray
-    axis: FloatArray | None = None
-    stiffness: float = 0.0
-    rest_angle: float = 0.0
-    damping: float = 0.0
-    drive: Callable[[float], tuple[float, float]] | None = None
-    next_corner: Callable[[float], float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +28,14 @@ class GroundLink:
 
 @dataclass(frozen=True, slots=True)
 class LinkReading:
-    """Reading of one joint or ground link in a state: by how much its points are apart, ``gap`` [length]; of a hinge
-    its ``angle`` [rad] and ``rate`` [rad/time], NaN elsewhere; ``force`` (d,) and ``torque`` (k,) on its first body,
-    about the point of the joint [force | force·length]."""
+    """Reading of one joint or ground link in a state: by how much its points are apart, ``gap`` [length]; ``value`` of
+    its ``coordinate``, by name, and the ``rate`` of that, None and NaN where it has none [length | rad, per time];
+    ``force`` (d,) and ``torque`` (k,) on its first body, about the point of the joint [force | force·length]."""
 
     name: str
     gap: float
-    angle: float
+    coordinate: str | None
+    value: float
     rate: float
     force: FloatArray
     torque: FloatArray
@@ -71,11 +47,13 @@ class Linkage(Protocol):
     ``linked`` (N,): which motions have links at all. ``frequency``: of the stiffest spring with the masses that it
     moves, without a fluid, or its rate against a fluid without inertia; 0 without springs [rad/time]. ``driven``:
     whether anything moves as it is told, so that rates and the power of springs may not be zero.
+    ``coordinates``: units of the joints' coordinates by name, angles before all others and in any case.
     """
 
     linked: BoolArray
     frequency: float
     driven: bool
+    coordinates: Mapping[str, str]
 
     def next_corner(self, time: float) -> float:
         """The first time after this at which rates of links jump; infinite if there is none [time]."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.output.records import Records, Row, columns
+from rigidfluid.core.output.records import COORDINATES, Records, Row, columns
 from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
 from rigidfluid.errors import OutputError
 
@@ -18,13 +18,19 @@ from rigidfluid.errors import OutputError
 class History:
     """Tables of a run, as ``bodies`` and ``energy``, and the ``summary`` of summary.json.
 
-    The ``dimension`` decides the columns. Rows are kept in memory, ``records`` from the start; but with the ``folder``
-    in which a run writes its tables none is: each table is read when it is asked for, and a later run in the same
-    folder replaces it.
+    The ``dimension`` and the ``coordinates`` of joints decide the columns. Rows are kept in memory, ``records``
+    from the start; but with the ``folder`` in which a run writes its tables none is: each table is read when it is
+    asked for, and a later run in the same folder replaces it.
     """
 
-    def __init__(self, dimension: int, records: Records | None = None, folder: Path | None = None) -> None:
-        self.dimension = dimension
+    def __init__(
+        self,
+        dimension: int,
+        records: Records | None = None,
+        folder: Path | None = None,
+        coordinates: Iterable[str] = COORDINATES,
+    ) -> None:
+        self.dimension, self._coordinates = dimension, tuple(coordinates)
         self.summary: dict[str, Any] = {}
         self._rows: Records = records or {}
         self._folder = folder
@@ -34,7 +40,7 @@ class History:
         """All rows by table name; raises OutputError as `table` does."""
         if self._folder is None:
             return self._rows
-        return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension)}
+        return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension, self._coordinates)}
 
     @property
     def lengths(self) -> dict[str, int]:
@@ -57,7 +63,7 @@ class History:
         A folder that an earlier version has written has all columns that it knew. Raises OutputError if the table is on
         disk and cannot be read.
         """
-        names = columns(self.dimension)[name]
+        names = columns(self.dimension, self._coordinates)[name]
         wanted = tuple(names if only is None else only)
         if self._folder is not None:
             path = table_path(self._folder, name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,8 +23,12 @@ LEDGER_COLUMNS = (
 )
 
 
-def columns(dimension: int) -> dict[str, tuple[str, ...]]:
-    """Column names of each table, in order."""
+COORDINATES: Mapping[str, str] = {"angle": "rad"}
+"""Coordinates of joints that have a column in any case, with their units."""
+
+
+def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
+    """Column names of each table, in order; ``coordinates`` are those of joints, by name."""
     axes = "xyz"[:dimension]
     along = tuple(axes)
     spin = ("w",) if dimension == 2 else ("wx", "wy", "wz")
@@ -40,7 +44,7 @@ def columns(dimension: int) -> dict[str, tuple[str, ...]]:
             *(*named("f"), *torque, *named("cf"), *named("c", torque), "gap"),
         ),
         "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap", *named("f")),
-        "joints": ("time", "step", "joint", "gap", "angle", "rate", *named("f"), *torque),
+        "joints": ("time", "step", "joint", "gap", *coordinates, "rate", *named("f"), *torque),
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
         "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
@@ -70,6 +74,11 @@ def records(
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
     }
+
+
+def joint_coordinates(system: System) -> Mapping[str, str]:
+    """Units of the coordinates of a system's joints, by the names of their columns, in order."""
+    return COORDINATES if system.linkage is None else system.linkage.coordinates
 
 
 def moving(system: System) -> tuple[str, ...]:
@@ -117,9 +126,10 @@ def _contact_rows(system: System, state: State, stamp: Row, forces: FloatArray) 
 def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterator[Row]:
     if system.linkage is None:
         return
-    force = None if state.link is None else state.link.force
+    force, names = None if state.link is None else state.link.force, joint_coordinates(system)
     for one in system.linkage.readings(state.pose, state.twist, time, force):
-        yield (*stamp, one.name, one.gap, one.angle, one.rate, *one.force.tolist(), *one.torque.tolist())
+        values = [one.value if name == one.coordinate else math.nan for name in names]
+        yield (*stamp, one.name, one.gap, *values, one.rate, *one.force.tolist(), *one.torque.tolist())
 
 
 def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:

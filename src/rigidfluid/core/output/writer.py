@@ -6,7 +6,7 @@ Ranks that share a run write each its part of the fields and its checkpoint, and
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,7 @@ from rigidfluid.core.output.checkpoint import (
     read_staged,
     stage_checkpoint,
 )
-from rigidfluid.core.output.records import Records, columns
+from rigidfluid.core.output.records import COORDINATES, Records, columns
 from rigidfluid.core.output.run_folder import clear, locked, refuse_foreign
 from rigidfluid.core.output.tables import Table, table_path
 from rigidfluid.core.output.vtu import read_pvd, write_pvd, write_pvtu, write_vtu
@@ -39,23 +39,30 @@ class Writer:
     of these names are not a run's.
     """
 
-    def __init__(self, out: Path, dimension: int, resumed: Checkpoint | None, ranks: Ranks) -> None:
+    def __init__(
+        self,
+        out: Path,
+        dimension: int,
+        resumed: Checkpoint | None,
+        ranks: Ranks,
+        coordinates: Iterable[str] = COORDINATES,
+    ) -> None:
         self.out, self._ranks = out, ranks
         self._tables: dict[str, Table] = {}
         self._mark: TextIO | None = None
         self._series: list[str] = []
         with ExitStack() as undo:
             undo.callback(self.close)
-            self._start(dimension, resumed)
+            self._start(columns(dimension, coordinates), resumed)
             undo.pop_all()
 
-    def _start(self, dimension: int, resumed: Checkpoint | None) -> None:
+    def _start(self, columns_by_table: Mapping[str, Sequence[str]], resumed: Checkpoint | None) -> None:
         out, lengths = self.out, {} if resumed is None else resumed.lengths
         with self._writing_once(out) as is_mine:
             if is_mine:
                 self._mark = _taken(out, anew=resumed is None)
                 self._series = [] if resumed is None else _series(out)[: len(resumed.times)]
-        for name, names in columns(dimension).items():
+        for name, names in columns_by_table.items():
             path = table_path(out, name)
             with self._writing_once(path) as is_mine:
                 if is_mine:

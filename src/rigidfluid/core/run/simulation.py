@@ -24,7 +24,7 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import StepCost, least_gaps_of_motions, records
+from rigidfluid.core.output.records import StepCost, joint_coordinates, least_gaps_of_motions, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
@@ -118,7 +118,7 @@ class Simulation:
             watch=self.watch,
         )
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
-        self.history = History(scene.dimension, folder=out)
+        self.history = History(scene.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
         self._start, self._cpu_start = time.perf_counter(), time.process_time()
@@ -325,7 +325,7 @@ class Simulation:
             )
         if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
-        self._writer = None if out is None else Writer(out, self.scene.dimension, None, self._ranks)
+        self._writer = None if out is None else self._writer_to(out, None)
         self._record()
         self._output()
         self.observe(Simulation._output, self.scene.output.every)
@@ -345,8 +345,11 @@ class Simulation:
         self.extremes = earlier.extremes
         if self.state.prescription is not None:
             self._follow(PrescribedMotion(self.state.prescription))
-        self._writer = Writer(out, self.scene.dimension, earlier, self._ranks)
+        self._writer = self._writer_to(out, earlier)
         self.observe(Simulation._output, self.scene.output.every)
+
+    def _writer_to(self, out: Path, earlier: Checkpoint | None) -> Writer:
+        return Writer(out, self.scene.dimension, earlier, self._ranks, joint_coordinates(self.system))
 
     def _record(self) -> None:
         level, cost = self.state.level, None

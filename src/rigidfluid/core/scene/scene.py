@@ -275,35 +275,22 @@ class MechanismTable(_OpenTable):
     angular_velocity: InitialAngularVelocity = None
 
 
-class JointTable(_Table):
+class JointTable(_OpenTable):
     """A joint between two bodies, or of one with the ground."""
 
     name: str = Field(
         default="", pattern=PRINTABLE, description="Name in the results; `joint0`, `joint1`, … if not given"
     )
-    type: Literal["rod", "hinge"] = Field(
-        description="`rod`: the bodies move as if they were one; `hinge`: they turn about a point, in 3D about an axis"
+    type: str = Field(
+        description="Name of a joint type; `rod` has no keys of its own: the bodies move as if they were one"
     )
     between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
         description="Names of two bodies or components, or of one, which is joined to the ground"
     )
     at: Vector | None = Field(
-        default=None, description="Point of the joint at the start; needed by a hinge; else the first body's [length]"
-    )
-    axis: Vector | None = Field(default=None, description="Direction of a hinge's axis at the start; 3D only [1]")
-    stiffness: Positive | None = Field(
-        default=None, description="Of a spring in a hinge; none if not given [force·length/rad]"
-    )
-    rest_angle: float | None = Field(
         default=None,
-        description="Angle at which that spring rests, of the first body seen from the second, counter-clockwise about "
-        "the axis; 0, that at the start, if not given [rad]",
-    )
-    damping: Positive | None = Field(
-        default=None, description="Of a damper in a hinge; none if not given [force·length·time/rad]"
-    )
-    drive: StrokeTable | None = Field(
-        default=None, description="The angle of a driven hinge as a function of time, 0 at the start"
+        description="Point of the joint at the start; the first body's if not given, which a rod and a slider may "
+        "leave out [length]",
     )
 
 

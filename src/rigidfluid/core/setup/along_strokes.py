@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.joints.coordinates import Drive
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
-from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
@@ -35,7 +35,7 @@ def times_along(mechanism: Mechanism, end: float) -> FloatArray:
     return np.union1d(np.linspace(0.0, last, SAMPLES), np.fromiter(corners(mechanism, last), dtype=float))
 
 
-def corners(moving: Mechanism | Stroke, end: float) -> Iterator[float]:
+def corners(moving: Mechanism | Drive, end: float) -> Iterator[float]:
     """Times at which the rate of a mechanism or stroke jumps, until the ``end``; no more than there are samples."""
     time = moving.next_corner(0.0)
     for _ in range(SAMPLES):

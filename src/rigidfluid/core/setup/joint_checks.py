@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.setup.joint_kinds import build_joints
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -31,7 +31,7 @@ def check_joints(scene: Scene) -> None:
             raise SceneError("joint.name", repr(name), "a name that no other joint or body has", "Rename it.")
     for number, joint in enumerate(scene.joint):
         _check_ends(scene, joint, f"joint.{number}")
-        (_check_hinge if joint.type == "hinge" else _check_rod)(joint, scene.dimension, f"joint.{number}")
+    build_joints(scene)
 
 
 def held_directions(body: BodyTable, dimension: int) -> BoolArray:
@@ -101,32 +101,3 @@ def _check_ends(scene: Scene, joint: JointTable, at: str) -> None:
     if len(set(joint.between)) < len(joint.between):
         remedy = "Name another, or one alone to join it to the ground."
         raise SceneError(f"{at}.between", list(joint.between), "two different bodies", remedy)
-
-
-def _check_rod(joint: JointTable, dimension: int, at: str) -> None:
-    for key in ("axis", "stiffness", "rest_angle", "damping", "drive"):
-        if getattr(joint, key) is not None:
-            remedy = f"Set type = 'hinge', or remove `{key}`."
-            raise SceneError(f"{at}.{key}", f"a rod has no `{key}`; only a hinge does", None, remedy)
-
-
-def _check_hinge(joint: JointTable, dimension: int, at: str) -> None:
-    if joint.at is None:
-        raise SceneError(f"{at}.at", "nothing", "the point of a hinge at the start", "Add the key 'at'.")
-    if dimension == 2 and joint.axis is not None:
-        raise SceneError(f"{at}.axis", list(joint.axis), "none in 2D, where all axes are one", "Remove it.")
-    if dimension == 3 and joint.axis is None:
-        raise SceneError(f"{at}.axis", "nothing", "the direction of a hinge's axis in 3D", "Add the key 'axis'.")
-    if joint.axis is not None and not any(joint.axis):
-        raise SceneError(f"{at}.axis", list(joint.axis), "a vector of length above 0", "Give its direction.")
-    if joint.rest_angle is not None and joint.stiffness is None:
-        statement = "a hinge has a rest angle only if it has a stiffness"
-        raise SceneError(f"{at}.rest_angle", statement, None, "Add `stiffness`, or remove it.")
-    _refuse_in_drive(joint, ("stiffness", "damping"), at)
-
-
-def _refuse_in_drive(joint: JointTable, keys: Sequence[str], at: str) -> None:
-    for key in keys:
-        if joint.drive is not None and getattr(joint, key) is not None:
-            statement = f"a hinge whose angle is driven does not feel a `{key}`"
-            raise SceneError(f"{at}.drive", statement, None, f"Remove `drive` or `{key}`.")

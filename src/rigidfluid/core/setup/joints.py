@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
-from rigidfluid.core.model.linkage import GroundLink, Joint
+from rigidfluid.core.model.linkage import GroundLink
 from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions
+from rigidfluid.core.setup.joint_kinds import build_joints
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.mechanics.strokes import Stroke
+    from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.model.system import Mechanisms
     from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose
     from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
@@ -52,9 +53,9 @@ def build_linkage(
     return linkage
 
 
-def joints_of(scene: Scene, pose: Pose) -> list[Joint]:
+def joints_of(scene: Scene, pose: Pose) -> list[PlacedJoint]:
     """The joints of a scene, with the components of mechanisms among its bodies, that are at ``pose`` at the start."""
-    return [_joint(scene, table, f"joint.{number}", pose) for number, table in enumerate(scene.joint)]
+    return [_placed(scene, table, kind, pose) for table, kind in zip(scene.joint, build_joints(scene), strict=True)]
 
 
 def joined_bodies(scene: Scene) -> IntArray:
@@ -86,32 +87,13 @@ def _join_directions(dimension: int, straight: Sequence[float] | None, turning: 
     return np.array([*(straight or [0.0] * dimension), *(turning or [0.0] * k)])
 
 
-def _joint(scene: Scene, table: JointTable, at: str, pose: Pose) -> Joint:
+def _placed(scene: Scene, table: JointTable, kind: Joint, pose: Pose) -> PlacedJoint:
     names = [body.name for body in scene.body]
     first, *second = map(names.index, table.between)
+    if kind.drive is not None:
+        refuse_quick_drive(kind.drive, table.name, scene.time)
     point = pose.position[first].copy() if table.at is None else np.array(table.at)
-    axis = None if table.axis is None else np.array(table.axis) / np.linalg.norm(table.axis)
-    stroke = None if table.drive is None else build_stroke(table.drive, f"{at}.drive")
-    if stroke is not None:
-        refuse_quick_drive(stroke, table.name, scene.time)
-    return Joint(
-        name=table.name,
-        type=table.type,
-        first=first,
-        second=second[0] if second else None,
-        at=point,
-        axis=axis,
-        stiffness=table.stiffness or 0.0,
-        rest_angle=table.rest_angle or 0.0,
-        damping=table.damping or 0.0,
-        drive=None if stroke is None else _value_and_rate(stroke),
-        next_corner=None if stroke is None else stroke.next_corner,
-    )
-
-
-def _value_and_rate(stroke: Stroke) -> Callable[[float], tuple[float, float]]:
-    """Its value and rate together."""
-    return lambda time: (stroke.value(time), stroke.rate(time))
+    return PlacedJoint(table.name, kind, first, second[0] if second else None, point)
 
 
 def _check_step(scene: Scene, linkage: JointLinkage) -> None:

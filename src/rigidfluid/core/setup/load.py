@@ -13,9 +13,9 @@ from rigidfluid.core.setup.auto_size import auto_size_body
 from rigidfluid.core.setup.boundary_checks import check_boundary
 from rigidfluid.core.setup.interactions import check_interactions
 from rigidfluid.core.setup.joint_checks import check_joints
+from rigidfluid.core.setup.joint_kinds import read_drives
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
-from rigidfluid.core.setup.strokes import read_drives
 from rigidfluid.core.setup.time_factor import read_time_tables
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.joints.coordinates import Drive
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.along_strokes import corners
@@ -32,14 +32,14 @@ def refuse_quick_mechanisms(mechanisms: Mapping[str, Mechanism], time: TimeTable
             _refuse(f"mechanism {name!r}", mechanism, values, rates, time)
 
 
-def refuse_quick_drive(stroke: Stroke, joint: str, time: TimeTable) -> None:
+def refuse_quick_drive(drive: Drive, joint: str, time: TimeTable) -> None:
     """Raise SceneError where a drive could go all of its way within a step."""
-    times = _times(stroke, time)
-    values, rates = (np.array([[found(float(at))] for at in times]) for found in (stroke.value, stroke.rate))
-    _refuse(f"the drive of joint {joint!r}", stroke, values, rates, time)
+    times = _times(drive, time)
+    values, rates = (np.array([[found(float(at))] for at in times]) for found in (drive.value, drive.rate))
+    _refuse(f"the drive of joint {joint!r}", drive, values, rates, time)
 
 
-def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
+def _times(moving: Mechanism | Drive, time: TimeTable) -> FloatArray:
     """Sample times (s,) of a period [time]: its corners, and points that no oscillation meets always in the same
     phase."""
     last = moving.period or max(time.end, _FEWEST_STEPS * time.step)
@@ -47,7 +47,7 @@ def _times(moving: Mechanism | Stroke, time: TimeTable) -> FloatArray:
     return np.concatenate([spread, np.fromiter(corners(moving, last), dtype=float)])
 
 
-def _refuse(what: str, moving: Mechanism | Stroke, values: FloatArray, rates: FloatArray, time: TimeTable) -> None:
+def _refuse(what: str, moving: Mechanism | Drive, values: FloatArray, rates: FloatArray, time: TimeTable) -> None:
     """Raise SceneError if a step, or with corners, at which steps end, the shortest step, is too long for the motion's
     way."""
     way, speed = np.ptp(values, axis=0), np.abs(rates).max(axis=0)

@@ -104,7 +104,6 @@ def _vectors(scene: Scene) -> Vectors:
         yield f"mechanism.{i}.angular_velocity", mechanism.angular_velocity, k
     for i, joint in enumerate(scene.joint):
         yield f"joint.{i}.at", joint.at, d
-        yield f"joint.{i}.axis", joint.axis, 3
     for i, box in enumerate(scene.mesh.refine if scene.mesh else ()):
         yield f"mesh.refine.{i}.lower", box.lower, d
         yield f"mesh.refine.{i}.upper", box.upper, d

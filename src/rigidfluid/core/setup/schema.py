@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, MECHANISM, Entry, Registry
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, JOINT, MECHANISM, Entry, Registry
 
 _TABLES = {
     FLUID_BACKEND: ("FluidTable",),
@@ -14,6 +14,7 @@ _TABLES = {
     DETECTOR: ("ContactTable",),
     FORCE_LAW: ("ContactTable", "InteractionTable"),
     DOMAIN: ("DomainTable",),
+    JOINT: ("JointTable",),
 }
 # The parts that a table means where it names none.
 _UNNAMED = {
@@ -23,6 +24,7 @@ _UNNAMED = {
     MECHANISM: (),
     FORCE_LAW: (),
     DOMAIN: ("box",),
+    JOINT: (),
 }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidfluid.core.mechanics.strokes import Stroke
-from rigidfluid.core.scene.scene import Scene, StrokeTable, TimeFileTable
+from rigidfluid.core.scene.scene import StrokeTable, TimeFileTable
 from rigidfluid.core.setup.time_factor import Rows, check_rows, read_rows
 from rigidfluid.errors import SceneError
 
@@ -33,17 +33,6 @@ def read_stroke_rows(table: StrokeTable, at: str) -> StrokeTable:
     if not isinstance(given, TimeFileTable):
         return table
     return table.model_copy(update={key: read_rows(given.file, f"{at}.{key}.file")})
-
-
-def read_drives(scene: Scene) -> Scene:
-    """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file."""
-    tables = [
-        table
-        if table.drive is None
-        else table.model_copy(update={"drive": read_stroke_rows(table.drive, f"joint.{number}.drive")})
-        for number, table in enumerate(scene.joint)
-    ]
-    return scene.model_copy(update={"joint": tuple(tables)})
 
 
 def _key(table: StrokeTable, at: str) -> str:

@@ -1,0 +1,68 @@
+"""Joints that a scene names: their classes, and the keys of its tables that are theirs."""
+
+from __future__ import annotations
+
+from rigidfluid.core.joints.joint import Joint
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.scene.scene import JointTable, Scene, StrokeTable
+from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
+from rigidfluid.core.setup.strokes import read_stroke_rows
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import JOINT, Registry
+
+
+def build_joints(scene: Scene) -> list[Joint]:
+    """Build the joints of a scene, without their bodies; raises PluginError for a type that is not there, SceneError
+    for options that are unknown or contradict each other."""
+    registry = _registry(scene)
+    return [_built(table, registry, scene.dimension, f"joint.{n}") for n, table in enumerate(scene.joint)]
+
+
+def read_drives(scene: Scene) -> Scene:
+    """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file; raises as
+    `build_joints` does."""
+    registry = _registry(scene)
+    tables = [_with_rows(table, registry, f"joint.{number}") for number, table in enumerate(scene.joint)]
+    return scene.model_copy(update={"joint": tuple(tables)})
+
+
+def _registry(scene: Scene) -> Registry:
+    return Registry.load() if scene.joint else Registry((), ())
+
+
+def _built(table: JointTable, registry: Registry, dimension: int, at: str) -> Joint:
+    part = registry.get(JOINT, table.type, f"{at}.type")
+    if part.needs_point and table.at is None:
+        raise SceneError(f"{at}.at", "nothing", f"the point of a {part.name} at the start", "Add the key 'at'.")
+    try:
+        return part(_options(table, part, registry, at), dimension)
+    except SceneError as error:  # a joint does not know its number
+        subject = f"{at}.{error.subject.partition('.')[2]}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+
+
+def _options(table: JointTable, part: type[Joint], registry: Registry, at: str) -> PartOptions:
+    known = fields_by_key(part.Options)
+    for key in table.options:
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", {*known, *type(table).model_fields}, _reader_hint(key, registry))
+    return read_table(part.Options, table.options, at)
+
+
+def _reader_hint(key: str, registry: Registry) -> str:
+    """Remedy for a key that joints of other types read; empty where none does."""
+    readers = [repr(part.name) for part in registry.installed(JOINT) if key in fields_by_key(part.Options)]
+    return f"Set type = {' or '.join(readers)}, or remove `{key}`." if readers else ""
+
+
+def _with_rows(table: JointTable, registry: Registry, at: str) -> JointTable:
+    part = registry.get(JOINT, table.type, f"{at}.type")
+    options, keys = _options(table, part, registry, at), fields_by_key(part.Options)
+    names = {key: name for name, field in part.Options.model_fields.items() for key in keys if keys[key] is field}
+    strokes = {key: getattr(options, names[key]) for key in table.options}
+    rows = {
+        key: read_stroke_rows(stroke, f"{at}.{key}").model_dump(mode="json", exclude_none=True)
+        for key, stroke in strokes.items()
+        if isinstance(stroke, StrokeTable)
+    }
+    return table.model_copy(update=rows)

@@ -1,0 +1,57 @@
+"""A body that slides along an axis of another one, without turning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from pydantic import Field
+
+from rigidfluid.core.joints.constraints import Constraint, OnAxis, SameOrientation
+from rigidfluid.core.joints.coordinates import Coordinate, Displacement
+from rigidfluid.core.joints.markers import MarkerPair, axes_along
+from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import Positive, StrokeTable, Vector
+from rigidfluid.joints.one_coordinate import CoordinateOptions, OneCoordinate, unit_axis
+
+
+class SliderOptions(CoordinateOptions):
+    """Keys of a ``[[joint]]`` table with type ``slider``: the first body moves along an axis of the second, and turns
+    as that does."""
+
+    axis: Vector | None = Field(
+        default=None, description="Direction of the axis at the start, needed; it turns with the second body [1]"
+    )
+    stiffness: Positive | None = Field(default=None, description="Of a spring; none if not given [force/length]")
+    rest_length: float | None = Field(
+        default=None,
+        description="Displacement at which the spring rests, of the first body seen from the second, along the axis; "
+        "0, that at the start, if not given [length]",
+    )
+    damping: Positive | None = Field(default=None, description="Of a damper; none if not given [force·time/length]")
+    drive: StrokeTable | None = Field(
+        default=None, description="The displacement of a driven slider as a function of time, 0 at the start"
+    )
+
+
+class Slider(OneCoordinate):
+    """The first point stays on the axis, which the second body carries, and the orientations stay the same."""
+
+    name: ClassVar[str] = "slider"
+    Options: ClassVar[type[PartOptions]] = SliderOptions
+    coordinate: Coordinate = Displacement()
+    rest_key: ClassVar[str] = "rest_length"
+    options: SliderOptions
+
+    def __init__(self, options: SliderOptions, dimension: int) -> None:
+        self._axes = axes_along(unit_axis(options.axis, self.name, dimension))
+        super().__init__(options, dimension)
+
+    @property
+    def axes(self) -> FloatArray:
+        return self._axes
+
+    def held(self, name: str, markers: MarkerPair) -> Sequence[Constraint]:
+        """The same axis and orientation."""
+        return [OnAxis(name, markers), SameOrientation(name, markers)]
