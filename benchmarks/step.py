@@ -33,7 +33,7 @@ AIMS = {"imex": 0.35, "reuse": 0.5}
 def compare(thousands: int, steps: int) -> dict[str, Any]:
     """One row: all on the same meshes, one after the other."""
     run, frames = falling(thousands), list[Frame]()
-    mesh, problem = run.state.mesh, run.system.backend.problem
+    mesh, problem = run.state.mesh, run.system.fluid
     assert mesh is not None
     assert problem is not None
 

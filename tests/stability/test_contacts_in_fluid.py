@@ -227,13 +227,13 @@ def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
     simulation.go()
     state, system = simulation.state, simulation.system
     assert state.mesh is not None
-    assert system.backend.problem is not None
+    assert system.fluid is not None
     fields, corners = system.backend.fields(state.fluid, state.mesh), state.mesh.cells.shape[1]
     cells = fields.cells[:, :corners]
     edges = fields.points[cells[:, 1:]] - fields.points[cells[:, :1]]
     volume, pressure = np.abs(np.linalg.det(edges)), fields.pressure[cells]
     mean = float(volume @ pressure.mean(axis=1) / volume.sum())
-    problem = system.backend.problem
+    problem = system.fluid
     numbering = Numbering.from_mesh(state.mesh)
     pin = pinned_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.bodies), state.mesh)
     apart = np.linalg.norm(state.mesh.points[:, None] - state.pose.position[None], axis=2).min(axis=1)

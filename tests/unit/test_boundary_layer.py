@@ -28,7 +28,7 @@ def layers(scene: Scene) -> list[Finding]:
 
 
 def test_a_layer_is_a_diameter_over_the_root_of_its_reynolds_number() -> None:
-    bodies = build_system(falling_disk(), to_run=False).bodies
+    bodies = build_system(falling_disk()).bodies
     np.testing.assert_allclose(boundary_layers(bodies, np.array([4.0]), 0.01), [0.25 / np.sqrt(0.25 * 4.0 / 0.01)])
     assert boundary_layers(bodies, np.array([0.0]), 0.01)[0] == np.inf
 
@@ -116,7 +116,7 @@ def test_auto_resolves_the_layer_and_the_body(name: str) -> None:
     (finding,) = layers(scene)
     assert finding.grade == "note"
     assert not finding.enough
-    system = build_system(scene, to_run=False)
+    system = build_system(scene)
     smallest = min(float(body.volume) for body in system.bodies)
     diameter = 2.0 * (smallest / np.pi) ** 0.5 if scene.dimension == 2 else 2.0 * (0.75 * smallest / np.pi) ** (1 / 3)
     limit = min(float(finding.found["thickness"] or 0.0) / 2.0, diameter / 10.0)

@@ -67,14 +67,14 @@ SLOW = [  # cells and facets of first meshes that take 10 s and more
 
 
 def expected(scene: Scene) -> Count:
-    system = build_system(scene, to_run=False)
+    system = build_system(scene)
     assert scene.mesh is not None
     sizes = sizes_of(scene.mesh, system.domain)
     return expected_count(fluid_domain_at(system, system.pose), sizes)
 
 
 def assert_as_made(scene: Scene) -> None:
-    system = build_system(scene, to_run=False)
+    system = build_system(scene)
     assert scene.mesh is not None
     sizes = sizes_of(scene.mesh, system.domain)
     made = initial_mesh(fluid_domain_at(system, system.pose), sizes, inserter_of(scene.mesh))

@@ -108,7 +108,7 @@ def test_the_parts_of_a_run_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     smooth = 100 * 0.01 + 3 * (1000 * 3e-5 + 0.02)
     for name, contact in (("falling_disk", 0.005), ("ellipse_xia", 0.1), ("dfg_cylinder", 0.0)):
         scene = load_scene(SCENES / f"{name}.toml", ["time.end=1.0", "time.step=0.01"])
-        (finding,) = run_time.run_time_findings(size, build_system(scene, to_run=False), scene.time)
+        (finding,) = run_time.run_time_findings(size, build_system(scene), scene.time)
         assert finding.found["least"] == pytest.approx(0.6 * smooth)
         assert finding.found["most"] == pytest.approx(4.5 * smooth + 100 * contact)
 

@@ -96,7 +96,7 @@ from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import load_scene
 scene = load_scene(sys.argv[1], ["mesh.size=3.0", "mesh.size_body=0.6"])
-system = build_system(scene, to_run=False)
+system = build_system(scene)
 sizes = sizes_of(scene.mesh, system.domain)
 around = fluid_domain_at(system, system.pose)
 mesh = inserted_mesh(around, sizes, inserter_of(scene.mesh))

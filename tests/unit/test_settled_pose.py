@@ -19,7 +19,7 @@ START = "body.0.position=[0.2, 6.0, 0.2]"
 
 
 def positions(scene: Scene) -> FloatArray:
-    return settled_pose(build_system(scene, to_run=False), known_parts(scene).exact_detector, GAP).position
+    return settled_pose(build_system(scene), known_parts(scene).exact_detector, GAP).position
 
 
 def test_a_disk_falls_to_the_floor() -> None:
@@ -41,7 +41,7 @@ def test_a_disk_comes_to_lie_on_the_one_below() -> None:
 
 def test_an_ellipsoid_comes_to_lie_on_its_side() -> None:
     scene = load_scene(SCENES / "falling_ellipsoid.toml")
-    found = settled_pose(build_system(scene, to_run=False), known_parts(scene).exact_detector, GAP)
+    found = settled_pose(build_system(scene), known_parts(scene).exact_detector, GAP)
     np.testing.assert_allclose(found.position, [[0.5, 0.1 + GAP, 0.2]], atol=0.06 * GAP)
     long_axis = rotation_matrices(found.orientation)[0, :, 1]
     np.testing.assert_allclose(np.abs(long_axis), [1.0, 0.0, 0.0], atol=1e-9)
@@ -49,7 +49,7 @@ def test_an_ellipsoid_comes_to_lie_on_its_side() -> None:
 
 def test_without_room_it_falls_as_it_is_turned() -> None:
     scene = load_scene(SCENES / "falling_ellipsoid.toml", ["domain.upper=[0.4, 8.0, 0.4]", START])
-    system = build_system(scene, to_run=False)
+    system = build_system(scene)
     found = settled_pose(system, known_parts(scene).exact_detector, GAP)
     assert 0.2 < found.position[0, 1] < 0.2 + 2.0 * GAP
     np.testing.assert_array_equal(found.orientation, system.pose.orientation)
@@ -74,4 +74,4 @@ def test_a_rectangle_lies_on_its_long_side(angle: float) -> None:
     ids=["fixed", "mechanism", "weightless", "joint"],
 )
 def test_what_is_held_or_weightless_stays(scene: Scene) -> None:
-    np.testing.assert_array_equal(positions(scene), build_system(scene, to_run=False).pose.position)
+    np.testing.assert_array_equal(positions(scene), build_system(scene).pose.position)

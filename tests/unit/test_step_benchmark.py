@@ -48,7 +48,7 @@ def test_ways_lead_to_the_same_flow(ngsolve_step, monkeypatch):
     monkeypatch.setenv("PATH", os.pathsep.join(others))
     with benchmark("disk_under_way") as under_way:
         run = under_way.falling(3)
-    mesh, problem, frames = run.state.mesh, run.system.backend.problem, []
+    mesh, problem, frames = run.state.mesh, run.system.fluid, []
     for _ in range(3):
         run.step()
         frames.append(ngsolve_step.Frame(run.state.mesh.points, run.state.twist.velocity[0]))

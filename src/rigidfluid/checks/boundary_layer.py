@@ -16,7 +16,7 @@ QUESTION = "layer"
 def layer_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the thickness d/√Re of the thinnest boundary layer, at the expected speeds, with the cells on its body,
     in a fluid with inertia; a warning where less than one cell fits."""
-    problem, speeds = system.backend.problem, system.loads.travel_speed
+    problem, speeds = system.fluid, system.loads.travel_speed
     if problem is None or not problem.inertia or speeds is None:
         return
     layer = thinnest_layer(system.bodies, speeds, problem.dynamic_viscosity / problem.density, mesh.size_body)

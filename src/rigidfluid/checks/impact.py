@@ -46,11 +46,9 @@ def _finding(met: DesignContacts, row: int, share: float, stops_two: bool, gap: 
         return Finding("note", QUESTION, met.names(row), text, found=found)
     text = f"{fast}: up to contact the law takes up only {figure(share)} of the impact"
     enough, remedy = strength_remedy(met, share)
-    braked = met.system.backend.needs_mesh or met.law.dissipative
+    braked = met.system.has_fluid or met.law.dissipative
     if braked:
-        text += (
-            "; the film between them must brake the rest" if met.system.backend.needs_mesh else "; dampers brake too"
-        )
+        text += "; the film between them must brake the rest" if met.system.has_fluid else "; dampers brake too"
     grade: Grade = "warning" if braked or stops_two else "error"
     return Finding(grade, QUESTION, met.names(row), text, remedy, found, enough)
 

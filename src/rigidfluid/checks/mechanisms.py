@@ -40,7 +40,7 @@ def mechanism_findings(parts: Parts, system: System) -> Iterator[Finding]:
     if carried is None:
         return
     first = len(carried.mass) - len(carried.names)
-    mesh = scene.mesh if system.backend.needs_mesh else None
+    mesh = scene.mesh if system.has_fluid else None
     for number, (name, mechanism) in enumerate(parts.mechanisms.items()):
         if mechanism.driven:
             stroke = _Stroke(name, mechanism, first + number)

@@ -102,7 +102,7 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
     yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
     yield from chain(tolerance_findings(scene.time), facet_findings(system))
     yield from chain(joint_findings(parts, system), mechanism_findings(parts, system))
-    mesh = scene.mesh if system.backend.needs_mesh else None
+    mesh = scene.mesh if system.has_fluid else None
     if mesh is not None:
         size = run_size(parts, system, mesh, scene.time)
         if size is not None:
@@ -112,8 +112,8 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
         yield from chain(rest_findings(met), stack_findings(met), impact_findings(met), step_findings(met, scene.time))
         if mesh is not None:
             yield from resolution_findings(met, mesh)
-        if mesh is not None and system.backend.problem is not None:
-            yield from energy_error_findings(met, system.backend.problem, scene.time.step)
+        if mesh is not None and system.fluid is not None:
+            yield from energy_error_findings(met, system.fluid, scene.time.step)
         if mesh is not None and system.loads.film is not None:
             yield from rebound_findings(met, system.loads.film, mesh)
     for interaction in system.interactions:

@@ -26,7 +26,7 @@ def law_findings(system: System) -> Iterator[Finding]:
     text = "nothing keeps bodies apart"
     laws = " and ".join(repr(interaction.law.name) for interaction in system.interactions)
     text += f": law {laws} only takes energy out" if laws else ": the scene names no law"
-    grade: Grade = "warning" if system.backend.needs_mesh else "error"
+    grade: Grade = "warning" if system.has_fluid else "error"
     remedy = 'Set contact.law = "normal", contact.range and contact.epsilon = "auto".'
     yield Finding(grade, "law", (system.surfaces[moving[0]],), text, remedy, {"moving_bodies": len(moving)})
 

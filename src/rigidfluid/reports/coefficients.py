@@ -50,8 +50,8 @@ class Figures:
 def reference(results: Results) -> Reference | None:
     """The stream that the scene prescribes, else the motion of the bodies; None in fluids without inertia, without a
     fluid, or where nothing moves."""
-    problem = results.system.backend.problem
-    if problem is None or not problem.inertia or not results.system.backend.needs_mesh:
+    problem = results.system.fluid
+    if problem is None or not problem.inertia:
         return None
     stream, speed = prescribed_stream(results), np.linalg.norm(results.vectors("v"), axis=2)
     if stream is not None:

@@ -154,7 +154,7 @@ def step_plot(results: Results) -> Figure:
 def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArray]:
     """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R as in the summary."""
     fluid = results.scene.fluid
-    if not results.system.backend.needs_mesh or fluid.viscosity is None or fluid.density is None:
+    if not results.system.has_fluid or fluid.viscosity is None or fluid.density is None:
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
     solid = np.array([body.density for body in append_components(results.scene)[0].body])

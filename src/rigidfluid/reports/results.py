@@ -105,7 +105,7 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
     complete = not motion_only or (folder / SUMMARY).exists()
     summary = _summary(folder / SUMMARY) if complete else {}
     scene = scene_of_results(summary["scene"] if complete else read_scene(folder / CHECKPOINT))
-    system = build_system(scene, to_run=False)
+    system = build_system(scene)
     bodies = _table(folder, "bodies", scene.dimension, complete=complete)
     if not complete:
         bodies = {name: values[: len(values) - len(values) % len(moving(system))] for name, values in bodies.items()}

@@ -103,7 +103,7 @@ def advance_bodies(system: System, state: State, start: float, size: float, coup
     touch (see `near_contacts`). StepRejected is raised if bodies overlap on the way, or a contact is too stiff to be
     followed.
     """
-    if not system.backend.needs_mesh:
+    if not system.has_fluid:
         return _advance_free(system, state, start, size)
     if coupling is None or system.law is None:
         pose = predict_pose(state.free_pose, state.free_twist, state.past_twist, size, state.past_step)
@@ -459,7 +459,7 @@ def _bodies_now(system: System, state: State, time: float) -> BodyDynamics:
     """Dynamics of the bodies of a state as contacts see them, in a fluid by the coupling that its solution has shown;
     without joints."""
     motions: MotionDynamics
-    if not system.backend.needs_mesh:
+    if not system.has_fluid:
         motions = _dry_motions(system, state, time)
     else:
         motions = _coupled(system, state, state.coupling or uncoupled())

@@ -25,7 +25,7 @@ def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatAr
     ``path`` the bodies' way through it, with its coupling.
     """
     none, coupling = np.zeros_like(step.load), path.coupling
-    if coupling is None or system.backend.problem is None or not system.backend.problem.inertia:
+    if coupling is None or system.fluid is None or not system.fluid.inertia:
         return none
     change = _on_the_mesh(system, state, path, step) - _extrapolated(state, step)
     reach, farthest = reaches(system)

@@ -28,7 +28,7 @@ STEADY = 1e-2
 def expected_coupling(system: System, state: State, time: float, size: float) -> Coupling | None:
     """Coupling of a step from ``time`` over ``size`` [time] with the present mesh and the latest step's loads, and the
     state's own model where it has one; None where nothing can touch."""
-    if not system.backend.needs_mesh:
+    if not system.has_fluid:
         return None
     near = near_contacts(system, state, time, size)
     if len(near) == 0:

@@ -38,7 +38,7 @@ def step_to(
         load_scale=_load_scale(system, state, impulse, derivative),
         turning=np.zeros_like(load),
         kinematics=kinematics,
-        links=None if system.linkage is None or not system.backend.needs_mesh else system.linkage.links(pose, time),
+        links=None if system.linkage is None or not system.has_fluid else system.linkage.links(pose, time),
     )
 
 
@@ -68,7 +68,7 @@ def _newton_euler(
     applied = applied_wrench(system, state, kinematics)
     pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
-    if system.linkage is not None and system.backend.needs_mesh:
+    if system.linkage is not None and system.has_fluid:
         pushed = wrench_sum(pushed, system.linkage.spring_wrench(pose, time))
     mechanisms = system.mechanisms
     if mechanisms is None:
@@ -89,7 +89,7 @@ def _latest_push(system: System, state: State) -> Wrench:
     pushed = state.free_contact
     if state.past is not None and state.past.applied is not None:
         pushed = wrench_sum(pushed, state.past.applied)
-    if state.link is None or system.backend.needs_mesh:
+    if state.link is None or system.has_fluid:
         return pushed
     return wrench_sum(pushed, wrench_of(state.link.wrench, system.dimension))
 

@@ -4,6 +4,7 @@ these."""
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -50,6 +51,12 @@ class CarriedBodies:
         self.driven = bool(self.driven_motions.any())
         self._own_mass, self._own_inertia = mass, inertia
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
+
+    def starting_with(self, twist: Twist) -> CarriedBodies:
+        """The same bodies with another ``twist`` of the motions at the start."""
+        other = copy(self)
+        other.twist = twist
+        return other
 
     def poses(self, motions: Pose, time: float) -> Pose:
         """Pose c + R s and R Q of each body."""

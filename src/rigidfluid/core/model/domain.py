@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any
+from copy import copy
+from typing import Any, Self
 
 import numpy as np
 
@@ -62,6 +63,12 @@ class Domain(SpatialPart):
         """The facets that the boundary is made of, marked by the number of their piece; None where there is a
         `cad_shape`."""
         return None
+
+    def with_periodic(self, pairs: tuple[tuple[int, int], ...]) -> Self:
+        """The same domain with these ``pairs`` of periodic pieces."""
+        other = copy(self)
+        other.periodic = pairs
+        return other
 
     def between(self, axis: int, lower: float, upper: float) -> Domain | None:
         """The part with ``lower`` ≤ x ≤ ``upper`` along an ``axis`` [length], with pieces of the same names in the same

@@ -12,7 +12,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.linkage import Linkage
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Loads, Pose, Twist
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, IntArray, Kinematics, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall, WallVelocities
 from rigidfluid.core.model.window import Window
 
@@ -61,6 +61,8 @@ class System:
     fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
     ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k), and the pose, by
     ``controlled_pose(time)``.
+    ``fluid``: its equations and boundary conditions, None in a dry scene. ``make_backend()``: the one backend, of
+    ``backend_type``.
     ``mechanisms``: which motions carry the bodies, None where each moves by itself; twists and poses that are given are
     then the motions'.
     ``linkage``: joints, held directions and springs of the motions, None where there are none.
@@ -90,7 +92,9 @@ class System:
     controlled: BoolArray
     controlled_twist: Callable[[float], FloatArray]
     controlled_pose: Callable[[float], Pose]
-    backend: FluidBackend
+    fluid: FluidProblem | None
+    backend_type: type[FluidBackend]
+    make_backend: Callable[[], FluidBackend]
     detector: Detector
     detector_why: str
     reach: float
@@ -113,8 +117,17 @@ class System:
     @property
     def quasi_steady(self) -> bool:
         """Whether there is a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
-        problem = self.backend.problem
-        return self.backend.needs_mesh and problem is not None and not problem.inertia
+        return self.fluid is not None and not self.fluid.inertia
+
+    @property
+    def has_fluid(self) -> bool:
+        """Whether there is a fluid around the bodies."""
+        return self.fluid is not None
+
+    @property
+    def backend(self) -> FluidBackend:
+        """The backend, made when it is first asked for: it may load libraries, and reports need none."""
+        return self.make_backend()
 
     def meshed(self, pose: Pose) -> Domain:
         """The part of the domain that is meshed while the bodies are at ``pose``."""

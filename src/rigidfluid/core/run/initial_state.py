@@ -68,7 +68,7 @@ def _with_flow(system: System, clock: Clock, state: State) -> State:
 
 def _faces_start_at_once(system: System, state: State) -> bool:
     """Whether faces drive a fluid at once that was at rest."""
-    problem = system.backend.problem
+    problem = system.fluid
     if problem is None or state.mesh is None or problem.initial != "rest":
         return False
     return faces_start_at_once(problem, state.mesh)
@@ -76,7 +76,7 @@ def _faces_start_at_once(system: System, state: State) -> bool:
 
 def _power(system: System, state: State, faces: bool) -> Power | None:
     """Power at the start; None where the fluid starts in motion, since nobody has solved for its stresses yet."""
-    problem = system.backend.problem
+    problem = system.fluid
     at_rest = problem is None or (problem.initial == "rest" and not faces and not _bodies_move(state))
     return Power() if at_rest or state.mesh is None else None
 
@@ -95,7 +95,7 @@ def _starts_at_once(system: System, state: State, faces: bool) -> bool:
     fast; so do contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that
     hold it. Without inertia free bodies alone take time to follow the faces.
     """
-    problem = system.backend.problem
+    problem = system.fluid
     if state.mesh is None or problem is None:
         return False
     given = not isinstance(problem.initial, str)

@@ -26,8 +26,8 @@ def layer_remarks(system: System, highest_speed: FloatArray, size_body: float | 
     """Whether fewer than two cells lay across the thinnest boundary layer, by the ``highest_speed`` (n,) that bodies
     had [length/time], or the flow given past them; none in Stokes flow, and without a fluid, where there is no
     ``size_body`` [length]."""
-    problem = system.backend.problem
-    if size_body is None or problem is None or not problem.inertia or not system.backend.needs_mesh:
+    problem = system.fluid
+    if size_body is None or problem is None or not problem.inertia:
         return []
     speeds = np.maximum(highest_speed, system.loads.flow_speed)
     layer = thinnest_layer(system.bodies, speeds, problem.dynamic_viscosity / problem.density, size_body)

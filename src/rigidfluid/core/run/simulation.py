@@ -244,7 +244,7 @@ class Simulation:
         row, now = self._row(name, True), self.system.controlled_twist(self.time)
         twist = twist_row(self.scene.dimension, velocity, angular_velocity)
         within = over_time(over, now[row], twist)
-        if self.system.backend.needs_mesh:
+        if self.system.has_fluid:
             halvings = halvings_after(self.system, self.state, row, twist, self.clock.size(0), over)
             self.state = shortened(self.state, self.clock, halvings)
             within = within or self.clock.size(self.stepper.propose(self.state))
@@ -444,7 +444,7 @@ def _bodies_now(
 
 
 def _sizes(scene: Scene, system: System) -> Sizes | None:
-    if not system.backend.needs_mesh:
+    if not system.has_fluid:
         return None
     assert scene.mesh is not None
     return sizes_of(scene.mesh, system.domain)

@@ -48,11 +48,11 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
-    mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.backend.problem
+    mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.fluid
     radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
     length = max(radii.values())
     remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
-    inertia = system.backend.needs_mesh and problem is not None and problem.inertia
+    inertia = problem is not None and problem.inertia
     remarks += start_remarks(found.get("cycles", {}), inertia, length)
     jumps = remesh_jumps(simulation.history, radii) if simulation.counts.remeshes else {}
     remarks += jump_remarks(jumps)
@@ -130,7 +130,7 @@ def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[s
     ``speeds`` (n,) are the highest |v|. R is the radius of a ball, of other shapes that of the smallest ball around
     them. None without a fluid.
     """
-    if scene.fluid.viscosity is None or scene.fluid.density is None or not system.backend.needs_mesh:
+    if scene.fluid.viscosity is None or scene.fluid.density is None or not system.has_fluid:
         return {"reynolds_solid_density": None, "reynolds": None}
     per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
     solid = np.array([body.density for body in known_parts(scene).scene.body])

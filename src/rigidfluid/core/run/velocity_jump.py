@@ -52,10 +52,10 @@ def shortened(state: State, clock: Clock, halvings: int) -> State:
 
 def _fluid_speed(system: System, state: State) -> float:
     """Root of the mean square of the fluid's speed [length/time]."""
-    if system.backend.problem is None:
+    if system.fluid is None:
         return 0.0
     energy = state.ledger.kinetic - bodies_energy(system, state.pose, state.twist)
-    mass = system.backend.problem.density * system.meshed(state.pose).volume
+    mass = system.fluid.density * system.meshed(state.pose).volume
     return math.sqrt(max(2.0 * energy, 0.0) / mass)
 
 

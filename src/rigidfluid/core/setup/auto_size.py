@@ -25,12 +25,12 @@ def auto_size_body(scene: Scene) -> float:
     smallest = min((equal_volume_radius(body) for body in known_parts(scene).bodies), default=np.inf)
     size = min(scene.mesh.size, 2.0 * smallest / _EDGES_PER_DIAMETER)
     fine = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"size_body": size})})
-    return _rounded(min(size, _half_layer(build_system(fine, to_run=False))))
+    return _rounded(min(size, _half_layer(build_system(fine))))
 
 
 def _half_layer(system: System) -> float:
     """The thickness of the thinnest layer over the cells wanted, infinite where there is none [length]."""
-    problem, speeds = system.backend.problem, system.loads.travel_speed
+    problem, speeds = system.fluid, system.loads.travel_speed
     if problem is None or not problem.inertia or speeds is None:
         return np.inf
     layers = boundary_layers(system.bodies, speeds, problem.dynamic_viscosity / problem.density)

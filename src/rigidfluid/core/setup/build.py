@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
+from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
@@ -37,7 +38,7 @@ from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, imp
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_linkage, joined_bodies
-from rigidfluid.core.setup.parts import Parts, Selected, known_parts
+from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stack_loads
@@ -46,11 +47,10 @@ from rigidfluid.core.setup.window import build_window, open_wake_end
 _MOST_PAIRS = 1000
 
 
-def build_system(scene: Scene, to_run: bool = True) -> System:
+def build_system(scene: Scene) -> System:
     """Build the parts of a simulation and check that they fit together.
 
-    A system that is not ``to_run`` has a backend that only describes itself and loads none of its libraries. Raises
-    SceneError if a body overlaps another or a surface of the domain, or the mesh is too coarse for a gap.
+    Raises SceneError if a body overlaps another or a surface of the domain, or the mesh is too coarse for a gap.
     """
     parts = known_parts(scene)
     scene, mechanisms, domain = parts.scene, parts.mechanisms, parts.domain
@@ -74,7 +74,7 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
     if linkage is not None:
         started = linkage.fitting(start, started, 0.0)
     if carried is not None:
-        carried.twist = started
+        carried = carried.starting_with(started)
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
     moved = _sum_linked(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
@@ -88,6 +88,7 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
         loads = replace(loads, travel_speed=travel, flow_speed=fastest_flow(scene, domain))
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
+    problem = _problem(scene, held, carried)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
@@ -106,7 +107,9 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
         controlled=controlled,
         controlled_twist=motion,
         controlled_pose=motion.pose_at,
-        backend=_backend(parts.backend, _problem(scene, held, carried), to_run),
+        fluid=problem if wet else None,
+        backend_type=parts.backend.part,
+        make_backend=cache(partial(parts.backend.part, parts.backend.options, problem)),
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
@@ -121,14 +124,6 @@ def build_system(scene: Scene, to_run: bool = True) -> System:
         linkage=linkage,
         joined=joined_bodies(scene),
     )
-
-
-def _backend(chosen: Selected[FluidBackend], problem: FluidProblem | None, to_run: bool) -> FluidBackend:
-    if to_run:
-        return chosen.part(chosen.options, problem)
-    idle = chosen.part.__new__(chosen.part)
-    FluidBackend.__init__(idle, chosen.options, problem)  # its own may load libraries
-    return idle
 
 
 def _assemblies(scene: Scene) -> IntArray:

@@ -28,8 +28,8 @@ class Feature:
 
 def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     """Yield each feature that a scene may have: whether it is on, and why."""
-    problem, backend = system.backend.problem, type(system.backend)
-    if problem is None or not backend.needs_mesh:
+    problem, backend = system.fluid, system.backend_type
+    if problem is None:
         yield Feature("fluid", False, f"backend {backend.name!r} has no viscosity to work with")
     else:
         yield Feature("fluid", True, f"backend {backend.name!r}")
@@ -53,7 +53,7 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
 
 
 def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
-    backend = type(system.backend)
+    backend = system.backend_type
     yield Feature(
         "mesh", backend.needs_mesh, f"backend {backend.name!r} needs {'one' if backend.needs_mesh else 'none'}"
     )

@@ -100,8 +100,7 @@ def _domain(scene: Scene, registry: Registry) -> Domain:
     part = registry.get(DOMAIN, table.type)
     _refuse_unread(table.options, [part], type(table).model_fields, "domain")
     domain = part(read_table(part.Options, table.options, "domain"), scene.dimension)
-    domain.periodic = periodic_pairs(scene, domain)
-    return domain
+    return domain.with_periodic(periodic_pairs(scene, domain))
 
 
 def _body(scene: Scene, registry: Registry, number: int) -> Body:

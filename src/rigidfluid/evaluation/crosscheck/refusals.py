@@ -17,7 +17,7 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     articulated bodies, joints, springs, held directions, several laws or one for some contacts alone, and laws that
     take energy out, but for ``spring-dashpot``.
     """
-    if system.backend.needs_mesh:
+    if system.has_fluid:
         raise CrosscheckError(
             "fluid.backend", repr(scene.fluid.backend), "'dry'", "Leave the fluid out: --set fluid.backend=dry."
         )
