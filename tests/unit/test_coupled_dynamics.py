@@ -240,6 +240,15 @@ def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_know
     np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)
 
 
+@pytest.mark.parametrize("time", [1e-3, 0.3, 500.0])
+def test_a_growing_load_is_followed_exactly_in_any_number_of_kicks(time):
+    once, often = resisted(-0.5 * LOAD), resisted(-0.5 * LOAD)
+    for bodies, parts in ((once, 1), (often, 40)):
+        bodies.vary_load(time)
+        moved(bodies, time, parts)
+    np.testing.assert_allclose(joined(once.twist), joined(often.twist), rtol=1e-9)
+
+
 def test_an_impulse_at_once_is_answered_by_the_masses_alone():
     bodies = movement()
     impulse = flat_wrench().reshape(BODIES, WIDTH)

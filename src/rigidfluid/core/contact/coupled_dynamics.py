@@ -112,13 +112,14 @@ class CoupledDynamics:
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the velocities by the wrench and all other forces for ``time``."""
         d, model = wrench.force.shape[1], self._model
-        load, self._time = self._load + (self._time + 0.5 * time) * self._growth, self._time + time
+        load, self._time = self._load + self._time * self._growth, self._time + time
         velocity = self._velocity + time * self._rate
         velocity[:, :d] += time * np.einsum("nij,nj->ni", self._own[0], wrench.force)
         velocity[:, d:] += time * np.einsum("nij,nj->ni", self._own[1], wrench.torque)
         force = load + model.modes.T @ flat(wrench).flat[model.velocities]
         decay = model.decay * time
-        self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force
+        growing = time**2 * _growing_phi(decay) * self._growth
+        self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force + growing
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
 
@@ -214,3 +215,10 @@ def _phi(decay: FloatArray) -> FloatArray:
     small = decay < 1e-8
     safe = np.where(small, 1.0, decay)
     return np.where(small, 1.0 - 0.5 * decay, -np.expm1(-safe) / safe)
+
+
+def _growing_phi(decay: FloatArray) -> FloatArray:
+    """Function φ₂ = (1 - φ₁)/z, a half at zero."""
+    small = decay < 1e-4
+    safe = np.where(small, 1.0, decay)
+    return np.where(small, 0.5 - decay / 6.0 + decay**2 / 24.0, (1.0 - _phi(safe)) / safe)
