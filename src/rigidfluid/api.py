@@ -27,7 +27,6 @@ from rigidfluid.core.joints.coordinates import Angle, Coordinate, Displacement, 
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
 from rigidfluid.core.joints.springs import Spring
-from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
@@ -42,6 +41,7 @@ from rigidfluid.core.model.interfaces import (
     Part,
     PartOptions,
 )
+from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
@@ -54,7 +54,6 @@ from rigidfluid.core.model.types import (
     FluidProblem,
     FluidState,
     IntArray,
-    Kinematics,
     Loads,
     Mesh,
     Motion,
@@ -178,8 +177,6 @@ __all__ = [
     "Wrench",
     "axes_along",
     "build_stroke",
-    "component_twist",
-    "free_wrench",
     "hookimpl",
     "load_scene",
     "missing_packages",

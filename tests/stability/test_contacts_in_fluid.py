@@ -235,7 +235,7 @@ def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
     mean = float(volume @ pressure.mean(axis=1) / volume.sum())
     problem = system.fluid
     numbering = Numbering.from_mesh(state.mesh)
-    pin = pinned_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.bodies), state.mesh)
+    pin = pinned_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.carrier), state.mesh)
     apart = np.linalg.norm(state.mesh.points[:, None] - state.pose.position[None], axis=2).min(axis=1)
     inside = np.setdiff1d(np.arange(len(state.mesh.points)), state.mesh.facets)
     assert pin in inside

@@ -11,7 +11,8 @@ import numpy as np
 from rigidfluid.core.joints.joint import Joint, PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import rotate
-from rigidfluid.core.model.linkage import GroundLink
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
+from rigidfluid.core.model.joints import GroundLink
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.registry import JOINT, Registry
@@ -90,7 +91,8 @@ def linkage(
     held = np.zeros(count, dtype=bool)
     held[list(controlled)] = True
     rest = np.zeros((count, 3 if dimension == 2 else 6))
-    return JointLinkage(pose, joints, ground, *masses(count, dimension), held, given or (lambda _: rest))
+    bodies = SingleBodies(*masses(count, dimension), held, pose, split(rest, dimension))
+    return JointLinkage(pose, joints, ground, bodies, given or (lambda _: rest))
 
 
 def moved(pose: Pose, twist: FloatArray, time: float) -> Pose:

@@ -71,5 +71,5 @@ def momenta(it: Simulation) -> FloatArray:
 
 def misfit(it: Simulation) -> float:
     """The greatest of its joints [length | rad]."""
-    assert it.system.linkage is not None
-    return float(np.abs(it.system.linkage.misfit(it.state.free_pose, it.time)).max())
+    assert it.system.joints is not None
+    return float(np.abs(it.system.joints.misfit(it.state.motions.pose, it.time)).max())

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.contact.answers import ALONE, updated_model
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
+from rigidfluid.core.model.kinematics import EACH_ITS_OWN
 from rigidfluid.core.model.reduced_model import ReducedModel
 from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose, Response
 
@@ -30,7 +32,7 @@ class Bodies:
         self.backend = self
         self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
         self.dimension = 2
-        self.mechanisms = None
+        self.motions = SingleBodies(*np.zeros((3, count)), None, None)
         self.twist = np.zeros((count, WIDTH))
 
     def step_answer(self, d0: float) -> FloatArray:
@@ -56,7 +58,7 @@ class Bodies:
         system: Any = self
         state: Any = SimpleNamespace(fluid=None, mesh=object())
         step: Any = SimpleNamespace(
-            derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose, kinematics=None
+            derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose, kinematics=EACH_ITS_OWN
         )
         return updated_model(system, state, step, contacts, self.twist, velocities, known)
 

@@ -15,7 +15,7 @@ from rigidfluid.errors import PluginError, SceneError
 
 def momenta(it):
     """Linear and angular, about the centre of mass."""
-    mechanisms, free = it.system.mechanisms, it.state.free
+    mechanisms, free = it.system.motions, it.state.motions
     inertia = lab_inertia(mechanisms.inertia(it.time), free.pose.orientation)[0]
     spin = turned(free.pose.orientation, mechanisms.spin(it.time))[0]
     return np.append(mechanisms.mass[0] * free.twist.velocity[0], inertia @ free.twist.angular_velocity[0] + spin)
@@ -23,7 +23,7 @@ def momenta(it):
 
 def test_without_strokes_it_is_rigid():
     it = Simulation(scene(angular_velocity=3.0))
-    assert not it.system.mechanisms.driven
+    assert not it.system.motions.driven
     before = it.state.pose.position[2] - it.state.pose.position[0]
     it.go()
     after = it.state.pose.position[2] - it.state.pose.position[0]
@@ -75,7 +75,7 @@ def test_strokes_of_one_component_add_up_and_joints_are_carried_along():
         {"moves": ["c"], "along": [3.0, 0.0], "piecewise": [[0.0, 0.0], [1.0, 0.25]], "repeat": False},
     ]
     it = Simulation(scene(*strokes, parts=links))
-    poses = it.system.mechanisms.poses(it.state.free.pose, 1.0)
+    poses = it.system.motions.poses(it.state.motions.pose, 1.0)
     apart = poses.position - poses.position[0]
     np.testing.assert_allclose(apart[1], [0.5, 0.5], atol=1e-14)
     np.testing.assert_allclose(apart[2], [0.5 - 0.75, 1.0], atol=1e-14)
@@ -86,7 +86,7 @@ def test_a_stroke_may_come_from_a_file_beside_the_scene(tmp_path):
     (tmp_path / "wag.csv").write_text("0.0, 0.0\n0.1, 0.5\n0.2, 0.0\n", encoding="utf-8")
     stroke = {"moves": ["tail"], "about": [0.6, 0.0], "smooth": {"file": str(tmp_path / "wag.csv")}}
     it = Simulation(scene(stroke))
-    assert it.system.mechanisms.poses(it.state.free.pose, 0.1).orientation[2, 0] == pytest.approx(0.5)
+    assert it.system.motions.poses(it.state.motions.pose, 0.1).orientation[2, 0] == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ def test_a_smooth_stroke_has_no_corners():
     it = Simulation(scene(joined="smooth"))
     it.go(0.1)
     assert it.state.count == 5
-    assert it.system.mechanisms.next_corner(0.0) == np.inf
+    assert it.system.motions.next_corner(0.0) == np.inf
 
 
 @pytest.mark.parametrize("end", [0.06, 0.06 + 0.02 / 64])

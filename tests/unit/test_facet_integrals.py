@@ -65,7 +65,7 @@ def test_a_corner_of_slip_faces_holds_both_normals_and_an_open_corner_lets_fluid
         for i, (name, kind) in enumerate(types.items())
     ]
     turned = Mesh(mesh.points @ turn.T, mesh.cells, mesh.facets, mesh.markers)
-    surfaces = Surfaces(Numbering.from_mesh(mesh), turned, faces, 0)
+    surfaces = Surfaces(Numbering.from_mesh(mesh), turned, faces, ())
     frames, at = surfaces.frames, {tuple(point): number for number, point in enumerate(mesh.points)}
     free = {place: int(surfaces.velocity_free[number].sum()) for place, number in at.items()}
     assert [free[place] for place in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 1.0))] == [0] * 4
@@ -82,7 +82,7 @@ def test_faces_across_axes_need_no_axes_of_their_own() -> None:
     faces = [
         BoundaryCondition(i, str(i), "slip", n) for i, n in enumerate(np.array([[1, 0], [-1, 0], [0, 1], [0, -1.0]]))
     ]
-    assert not len(Surfaces(Numbering.from_mesh(mesh), mesh, faces, 0).frames.nodes)
+    assert not len(Surfaces(Numbering.from_mesh(mesh), mesh, faces, ()).frames.nodes)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -92,7 +92,7 @@ def test_no_free_velocity_takes_fluid_through_a_curved_slip_face(dimension: int)
     numbering, d = Numbering.from_mesh(mesh), dimension
     faces = [BoundaryCondition(0, "ball", "slip", None)]
     faces += [BoundaryCondition(1 + i, str(i), "pressure", np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
-    surfaces = Surfaces(numbering, mesh, faces, 0)
+    surfaces = Surfaces(numbering, mesh, faces, ())
     free = np.flatnonzero(surfaces.velocity_free)
     rows, which, values = surfaces.frames.spread(free)
     flux = np.zeros((numbering.nodes, d))
@@ -108,7 +108,7 @@ def test_energy_that_a_quadratic_flow_carries_through_a_face_is_exact(dimension:
     mesh, d = box(dimension, 2), dimension
     faces = [BoundaryCondition(i, str(i), "pressure", np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
     numbering = Numbering.from_mesh(mesh)
-    surfaces = Surfaces(numbering, mesh, faces, 0)
+    surfaces = Surfaces(numbering, mesh, faces, ())
     points = numbering.node_points(mesh.geometry)
     velocity = np.zeros_like(points)
     velocity[:, 0], velocity[:, 1] = 1.0 + points[:, 1] ** 2, points[:, 0]

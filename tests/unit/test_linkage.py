@@ -220,7 +220,7 @@ def carried():
     bodies = CarriedBodies({"it": mechanism}, mass, inertia, np.zeros(3, dtype=bool), start, rest)
     pose = bodies.poses(start, 0.0)
     hinge = joint("hinge", 0, 2, pose.position[2] + [0.0, 0.3, 0.0], stiffness=1.0)
-    links = JointLinkage(pose, [hinge], [], mass, inertia, np.zeros(3, dtype=bool), lambda _: np.zeros((2, 6)), bodies)
+    links = JointLinkage(pose, [hinge], [], bodies, lambda _: np.zeros((2, 6)))
     return bodies, links, start
 
 
@@ -300,12 +300,9 @@ def test_joints_without_a_body_that_moves_freely_are_refused():
 
 def test_parts_of_one_mechanism_are_not_joined(carried):
     bodies, _, start = carried
-    pose, held = bodies.poses(start, 0.0), np.zeros(3, dtype=bool)
-    inertia = np.tile(np.eye(3), (3, 1, 1))
+    pose = bodies.poses(start, 0.0)
     with pytest.raises(SceneError, match=r"found parts of one mechanism"):
-        JointLinkage(
-            pose, [joint("rod", 1, 2, pose.position[1])], [], np.ones(3), inertia, held, lambda _: None, bodies
-        )
+        JointLinkage(pose, [joint("rod", 1, 2, pose.position[1])], [], bodies, lambda _: None)
 
 
 def test_a_joint_that_holds_nothing_is_an_error_of_its_author():

@@ -82,22 +82,22 @@ def apart(simulation):
 
 def assert_evaluated(simulation):
     """Poses are those of the motions at this very time, and no sum of substeps."""
-    evaluated = simulation.system.mechanisms.poses(simulation.state.free.pose, simulation.time)
+    evaluated = simulation.system.motions.poses(simulation.state.motions.pose, simulation.time)
     np.testing.assert_array_equal(simulation.state.pose.position, evaluated.position)
     np.testing.assert_array_equal(simulation.state.pose.orientation, evaluated.orientation)
 
 
 def angular_momentum(simulation):
     """About the centre of mass, of the last motion."""
-    system, free = simulation.system, simulation.state.free
-    inertia = lab_inertia(system.mechanisms.inertia(simulation.time), free.pose.orientation)[-1]
-    spin = turned(free.pose.orientation, system.mechanisms.spin(simulation.time))[-1]
+    system, free = simulation.system, simulation.state.motions
+    inertia = lab_inertia(system.motions.inertia(simulation.time), free.pose.orientation)[-1]
+    spin = turned(free.pose.orientation, system.motions.spin(simulation.time))[-1]
     return inertia @ free.twist.angular_velocity[-1] + spin
 
 
 def ellipsoid_like(system, table):
     """An ellipsoid of the mass and the inertia of the first mechanism, that starts as it does."""
-    mass, inertia = system.mechanisms.mass[0], system.mechanisms.inertia(0.0)[0]
+    mass, inertia = system.motions.mass[0], system.motions.inertia(0.0)[0]
     if len(inertia) == 1:
         squares = np.full(2, 2.0 * inertia[0, 0] / mass)
     else:
@@ -135,7 +135,7 @@ def test_free_rotation_keeps_energy_angular_momentum_and_shape(kind):
 
 def after_impact(it, lever):
     """Velocity along the floor's normal and spin after an elastic impact of a pair that did not turn, at speed 3."""
-    mass, inertia = it.system.mechanisms.mass[0], it.system.mechanisms.inertia(0.0)[0, 0, 0]
+    mass, inertia = it.system.motions.mass[0], it.system.motions.inertia(0.0)[0, 0, 0]
     impulse = 6.0 / (1.0 / mass + lever**2 / inertia)
     return -3.0 + impulse / mass, lever * impulse / inertia
 
@@ -164,7 +164,7 @@ def test_a_bounce_in_three_dimensions_keeps_energy_and_turns_as_in_two():
     it.go(0.095)
     assert it.state.ledger.kinetic == pytest.approx(energy, rel=1e-5)
     lever = -0.15 * np.cos(0.3)
-    inertia, mass = it.system.mechanisms.inertia(0.0)[0, 2, 2], it.system.mechanisms.mass[0]
+    inertia, mass = it.system.motions.inertia(0.0)[0, 2, 2], it.system.motions.mass[0]
     impulse = 6.0 / (1.0 / mass + lever**2 / inertia)
     np.testing.assert_allclose(it.bodies["it"].angular_velocity, [0.0, 0.0, lever * impulse / inertia], atol=0.05)
     assert np.sign(it.bodies["it"].angular_velocity[2]) == np.sign(run_bounce(flat))
@@ -202,7 +202,7 @@ def test_two_of_them_collide_and_keep_momentum_and_energy():
 def test_what_contacts_are_told_of_masses_is_what_kicks_do(dimension):
     other = pair(name="other", dimension=dimension, position=[0.5, 0.2, 0.5][:dimension])
     system = build_system(scene(pair("hammer", dimension, ratio=3.0), other))
-    mechanisms = system.mechanisms
+    mechanisms = system.motions
     inert = mechanisms.mass, mechanisms.inertia(0.0), np.zeros((2, dimension)), mechanisms.controlled, None
     motions = DryDynamics(mechanisms.pose, mechanisms.twist, *inert)
     bodies = ComponentDynamics(motions, mechanisms, 0.0)
@@ -218,7 +218,7 @@ def test_what_contacts_are_told_of_masses_is_what_kicks_do(dimension):
     bodies.kick(wrench, 0.1)
     np.testing.assert_allclose(flat(bodies.twist).ravel(), 0.1 * inverse @ flat(wrench).ravel())
     pushed = 0.1 * np.array([force[:2].sum(axis=0), force[2:].sum(axis=0)])
-    np.testing.assert_allclose(bodies.free.contact.force, pushed)
+    np.testing.assert_allclose(bodies.motions(None).contact.force, pushed)
 
 
 def test_components_do_not_repel_each_other():
@@ -231,9 +231,9 @@ def test_components_do_not_repel_each_other():
 def test_buoyancy_turns_what_is_heavy_at_one_end():
     table = pair(ratio=4.0, angle=0.0)
     it = run(scene(table, density=1.5, gravity=[0.0, -9.81], end=0.2, step=1e-3))
-    lever = it.system.mechanisms.kinematics(it.system.mechanisms.pose, 0.0).arm[:, 0]
+    lever = it.system.motions.kinematics(it.system.motions.pose, 0.0).arm[:, 0]
     torque = lever @ it.system.weight[:, 1]
-    expected = torque / it.system.mechanisms.inertia(0.0)[0, 0, 0]
+    expected = torque / it.system.motions.inertia(0.0)[0, 0, 0]
     early = run(scene(table, density=1.5, gravity=[0.0, -9.81], end=0.01, step=1e-3))
     assert early.bodies["it"].angular_velocity[0] == pytest.approx(0.01 * expected, rel=1e-3)
     assert it.bodies["it"].angular_velocity[0] < -1.0
@@ -328,7 +328,7 @@ def test_one_that_falls_in_a_fluid_keeps_its_shape_and_the_balance_of_energy():
 def remaining_wrench(it, twists, weight):
     """Of the whole: what its BDF2 momentum lacks of fluid and weight, over the fluid's wrench, after equal steps."""
     d0, d1, d2 = derivative_weights(it.state.past_step, it.state.past_step)
-    system, free = it.system, it.state.free
+    system, free = it.system, it.state.motions
     rate = d0 * twists[-1] + d1 * twists[-2] + d2 * twists[-3]
     by_fluid = np.append(free.hydrodynamic.force[0], free.hydrodynamic.torque[0])
     return np.abs(rate - weight - by_fluid).max() / np.abs(by_fluid).max(), system
@@ -342,7 +342,7 @@ def test_newton_and_euler_hold_for_the_whole_with_a_stroke(model):
     momenta = []
 
     def remember(now):
-        mass = now.system.mechanisms.mass[0]
+        mass = now.system.motions.mass[0]
         momenta.append(np.append(mass * now.bodies["it"].velocity, angular_momentum(now)))
 
     it.observe(remember)
@@ -420,7 +420,7 @@ def test_components_are_looked_at_as_bodies_before_a_run():
 
 def test_what_meets_a_wall_is_as_heavy_as_the_whole():
     one, other = (build_system(scene(pair(ratio=ratio), contact=LAW, gravity=[0.0, -9.81])) for ratio in (1.0, 3.0))
-    np.testing.assert_allclose(one.loads.mass, one.mechanisms.mass[0])
+    np.testing.assert_allclose(one.loads.mass, one.motions.mass[0])
     np.testing.assert_allclose(other.loads.weight, 2.0 * one.loads.weight)
     assert one.leverage.min() > 0.0
 

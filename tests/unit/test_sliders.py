@@ -57,7 +57,7 @@ def test_a_mass_on_a_spring_along_an_axis_oscillates_to_second_order(dimension):
         np.testing.assert_allclose(it.bodies["body0"].position, 2.0 + told["displacement"][-1] * axis, atol=1e-13)
         assert told["rate"][-1] == pytest.approx(0.8 * np.sin(4.0), abs=100.0 * step**2)
         assert abs(it.state.ledger.relative_residual) < 3.0 * step**2
-    assert it.system.linkage.frequency == pytest.approx(4.0)
+    assert it.system.joints.frequency == pytest.approx(4.0)
     assert errors[0] < 2e-3
     assert falls(errors)
 
@@ -175,7 +175,7 @@ def test_a_driven_slider_goes_where_its_stroke_says_and_works_as_the_ledger_says
         bars = [bar(1.6, 2.0, *rest, name="a", angular_velocity=spin), bar(2.2, 2.1, *rest, name="b")]
         it = run(linked_scene(bars, [slider("b", "a", axis=AXES[dimension], drive=WAVE)], end=0.4, step=step))
         errors.append(abs(it.state.ledger.residual))
-        stroke = it.system.linkage._parts[0].constraints[-1].drive
+        stroke = it.system.joints._parts[0].constraints[-1].drive
         told = of_joint(it)
         np.testing.assert_allclose(told["displacement"], [stroke.value(time) for time in told["time"]], atol=1e-12)
         np.testing.assert_allclose(told["rate"], [stroke.rate(time) for time in told["time"]], atol=1e-11)

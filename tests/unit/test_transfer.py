@@ -154,7 +154,7 @@ def test_the_operator_moves_a_bodys_nodes_rigidly(dimension):
     numbering = Numbering(cells, dimension + 1)
     nowhere = np.zeros((0, dimension), dtype=np.int64)
     mesh = Mesh(np.zeros((dimension + 1, dimension)), cells, nowhere, np.zeros(0, dtype=np.int64))
-    surfaces = Surfaces(numbering, mesh, (), 1)
+    surfaces = Surfaces(numbering, mesh, (), (0,))
     surfaces.body_nodes = surfaces.motion_nodes = [np.arange(count)]
     constraint = Constraint(surfaces, mesh, np.array([False]))
     points, force = rng.normal(size=(numbering.nodes, dimension)), rng.normal(size=(numbering.nodes, dimension))
@@ -176,7 +176,7 @@ def test_nodes_go_with_their_own_body_and_push_it_alone(dimension):
     nowhere = np.zeros((0, dimension), dtype=np.int64)
     mesh = Mesh(np.zeros((dimension + 1, dimension)), cells, nowhere, np.zeros(0, dtype=np.int64))
     numbering = Numbering(cells, dimension + 1)
-    surfaces = Surfaces(numbering, mesh, (), 3)
+    surfaces = Surfaces(numbering, mesh, (), (0, 1, 2))
     surfaces.body_nodes = on = [np.array([0, 3]), np.array([], dtype=np.int64), np.array([4, 1, 2])]
     points, force, velocity = rng.normal(size=(3, numbering.nodes, dimension))
     position, twist = rng.normal(size=(3, dimension)), rng.normal(size=(3, {2: 3, 3: 6}[dimension]))

@@ -13,7 +13,6 @@ from rigidfluid.core.joints.joint_parts import joint_markers
 from rigidfluid.core.joints.markers import Markers
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Detector
-from rigidfluid.core.model.linkage import Linkage
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.scene import Scene
@@ -37,34 +36,32 @@ def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
     A warning where frequency times step is above 0.2, or bodies touch within half a turn or the domain; an error where
     a drive leads there.
     """
-    if system.linkage is None:
+    if not system.joints.linked.any():
         return
     scene = parts.scene
-    yield _freedom_finding(scene, system, system.linkage)
-    if system.linkage.frequency > 0.0:
-        yield _spring_finding(scene, system, system.linkage)
+    yield _freedom_finding(scene, system)
+    if system.joints.frequency > 0.0:
+        yield _spring_finding(scene, system)
     for joint in joints_of(scene, system.pose):
         if joint.kind.coordinate is not None and joint.second is not None:
             yield _clearance_finding(parts, system, joint, joint.second)
 
 
-def _freedom_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
-    motions = system.pose if system.mechanisms is None else system.mechanisms.pose
-    links = linkage.links(motions, 0.0)
+def _freedom_finding(scene: Scene, system: System) -> Finding:
+    links = system.joints.links(system.motions.pose, 0.0)
     width = links.rows.shape[2]
-    free = width * int(np.count_nonzero(~system.controlled_motions))
+    free = width * int(np.count_nonzero(~system.motions.controlled))
     held = int(np.count_nonzero(links.compliance == 0.0))
     found = {"joints": len(scene.joint), "velocities": free, "held": held, "remaining": free - held}
     text = f"joints and held directions take {held} of the {free} velocities of free motions; {free - held} are left"
     return Finding("note", QUESTION, (), text, found=found)
 
 
-def _spring_finding(scene: Scene, system: System, linkage: Linkage) -> Finding:
+def _spring_finding(scene: Scene, system: System) -> Finding:
     """Compare the frequency of the stiffest spring with the step; added mass slows it, by the mean of all that is
     linked."""
-    frequency, step = linkage.frequency, scene.time.step
-    carrier = np.arange(len(system.mass)) if system.mechanisms is None else system.mechanisms.carrier
-    linked = linkage.linked[carrier]
+    frequency, step = system.joints.frequency, scene.time.step
+    linked = system.joints.linked[system.motions.carrier]
     added = np.trace(system.added_mass, axis1=1, axis2=2)[linked].sum() / system.dimension
     slowed = frequency / np.sqrt(1.0 + added / system.mass[linked].sum())
     found = {"frequency": frequency, "with_added_mass": slowed, "turn_per_step": frequency * step}

@@ -10,7 +10,8 @@ import numpy as np
 
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.model.interfaces import Mechanism
-from rigidfluid.core.model.system import Mechanisms, System
+from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import MeshTable
 from rigidfluid.core.setup.along_strokes import corners, nearest_components, times_along
 from rigidfluid.core.setup.parts import Parts
@@ -36,9 +37,7 @@ def mechanism_findings(parts: Parts, system: System) -> Iterator[Finding]:
     A warning where components come nearer to each other than the mesh resolves, where a component would reach a wall if
     the whole stayed where it starts, and where corners are within steps.
     """
-    carried, scene = system.mechanisms, parts.scene
-    if carried is None:
-        return
+    carried, scene = system.motions, parts.scene
     first = len(carried.mass) - len(carried.names)
     mesh = scene.mesh if system.has_fluid else None
     for number, (name, mechanism) in enumerate(parts.mechanisms.items()):
@@ -78,7 +77,7 @@ def _component_findings(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTab
     yield Finding("warning", QUESTION, names, text, remedy, found, {"size_body": size})
 
 
-def _wall_findings(stroke: _Stroke, end: float, system: System, carried: Mechanisms, parts: Parts) -> Iterator[Finding]:
+def _wall_findings(stroke: _Stroke, end: float, system: System, carried: Motions, parts: Parts) -> Iterator[Finding]:
     """The least gap to a surface of the domain while the whole is where it starts."""
     mine = np.flatnonzero(carried.carrier == stroke.motion)
     shapes = [system.bodies[body] for body in mine]

@@ -39,7 +39,7 @@ def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     """
     pose, weight = system.pose, system.weight
     count = len(system.bodies)
-    together = system.mechanisms is not None or system.linkage is not None
+    together = bool(system.motions.names) or bool(system.joints.linked.any())
     if together or count > _MOST_BODIES or detector.name == _SLOW:
         return pose
     pulled = np.flatnonzero(~system.controlled & np.any(weight != 0.0, axis=1))

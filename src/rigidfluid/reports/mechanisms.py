@@ -13,14 +13,13 @@ from rigidfluid.reports.style import BLACK, PALETTE, new_figure
 
 def mechanism_plot(results: Results) -> Figure:
     """Plot each mechanism's displacement along each axis over time: the whole in black, components in colours."""
-    mechanisms = results.system.mechanisms
-    assert mechanisms is not None
-    names, axes_names = mechanisms.names, results.axes
+    motions, axes_names = results.system.motions, results.axes
+    names = motions.names
     figure = new_figure(8.0, 1.2 + 1.8 * len(axes_names))
     panels = figure.subplots(len(axes_names), len(names), sharex=True, squeeze=False)
-    single = len(mechanisms.mass) - len(names)
+    single = len(motions.mass) - len(names)
     for column, name in enumerate(names):
-        mine = np.flatnonzero(mechanisms.carrier == single + column)
+        mine = np.flatnonzero(motions.carrier == single + column)
         for row, axis in enumerate(axes_names):
             _draw(panels[row][column], results, axis, column, mine.tolist())
         panels[0][column].set_title(escape_dollars(name))

@@ -107,7 +107,7 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
         times = [results.outputs[output][0] for output in shown_outputs(results)]
         yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
     yield "position", "Where the bodies are.", position_plot(results, plane), both
-    if results.system.mechanisms is not None:
+    if results.system.motions.names:
         yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
     yield "speed", "How fast the bodies are.", speed_plot(results), both
     if np.isfinite(results.bodies["gap"]).any():

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import COORDINATES, Row, columns, joint_coordinates, moving
+from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
 from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
@@ -164,9 +165,8 @@ def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArr
 
 
 def _joint_names(system: System) -> tuple[str, ...]:
-    if system.linkage is None:
-        return ()
-    return tuple(one.name for one in system.linkage.readings(system.pose, system.twist, 0.0, None))
+    force = system.joints.unloaded(system.motions.pose).force
+    return tuple(one.name for one in system.joints.readings(system.pose, system.twist, 0.0, force))
 
 
 def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, complete: bool = True) -> list[Row]:

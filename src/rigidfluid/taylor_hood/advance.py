@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import component_twist, given_twist, motion_twist
+from rigidfluid.core.mechanics.kinematics import given_twist
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
@@ -39,7 +39,7 @@ def advance(
     on_faces = pressure_load(surfaces, matrix.node_points, step.time)
     system = _system(discretisation, matrix, on_faces, fluid, step)
     if attempt is not None:
-        guess = motion_twist(step.kinematics, attempt["twist"])
+        guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
     solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
@@ -53,7 +53,7 @@ def advance(
         "pressure": centre_pressure(discretisation, points, solution.pressure),
         "pressure_previous": fluid["pressure"],
         "points_previous": before,
-        "twist": flat(component_twist(step.kinematics, twist)),
+        "twist": flat(step.kinematics.component_twist(twist)),
         "twist_previous": fluid["twist"],
         "position": step.pose.position,
         "position_previous": fluid["position"],
@@ -118,7 +118,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         viscosity=problem.dynamic_viscosity,
         advection=flow - density * mesh_velocity,
         flow=flow - density * frame,
-        position=step.pose.position if step.kinematics is None else step.kinematics.centre,
+        position=step.kinematics.centres(step.pose),
         mass_matrix=step.mass_matrix,
         controlled=step.controlled,
         frame=frame,
@@ -143,7 +143,7 @@ def _system(
     density_of_load = -problem.inert_density * history - matrix.inertia * matrix.frame
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
-    expected = motion_twist(step.kinematics, e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+    expected = step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
     given, driven = given_twist(step)
     return CoupledSystem(
         matrix,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, ClassVar, final
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
 from rigidfluid.core.model.types import (
     Advance,
@@ -117,9 +116,8 @@ class TaylorHoodBackend(FluidBackend):
         if not step.controlled.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
             motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
-        fluid, kinetic = struck(
-            self._projecting_discretisation(mesh), *given, component_twist(step.kinematics, motions)
-        )
+        bodies = step.kinematics.component_twist(motions)
+        fluid, kinetic = struck(self._projecting_discretisation(mesh), *given, bodies)
         self.drop_factors()
         return fluid, kinetic, motions
 

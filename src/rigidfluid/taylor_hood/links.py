@@ -23,8 +23,8 @@ _TOO_WRONG = 1e-4
 
 
 def solve_linked(
-    discretisation: Discretisation, system: CoupledSystem, links: Links | None, tolerance: float
-) -> tuple[Solution, FloatArray | None]:
+    discretisation: Discretisation, system: CoupledSystem, links: Links, tolerance: float
+) -> tuple[Solution, FloatArray]:
     """Solve for forces λ with C u + κ λ = r: (C S⁻¹Cᵀ + κ) λ = r - C u₀, u₀ the twists without them.
 
     S⁻¹ are the twists that wrenches give by the step's matrix. They are known to some digits, and so this is done again
@@ -36,7 +36,7 @@ def solve_linked(
         Solves without links.
     system : CoupledSystem
         The step's equations.
-    links : Links or None
+    links : Links
         C, r and κ.
     tolerance : float
         Relative residual of each solution [1].
@@ -45,17 +45,15 @@ def solve_linked(
     -------
     Solution
         With the forces in it.
-    (c,) array or None
-        λ, of size 0 where there are springs alone; None without links [force | force·length].
+    (c,) array
+        λ [force | force·length].
 
     Raises
     ------
     StepRejected
         If the links do not hold, or two of them hold the same.
     """
-    if links is None:
-        return discretisation.solve(system, tolerance), None
-    if len(links.rate) == 0:  # springs alone
+    if len(links.rate) == 0:
         return discretisation.solve(system, tolerance), np.zeros(0)
     responses = discretisation.twist_response(system.matrix, np.moveaxis(links.rows, 0, -1), _RESPONSE_TOLERANCE)
     compliance: FloatArray = np.tensordot(links.rows, responses, axes=2) + np.diag(links.compliance)

@@ -122,7 +122,7 @@ class SparseDiscretisation:
     ) -> None:
         self.problem = problem
         self.numbering = assembly.numbering
-        self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.bodies, problem.carrier)
+        self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.carrier)
         self._constraint = Constraint(self.surfaces, mesh, controlled)
         self._assembly = assembly
         self._solvers = {True: solver, False: inviscid_solver}

@@ -31,10 +31,8 @@ class Surfaces:
         Its facets say which nodes lie on which surface.
     conditions : sequence of BoundaryCondition
         One per piece of the domain's boundary.
-    bodies : int
-        Number of bodies.
-    carrier : sequence of int, optional
-        The motion that carries each body, where not each moves by itself.
+    carrier : sequence of int
+        The motion that carries each body.
     """
 
     def __init__(
@@ -42,16 +40,16 @@ class Surfaces:
         numbering: Numbering,
         mesh: Mesh,
         conditions: Sequence[BoundaryCondition],
-        bodies: int,
-        carrier: Sequence[int] | None = None,
+        carrier: Sequence[int],
     ) -> None:
         self.numbering = numbering
         self.ranks = mesh.ranks
         d = numbering.dimension
+        bodies = len(carrier)
         on = [mesh.facets[mesh.markers == surface] for surface in range(bodies + len(conditions))]
         nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
         self.body_nodes: list[IntArray] = nodes[:bodies]
-        self.motion_nodes = self.body_nodes if carrier is None else _nodes_of_motions(self.body_nodes, carrier)
+        self.motion_nodes = _nodes_of_motions(self.body_nodes, carrier)
         """Nodes that move with each motion; of a motion of one body, its nodes."""
         self.faces = [Face.from_facets(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
         self.velocity_free: BoolArray = np.ones((numbering.nodes, d), dtype=bool)
@@ -193,7 +191,7 @@ def _nodes_of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) ->
     """The nodes on all bodies that each motion carries."""
     return [
         np.concatenate([nodes for nodes, by in zip(body_nodes, carrier, strict=True) if by == motion])
-        for motion in range(max(carrier) + 1)
+        for motion in range(max(carrier, default=-1) + 1)
     ]
 
 

@@ -13,6 +13,7 @@ from rigidfluid.core.joints.joint_parts import joint_markers
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.joints.markers import Markers, PlacedPair, add_relative_rows
 from rigidfluid.core.mechanics.rigid import moment, rotate
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.core.output.records import columns
@@ -167,9 +168,9 @@ class _Case:
         placed = PlacedJoint("it", joint, 0, second, position.mean(axis=0))
         self.markers = joint_markers(placed, self.start)
         inertia = np.array([1.0, 1.5])[:, None, None] * np.diag([0.3, 0.2, 0.4][: self.spins])
-        self.links = JointLinkage(
-            self.start, [placed], [], np.array([1.0, 1.5]), inertia, np.zeros(2, dtype=bool), self._given
-        )
+        rest = Twist(np.zeros((2, d)), np.zeros((2, self.spins)))
+        bodies = SingleBodies(np.array([1.0, 1.5]), inertia, np.zeros(2, dtype=bool), self.start, rest)
+        self.links = JointLinkage(self.start, [placed], [], bodies, self._given)
 
     def placed(self, pose: Pose) -> PlacedPair:
         """The markers at a pose of the bodies."""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
-from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, jacobian
+from rigidfluid.core.mechanics.kinematics import jacobian
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import lab_inertia, rotate, rotation_between, turned
 from rigidfluid.core.mechanics.time_scheme import momentum
@@ -142,7 +142,7 @@ class MechanismContract:
             self._same_slopes(rigid.reshape(kinematics.given.shape), _difference(moved, 0.0), scale)
             by_time = _difference(lambda time: carried.poses(pose, time), time)
             self._same_slopes(kinematics.given, by_time, scale)
-            both = flat(component_twist(kinematics, twist))
+            both = flat(kinematics.component_twist(twist))
             np.testing.assert_allclose(both, rigid.reshape(both.shape) + kinematics.given, atol=self.tolerance * scale)
 
     def test_wrenches_do_the_same_work_on_the_whole(self, mechanism: Mechanism) -> None:
@@ -152,7 +152,7 @@ class MechanismContract:
         for time in self.times:
             kinematics = carried.kinematics(pose, time)
             rows = random.normal(size=kinematics.given.shape)
-            on_whole = flat(free_wrench(kinematics, Wrench(rows[:, :d], rows[:, d:])))
+            on_whole = flat(kinematics.motion_wrench(Wrench(rows[:, :d], rows[:, d:])))
             expected = jacobian(kinematics).T @ rows.ravel()
             scale = np.abs(expected).max()
             np.testing.assert_allclose(on_whole.ravel(), expected, atol=self.tolerance * scale)
@@ -164,9 +164,9 @@ class MechanismContract:
         for time in self.times:
             kinematics = carried.kinematics(pose, time)
             assert np.abs(mass @ kinematics.arm).max() <= self.tolerance * mass.sum() * self._length(mechanism)
-            parts = momentum(mass, inertia, carried.poses(pose, time), component_twist(kinematics, twist))
+            parts = momentum(mass, inertia, carried.poses(pose, time), kinematics.component_twist(twist))
             d = mechanism.dimension
-            together = flat(free_wrench(kinematics, Wrench(parts[:, :d], parts[:, d:])))[0]
+            together = flat(kinematics.motion_wrench(Wrench(parts[:, :d], parts[:, d:])))[0]
             lab = lab_inertia(carried.inertia(time), pose.orientation)[0]
             spin = lab @ twist.angular_velocity[0] + turned(pose.orientation, carried.spin(time))[0]
             whole = np.append(carried.mass[0] * twist.velocity[0], spin)

@@ -64,7 +64,7 @@ class PetscDiscretisation:
     ) -> None:
         self.problem = problem
         self.numbering = topology.numbering
-        self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.bodies, problem.carrier)
+        self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.carrier)
         self._topology, self._solver, self._inviscid_solver = topology, solver, inviscid_solver
         pressure_pin = (
             pinned_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, LaggedLU) else None

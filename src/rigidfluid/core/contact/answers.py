@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.motions import carriers, reaches, twist_arms
+from rigidfluid.core.mechanics.motions import reaches, twist_arms
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -75,7 +75,7 @@ def _tightness(system: System, contacts: Contacts) -> FloatArray:
     The resistance of a film is in inverse proportion to its thickness; films thicker than a tenth of the radius matter
     little beside the body's own.
     """
-    reach, carrier = reaches(system)[0], carriers(system)
+    reach, carrier = reaches(system)[0], system.motions.carrier
     total = np.ones(len(reach))
     for body in (contacts.body_a, contacts.body_b):
         on_body = body < len(carrier)
@@ -118,7 +118,7 @@ def _asked(
     assert state.mesh is not None
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
-    position = step.pose.position if step.kinematics is None else step.kinematics.centre
+    position = step.kinematics.centres(step.pose)
     group, components = _groups(system, position, bodies), np.unique(turn)
     question = group * len(components) + np.searchsorted(components, turn)
     numbers, question = np.unique(question, return_inverse=True)

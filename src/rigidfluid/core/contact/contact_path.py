@@ -15,24 +15,21 @@ from rigidfluid.core.contact.implicit_contacts import KEPT, implicit_contact_ste
 from rigidfluid.core.contact.proximity import arms, detect, interacting, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan, relative_motion, relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
-from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
-from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics, MotionDynamics
-from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
-from rigidfluid.core.mechanics.dynamics import BodyDynamics, DryDynamics, Turning
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     body_accelerations,
+    body_load,
     carried_bodies,
-    carriers,
     mobility,
     outer_load,
 )
 from rigidfluid.core.mechanics.time_scheme import predict_pose, start_pose
-from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power, wrench_sum
+from rigidfluid.core.mechanics.wrenches import contact_wrench, flat, nothing, power
 from rigidfluid.core.model.contacts import middle, select
+from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.reduced_model import Coupling, uncoupled
-from rigidfluid.core.model.state import CarriedState, FreeMotions, LinkLoad, State
+from rigidfluid.core.model.state import LinkLoad, MotionState, State, unloaded
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
@@ -64,33 +61,27 @@ M = TypeVar("M", bound=BodyDynamics)
 
 
 @dataclass(frozen=True, slots=True)
-class BodyStep(CarriedState):
+class BodyStep:
     """Result of a path: the bodies at the end of a step, and the contacts' impulse and work in it.
 
-    ``pose`` and ``twist`` at the end, ``impulse`` of the contacts [force·time | force·length·time], ``dissipated`` by
-    them, ``friction`` unresolved by the fluid solves, and ``actuator_work`` against contacts of prescribed bodies and
-    walls [energy]; the number of ``substeps``, and the ``coupling`` with the fluid that led here, None without
-    contacts. ``free``: motions that carry the bodies, None where each moves by itself. ``link``: mean loads of joints;
-    None without any, and in a fluid, whose solution has them. ``drag_loss``: in a fluid without inertia ``friction`` is
-    known for certain, and is given here instead.
+    ``pose`` and ``twist`` at the end, and ``motions`` that carry the bodies; ``impulse`` of the contacts [force·time |
+    force·length·time], ``dissipated`` by them, ``friction`` unresolved by the fluid solves, and ``actuator_work``
+    against contacts of prescribed bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the
+    fluid that led here, None without contacts. ``link``: mean loads of joints; zero in a fluid, whose solution has
+    them. ``drag_loss``: in a fluid without inertia ``friction`` is known for certain, and is given here instead.
     """
 
     pose: Pose
     twist: Twist
+    motions: MotionState
     impulse: Wrench
     dissipated: float
     actuator_work: float
     substeps: int
+    link: LinkLoad
     friction: float = 0.0
     coupling: Coupling | None = None
-    free: FreeMotions | None = None
-    link: LinkLoad | None = None
     drag_loss: float = 0.0
-
-    @property
-    def free_impulse(self) -> Wrench:
-        """Impulse of contacts on the motions that carry the bodies."""
-        return self.impulse if self.free is None else self.free.contact
 
 
 def advance_bodies(system: System, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
@@ -106,23 +97,23 @@ def advance_bodies(system: System, state: State, start: float, size: float, coup
     if not system.has_fluid:
         return _advance_free(system, state, start, size)
     if coupling is None or system.law is None:
-        pose = predict_pose(state.free_pose, state.free_twist, state.past_twist, size, state.past_step)
-        return _undisturbed(system, pose, state.free_twist, start + size)
+        pose = predict_pose(state.motions.pose, state.motions.twist, state.past_twist, size, state.past_step)
+        return _undisturbed(system, pose, state.motions.twist, start + size)
     return _advance_coupled(system, system.law, state, start, size, coupling)
 
 
 def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:
     """First step of bodies that touch nothing, repeated with the mean of the motions' twists at its start and its
     ``end`` [time]."""
-    pose = start_pose(state.free_pose, state.free_twist, end_twist, size)
+    pose = start_pose(state.motions.pose, state.motions.twist, end_twist, size)
     return _undisturbed(system, pose, end_twist, end)
 
 
 def _undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodyStep:
     """Result of a step of the motions alone, without contacts."""
+    motions = MotionState(pose, twist, nothing(pose), nothing(pose))
     bodies = carried_bodies(system, pose, twist, end)
-    free = None if system.mechanisms is None else FreeMotions(pose, twist, nothing(pose), nothing(pose))
-    return BodyStep(*bodies, nothing(bodies[0]), 0.0, 0.0, 1, free=free)
+    return BodyStep(*bodies, motions, nothing(bodies[0]), 0.0, 0.0, 1, unloaded(pose))
 
 
 def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
@@ -149,49 +140,29 @@ def _advance_free(system: System, state: State, start: float, size: float) -> Bo
         reach, span = _horizon(system, movement, size)
         path = _resolve(system, system.law, movement, _detected(system, reach), size, span)
     done = movement.link_work
-    if done is None:
-        return path
     dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
     return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))
 
 
 def _dry(system: System, state: State, start: float) -> BodyDynamics:
     """Dynamics of the bodies without a fluid, on motions that joints may link."""
-    free, mechanisms = _dry_motions(system, state, start), system.mechanisms
-    motions: MotionDynamics = free if system.linkage is None else JointedDynamics(free, system.linkage, start)
-    return motions if mechanisms is None else ComponentDynamics(motions, mechanisms, start, _body_load(system, state))
+    linked = system.joints.over(_dry_motions(system, state, start), start)
+    return system.motions.carry(linked, start, body_load(system, state))
 
 
-def _body_load(system: System, state: State) -> Wrench:
-    """Weight and applied wrenches on the bodies, n rows."""
-    weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
-    return weight if state.applied is None else wrench_sum(weight, state.applied)
-
-
-def _dry_motions(system: System, state: State, start: float) -> DryDynamics:
-    now, mechanisms = (state.free_pose, state.free_twist), system.mechanisms
-
+def _dry_motions(system: System, state: State, start: float) -> PushedDynamics:
     def given(elapsed: float) -> FloatArray:
         return system.controlled_twist(start + elapsed)
 
-    if mechanisms is None:
-        load = _body_load(system, state)
-        own = now[0], now[1], system.mass, system.inertia, load.force, system.controlled, given
-        return DryDynamics(*own, None if state.applied is None else Turning(load.torque, arms(system)))
-    carried, controlled = outer_load(system, state).force, mechanisms.controlled
-    if mechanisms.driven:
-        return DrivenDynamics(*now, mechanisms, carried, start, given)
-    return DryDynamics(*now, mechanisms.mass, mechanisms.inertia(start), carried, controlled, given)
+    now, load = state.motions, body_load(system, state)
+    return system.motions.dry_dynamics(now.pose, now.twist, load, arms(system), start, given)
 
 
 def _advance_coupled(
     system: System, law: ForceLaw, state: State, start: float, size: float, coupling: Coupling
 ) -> BodyStep:
     motions, near = _coupled(system, state, coupling), near_contacts(system, state, start, size)
-    linked: MotionDynamics = motions if system.linkage is None else JointedDynamics(motions, system.linkage, start)
-    movement: BodyDynamics = linked
-    if system.mechanisms is not None:
-        movement = ComponentDynamics(linked, system.mechanisms, start)
+    movement = system.motions.carry(system.joints.over(motions, start), start)
     if system.quasi_steady or size <= RESOLVED * _planned(system, law, near, movement, size, size).substep:
         motions.vary_load(size)
     if system.implicit:
@@ -272,7 +243,7 @@ def _implicit_step(
     if isinstance(followed, TrackedPairs):
         _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
-    before, after = _given_twist(system, movement), _given_twist(system, end)
+    before, after = (each.prescribed_twist(system.motions.controlled) for each in (movement, end))
     mean = Twist(
         0.5 * (before.velocity + after.velocity),
         0.5 * (before.angular_velocity + after.angular_velocity),
@@ -343,7 +314,7 @@ def _coupled(system: System, state: State, coupling: Coupling) -> CoupledDynamic
     weight = None
     if system.quasi_steady:
         weight = flat(outer_load(system, state)).flat[coupling.model.velocities]
-    return CoupledDynamics(state.free_pose, state.free_twist, rate, linear, angular, coupling, weight)
+    return CoupledDynamics(state.motions.pose, state.motions.twist, rate, linear, angular, coupling, weight)
 
 
 def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodyStep:
@@ -357,15 +328,15 @@ def _free_flight(system: System, movement: BodyDynamics, size: float) -> BodySte
 
 def _parts(system: System, size: float) -> int:
     """Number of parts of a step that resolve the springs of joints."""
-    return 1 if system.linkage is None else max(1, ceil(size * system.linkage.frequency / SPRING_RESOLUTION))
+    return max(1, ceil(size * system.joints.frequency / SPRING_RESOLUTION))
 
 
 def _arrived(
     movement: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int, friction: float = 0.0
 ) -> BodyStep:
     """Result at the end of a step, or of a part of it."""
-    end = movement.pose, movement.twist, impulse
-    return BodyStep(*end, dissipated, actuator_work, count, friction, free=movement.free)
+    end = movement.pose, movement.twist, movement.motions(impulse), impulse
+    return BodyStep(*end, dissipated, actuator_work, count, unloaded(end[2].pose), friction)
 
 
 def _resolve(
@@ -426,10 +397,8 @@ def _planned(
 
 def _surfaces(system: System) -> Reach:
     """Reach of the surfaces: balls turn in their place, but not as components of a mechanism."""
-    if system.mechanisms is None:
-        return Reach(arms(system), system.leverage)
     radii = np.array([body.bounding_radius for body in system.bodies])
-    alone = np.bincount(carriers(system))[carriers(system)] == 1
+    alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
     return Reach(np.where(alone, arms(system), radii), system.leverage)
 
 
@@ -458,12 +427,11 @@ def contact_forces(system: System, state: State, time: float) -> FloatArray:
 def _bodies_now(system: System, state: State, time: float) -> BodyDynamics:
     """Dynamics of the bodies of a state as contacts see them, in a fluid by the coupling that its solution has shown;
     without joints."""
-    motions: MotionDynamics
     if not system.has_fluid:
         motions = _dry_motions(system, state, time)
     else:
         motions = _coupled(system, state, state.coupling or uncoupled())
-    return motions if system.mechanisms is None else ComponentDynamics(motions, system.mechanisms, time)
+    return system.motions.carry(motions, time)
 
 
 def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> _ContactLoad:
@@ -477,7 +445,7 @@ def _contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: B
     wrench, actuator_work = contact_wrench(contacts, force, movement.pose), 0.0
     driven = _driven(system)
     if driven.any():
-        actuator_work = -float(power(wrench, _given_twist(system, movement))[driven].sum())
+        actuator_work = -float(power(wrench, movement.prescribed_twist(system.motions.controlled))[driven].sum())
     if system.wall_velocity is not None:
         actuator_work += float(np.sum(force * system.wall_velocity(contacts.body_b, middle(contacts))))
     return _ContactLoad(wrench, damping, loss, actuator_work)
@@ -492,16 +460,7 @@ def _loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: F
 
 def _driven(system: System) -> BoolArray:
     """Whether the motion of a body is prescribed, in space or relatively to other bodies (n,)."""
-    if system.mechanisms is None or not system.mechanisms.driven:
-        return system.controlled
-    return np.ones_like(system.controlled)
-
-
-def _given_twist(system: System, movement: BodyDynamics) -> Twist:
-    """Prescribed part of the body twists, n rows, valid for prescribed bodies."""
-    if isinstance(movement, ComponentDynamics):
-        return movement.given_twist(system.controlled_motions)
-    return movement.twist
+    return np.ones_like(system.controlled) if system.motions.driven else system.controlled
 
 
 def _refuse_overlap(system: System, contacts: Contacts) -> None:

@@ -42,11 +42,11 @@ def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatAr
 def _on_the_mesh(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:
     """Twists (n, d+k) by the poses, differenced as the mesh's velocity is; balls turn without it, as on their path."""
     d0, _, d2 = step.derivative
-    found = d0 * _way(state.free_pose, path.free_pose)
+    found = d0 * _way(state.motions.pose, path.motions.pose)
     if state.past is not None:
-        found = found - d2 * _way(state.past.pose, state.free_pose)
+        found = found - d2 * _way(state.past.pose, state.motions.pose)
     is_ball = round_motions(system)
-    found[is_ball, system.dimension :] = path.free_twist.angular_velocity[is_ball]
+    found[is_ball, system.dimension :] = path.motions.twist.angular_velocity[is_ball]
     return np.asarray(found)
 
 
@@ -59,4 +59,4 @@ def _way(start: Pose, end: Pose) -> FloatArray:
 def _extrapolated(state: State, step: Step) -> FloatArray:
     """Twists (n, d+k) at the end of the step, extrapolated from those before."""
     e0, e1 = step.extrapolation
-    return np.asarray(e0 * flat(state.free_twist) + e1 * flat(state.past_twist or state.free_twist))
+    return np.asarray(e0 * flat(state.motions.twist) + e1 * flat(state.past_twist or state.motions.twist))

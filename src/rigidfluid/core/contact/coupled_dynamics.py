@@ -8,15 +8,16 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import LinkWork, block_diagonal
+from rigidfluid.core.mechanics.dynamics import block_diagonal
+from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.state import FreeMotions
-from rigidfluid.core.model.types import FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 
 
-class CoupledDynamics:
+class CoupledDynamics(OwnMotions):
     """Dynamics dU/dt = A + M⁻¹F, and of the velocities in a `ReducedModel` dU/dt = M⁻¹ (Φ + F - R (U - Uⁿ)), in modes
     exactly.
 
@@ -27,9 +28,6 @@ class CoupledDynamics:
     [force | force·length]: all else of Φ - R (U - Uⁿ) is then its friction, known at all times.
     """
 
-    free: FreeMotions | None = None
-    kinematics: Kinematics | None = None
-    link_work: LinkWork | None = None
     resisted: bool = True
 
     def __init__(

@@ -7,7 +7,7 @@ import numpy as np
 from rigidfluid.core.contact.answers import updated_model
 from rigidfluid.core.contact.contact_path import BodyStep, near_contacts
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.motions import carriers, newly_applied, outer_load, round_motions, twist_arms
+from rigidfluid.core.mechanics.motions import newly_applied, outer_load, round_motions, twist_arms
 from rigidfluid.core.mechanics.time_scheme import derivative_weights
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within
@@ -34,12 +34,12 @@ def expected_coupling(system: System, state: State, time: float, size: float) ->
     if len(near) == 0:
         return None
     velocities = _velocities(system, near)
-    step = step_to(system, state, time + size, size, state.free_pose, nothing(state.free_pose), None)
+    step = step_to(system, state, time + size, size, state.motions.pose, nothing(state.motions.pose), None)
     known = None if state.coupling is None else state.coupling.model
-    model = updated_model(system, state, step, state.contacts, flat(state.free_twist), velocities, known)
+    model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
     before, expected = _load_before(system, state, model), _expected_load(system, state, model)
     if system.quasi_steady:  # the fluid remembers nothing: Φ is its force on the bodies now, and what pulls them
-        now = _components(model, flat(outer_load(system, state)) + flat(state.free_hydrodynamic))
+        now = _components(model, flat(outer_load(system, state)) + flat(state.motions.hydrodynamic))
         before = expected = np.where(np.isnan(before), now, before)
     return Coupling(model, expected, before, np.zeros(len(velocities)))
 
@@ -49,18 +49,17 @@ def shown_coupling(system: System, state: State, candidate: State, path: BodySte
     at its end, and loads in it, of the same velocities."""
     assert path.coupling is not None
     used = path.coupling
-    twist, velocities = flat(candidate.free_twist), used.model.velocities
+    twist, velocities = flat(candidate.motions.twist), used.model.velocities
     model = updated_model(system, state, step, candidate.contacts, twist, velocities, used.model)
-    past = state.past_twist or state.free_twist
-    twists = tuple(_components(model, flat(twist)) for twist in (candidate.free_twist, state.free_twist, past))
-    before = (flat(state.free_contact) + _applied(state)) * (state.past_step or 0.0)
+    past = state.past_twist or state.motions.twist
+    twists = tuple(_components(model, flat(twist)) for twist in (candidate.motions.twist, state.motions.twist, past))
+    before = (flat(state.motions.contact) + _applied(state)) * (state.past_step or 0.0)
     applied = _applied(candidate)
     impulses = _components(model, step.impulse + (candidate.past_step or 0.0) * applied), _components(model, before)
     load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
     load = load + _components(model, applied)
-    if candidate.link is not None:
-        load = load - _components(model, candidate.link.wrench)
-    missed = _components(model, flat(path.free_twist)) - twists[0]
+    load = load - _components(model, candidate.link.wrench)
+    missed = _components(model, flat(path.motions.twist)) - twists[0]
     return Coupling(model, load, used.load_before, used.correction + _correction(system, model, step, missed))
 
 
@@ -90,7 +89,7 @@ def unsteady(system: System, state: State, path: BodyStep, size: float) -> bool:
     if path.coupling is None:
         return False
     arms = twist_arms(system)
-    now, before = flat(path.free_impulse) / arms, size * flat(state.free_contact) / arms
+    now, before = flat(path.motions.contact) / arms, size * flat(state.motions.contact) / arms
     return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
 
 
@@ -105,13 +104,13 @@ def settled(system: System, found: Coupling, path: BodyStep, state: State, candi
     used, model, size = path.coupling, found.model, (candidate.past_step or 0.0)
     if len(model.velocities) == 0:
         return True
-    impulse, d0 = _components(model, flat(path.free_impulse)), float(derivative_weights(size, state.past_step)[0])
+    impulse, d0 = _components(model, flat(path.motions.contact)), float(derivative_weights(size, state.past_step)[0])
 
     def given(answering: ReducedModel, force: FloatArray) -> FloatArray:
         return answering.answer(d0, force) if system.quasi_steady else answering.mobility @ force
 
     gained = given(model, impulse)
-    before, after = (_components(model, flat(twist)) for twist in (state.free_twist, candidate.free_twist))
+    before, after = (_components(model, flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
     by_load = size * (given(model, found.load) - given(used.model, used.load))
     by_answer = gained - given(used.model, impulse)
     missed = model.answer(d0, found.correction - used.correction) / d0
@@ -126,16 +125,15 @@ def _velocities(system: System, near: Contacts) -> IntArray:
 
     Motions that joints hold are always among them, as joint forces are found from the responses of all.
     """
-    count, d, carrier = len(system.bodies), system.dimension, carriers(system)
+    count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
     width = d + (1 if d == 2 else 3)
-    touching = np.zeros(len(system.controlled_motions), dtype=bool)
+    touching = np.zeros(len(system.motions.controlled), dtype=bool)
     touching[carrier[near.body_a]] = True
     touching[carrier[near.body_b[near.body_b < count]]] = True
-    moves = np.repeat((touching & ~system.controlled_motions)[:, None], width, axis=1)
+    moves = np.repeat((touching & ~system.motions.controlled)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
         moves[round_motions(system), d:] = False
-    if system.linkage is not None:
-        moves[system.linkage.linked & ~system.controlled_motions] = True
+    moves[system.joints.linked & ~system.motions.controlled] = True
     return np.flatnonzero(moves)
 
 
@@ -147,7 +145,7 @@ def _load_before(system: System, state: State, model: ReducedModel) -> FloatArra
         return before
     latest = state.coupling.model.velocities
     _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
-    change = flat(state.free_twist) - flat(state.past.twist)
+    change = flat(state.motions.twist) - flat(state.past.twist)
     slowed = state.coupling.model.friction_times(_components(state.coupling.model, change))
     added = _components(model, flat(newly_applied(system, state)))
     before[here] = (state.coupling.load - slowed)[there] + added[here]
@@ -157,8 +155,8 @@ def _load_before(system: System, state: State, model: ReducedModel) -> FloatArra
 def _expected_load(system: System, state: State, model: ReducedModel) -> FloatArray:
     if state.past is None:
         return _components(model, flat(outer_load(system, state)))
-    change = _components(model, flat(state.free_twist) - flat(state.past.twist))
-    pushed = flat(state.free_contact) + (0.0 if state.link is None else state.link.wrench)
+    change = _components(model, flat(state.motions.twist) - flat(state.past.twist))
+    pushed = flat(state.motions.contact) + state.link.wrench
     impulse = _components(model, pushed) * state.past.step
     applied = _components(model, flat(newly_applied(system, state)))
     return expected_load(model, change, impulse, state.past.step) + applied
@@ -167,7 +165,7 @@ def _expected_load(system: System, state: State, model: ReducedModel) -> FloatAr
 def _applied(state: State) -> FloatArray:
     """Mean applied wrench on the motions in the step that led to a ``state``, (N, d+k)."""
     if state.past is None or state.past.applied is None:
-        return np.zeros_like(flat(state.free_contact))
+        return np.zeros_like(flat(state.motions.contact))
     return flat(state.past.applied)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.model.contacts import middle
+from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.types import Contacts
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.substep import relative_motion, relative_velocity
-from rigidfluid.core.mechanics.dynamics import BodyDynamics
-from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
+from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray, Kinematics, Motion, Pose, Twist, Wrench
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.types import Contacts, FloatArray, Motion, Pose, Twist, Wrench
 from rigidfluid.core.model.wall import WallVelocities
 from rigidfluid.errors import StepRejected
 
@@ -119,7 +119,7 @@ class _Iterate(NamedTuple, Generic[M]):
 
     movement: M
     pose: Pose
-    place: Kinematics | None
+    place: Kinematics
     middle: Contacts
     motion: Motion
     way: FloatArray
@@ -154,22 +154,22 @@ def _evaluate(
     start: Contacts,
     contacts_at: Callable[[Pose], Contacts],
     wrench: Wrench,
-    place: Kinematics | None,
+    place: Kinematics,
     size: float,
     wall_velocity: WallVelocities | None,
 ) -> _Iterate[M]:
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
-    kicked = _motion_twist(trial)
+    kicked = trial.motion_twist
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
     motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
     trial.drift(0.5 * size)
-    drifted = _motion_twist(trial)
+    drifted = trial.motion_twist
     trial.kick(wrench, 0.5 * size, place)
     drift = kicked, drifted
-    twist = _mean(drift if trial.resisted else (_motion_twist(movement), *drift, _motion_twist(trial)))
-    velocity = relative_velocity(middle, pose, component_twist(kinematics, twist))
+    twist = _mean(drift if trial.resisted else (movement.motion_twist, *drift, trial.motion_twist))
+    velocity = relative_velocity(middle, pose, kinematics.component_twist(twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
     motion = replace(motion, velocity=velocity)
@@ -203,11 +203,6 @@ def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: Fl
     enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
     moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
-
-
-def _motion_twist(movement: BodyDynamics) -> Twist:
-    """Twists of the motions that carry the bodies, or of the bodies where each moves by itself."""
-    return movement.twist if movement.free is None else movement.free.twist
 
 
 def _mean(twists: Sequence[Twist]) -> Twist:

@@ -10,9 +10,9 @@ import numpy as np
 
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.stiffness import contacts_on_the_way, greatest_stiffness
-from rigidfluid.core.mechanics.dynamics import BodyDynamics
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import middle, select
+from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist

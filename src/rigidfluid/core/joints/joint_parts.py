@@ -9,7 +9,7 @@ from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.link_parts import LinkParts
 from rigidfluid.core.joints.markers import MarkerPair, marker
 from rigidfluid.core.joints.springs import GroundSpring, Spring
-from rigidfluid.core.model.linkage import GroundLink
+from rigidfluid.core.model.joints import GroundLink
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.errors import PluginError, SceneError
 

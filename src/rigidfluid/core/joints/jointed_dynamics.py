@@ -11,12 +11,12 @@ from scipy import sparse
 
 from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.joint_forces import joint_forces
-from rigidfluid.core.mechanics.component_dynamics import MotionDynamics
-from rigidfluid.core.mechanics.dynamics import LinkWork
+from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
-from rigidfluid.core.model.linkage import Linkage
-from rigidfluid.core.model.state import FreeMotions
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
+from rigidfluid.core.model.dynamics import LinkWork, PushedDynamics
+from rigidfluid.core.model.joints import Joints
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50
@@ -28,18 +28,20 @@ _PARTS = 4
 """Number of parts of a time in which accelerations are sampled."""
 
 
-class PushedDynamics(MotionDynamics, Protocol):
-    """Motions that take impulses."""
+class PlacedLinks(Joints, Protocol):
+    """Joints that close by impulses, with springs."""
 
-    def begin(self, ahead: float) -> None:
-        """Use, until the first drift, the twist after a corner that may be at the start: rates are read ``ahead`` later
-        [time]."""
+    def misfit(self, motions: Pose, time: float) -> FloatArray:
+        """Constraint violation of rigid links, a row for each [length | rad]."""
 
-    def push(self, impulse: FloatArray) -> None:
-        """Change the twist as impulses (N, d+k) at once do [force·time | force·length·time]."""
+    def tolerance(self, motions: Pose) -> FloatArray:
+        """Constraint violations that are rounding there, a row for each [length | rad]."""
+
+    def spring_wrench(self, motions: Pose, time: float) -> Wrench:
+        """Wrench of springs on the motions, N rows."""
 
 
-class JointedDynamics:
+class JointedDynamics(OwnMotions):
     """RATTLE: kicks by impulses Cᵀ J after which twists are those that joints allow, drifts after impulses Cᵀ J at
     their start with which rigid joints fit at their end.
 
@@ -50,15 +52,12 @@ class JointedDynamics:
     112 (1994) 117, doi:10.1006/jcph.1994.1085.
     """
 
-    free: FreeMotions | None = None
-    kinematics: Kinematics | None = None
-
-    def __init__(self, inner: PushedDynamics, linkage: Linkage, time: float) -> None:
+    def __init__(self, inner: PushedDynamics, linkage: PlacedLinks, time: float) -> None:
         self._inner, self._linkage, self._time = inner, linkage, time
         self._here = self._rows_here()
         self._rigid: BoolArray = self._here.links.compliance == 0.0
         nothing_yet = np.zeros_like(self._here.links.rate), np.zeros_like(flat(self.twist))
-        self.link_work = LinkWork(*nothing_yet, 0.0, 0.0)
+        self._work = LinkWork(*nothing_yet, 0.0, 0.0)
         self._begun = not linkage.driven
 
     @property
@@ -69,6 +68,10 @@ class JointedDynamics:
     @property
     def twist(self) -> Twist:
         return self._inner.twist
+
+    @property
+    def link_work(self) -> LinkWork:
+        return self._work
 
     @property
     def friction_loss(self) -> float:
@@ -200,9 +203,9 @@ class JointedDynamics:
     ) -> None:
         """Add to the work of joints: impulses (c,) here, at the rates here, and works of drives, dampers and
         springs."""
-        so_far, pushed = self.link_work, self._motion_impulse(impulse) + springs
+        so_far, pushed = self._work, self._motion_impulse(impulse) + springs
         driven += float(impulse @ self._here.links.rate)
-        self.link_work = LinkWork(
+        self._work = LinkWork(
             so_far.impulse + impulse, so_far.pushed + pushed, so_far.driven + driven, so_far.damped + damped
         )
 

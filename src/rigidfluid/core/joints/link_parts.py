@@ -12,7 +12,7 @@ from rigidfluid.core.joints.coordinates import Coordinate
 from rigidfluid.core.joints.markers import PlacedPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.model.linkage import LinkReading
+from rigidfluid.core.model.joints import LinkReading
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from itertools import pairwise
-from math import inf
 
 import numpy as np
 from scipy import sparse
@@ -15,15 +15,18 @@ from rigidfluid.core.joints.coordinates import units_by_name
 from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.joints.joint_parts import ground_parts, joint_parts
+from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.joints.link_parts import LinkParts
 from rigidfluid.core.joints.markers import Markers, PlacedPair
 from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refuse_void
-from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench
-from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, moment, rotate
-from rigidfluid.core.mechanics.wrenches import flat, nothing
-from rigidfluid.core.model.linkage import GroundLink, LinkReading
-from rigidfluid.core.model.system import Mechanisms
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Links, Pose, Twist, Wrench
+from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate
+from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
+from rigidfluid.core.model.dynamics import PushedDynamics
+from rigidfluid.core.model.joints import GroundLink, LinkReading
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.state import LinkLoad, unloaded
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 ROUNDING = 1e-13
@@ -33,17 +36,15 @@ _MOST_ITERATIONS = 30
 
 
 class JointLinkage:
-    """Joints and ground links between n bodies, as a `Linkage` of the N motions that carry them.
+    """Joints and ground links between n bodies, as `Joints` of the N motions that carry them.
 
     Its rows are, in this order, those of the joints as they are given, then those of the ground links. A joint has the
     rows of its kind's constraints. A ground link has rows for the forces and torques that hold the body, then those of
     its dampers.
 
-    ``pose``, ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the bodies' frames [mass·length²] and ``controlled`` (n,)
-    are those of the bodies at the start; ``controlled_twist`` gives the prescribed twists (N, d+k) at a time;
-    ``mechanisms`` is None where each body is a motion; ``resistance`` (n, d+k) is a lower bound of that of a fluid
-    without inertia [force·time/length | force·length·time]. Raises SceneError if a joint holds nothing that moves
-    freely, or what other joints hold already.
+    ``pose`` is that of the bodies at the start, on ``motions``; ``controlled_twist`` gives the prescribed twists (N,
+    d+k) at a time; ``resistance`` (n, d+k) is a lower bound of that of a fluid without inertia [force·time/length |
+    force·length·time]. Raises SceneError if a joint holds nothing that moves freely, or what other joints hold already.
 
     ``clusters`` (N,) is equal for motions that joints link, directly or over others, and is a motion's own number where
     it is linked to nothing, or to the ground alone. ``frequency`` is that of the springs on the masses without joints,
@@ -57,18 +58,12 @@ class JointLinkage:
         pose: Pose,
         joints: Sequence[PlacedJoint],
         ground: Sequence[GroundLink],
-        mass: FloatArray,
-        inertia: FloatArray,
-        controlled: BoolArray,
+        motions: Motions,
         controlled_twist: Callable[[float], FloatArray],
-        mechanisms: Mechanisms | None = None,
         resistance: FloatArray | None = None,
     ) -> None:
-        self._mechanisms, self._controlled_twist = mechanisms, controlled_twist
-        self._mass = mass if mechanisms is None else mechanisms.mass
-        self._own_inertia = inertia
-        self._controlled = controlled if mechanisms is None else mechanisms.controlled
-        self._carrier = np.arange(len(mass)) if mechanisms is None else mechanisms.carrier
+        self._motions, self._controlled_twist = motions, controlled_twist
+        self._controlled, self._carrier = motions.controlled, motions.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
         self._slices = _slices(self._parts)
         self._constraints = [one for part in self._parts for one in part.constraints]
@@ -79,22 +74,19 @@ class JointLinkage:
         self._are_lengths = np.concatenate([np.zeros(0, dtype=bool), *lengths])[self._compliance == 0.0]
         self.coordinates: Mapping[str, str] = units_by_name(joint.kind.coordinate for joint in joints)
         drives = [joint.kind.drive for joint in joints if joint.kind.drive is not None]
-        self._corners = [drive.next_corner for drive in drives]
-        if mechanisms is not None:
-            self._corners.append(mechanisms.next_corner)
+        self._corners = [*(drive.next_corner for drive in drives), motions.next_corner]
         self.linked, self.clusters = self._link_clusters(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
-        moved = mechanisms is not None and mechanisms.driven
-        self.driven = moved or bool(self._controlled.any()) or bool(drives)
-        start = pose if mechanisms is None else mechanisms.pose
+        self.driven = motions.driven or bool(self._controlled.any()) or bool(drives)
         refuse_void(self._constraints, self._carrier, self._controlled)
-        refuse_redundant(self._constraints, self._mass_weighted_rows(self._rigid(self.links(start, 0.0).rows), start))
-        self.frequency = self._greatest_rate(start, resistance)
+        rigid = self._rigid(self.links(motions.pose, 0.0).rows)
+        refuse_redundant(self._constraints, self._mass_weighted_rows(rigid, motions.pose))
+        self.frequency = self._greatest_rate(motions.pose, resistance)
 
     def next_corner(self, time: float) -> float:
         """The first time after this at which rates of links jump; infinite if there is none [time]."""
-        return min((corner(time) for corner in self._corners), default=inf)
+        return min(corner(time) for corner in self._corners)
 
     def links(self, motions: Pose, time: float) -> Links:
         """C, rates and compliances, where the ``motions`` are there."""
@@ -107,6 +99,10 @@ class JointLinkage:
             rate[here] = one.rate(time)
         rate -= np.einsum("cni,ni->c", rows, self._prescribed_twist(bodies, kinematics, time))
         return Links(self._rows_on_motions(rows, kinematics), rate, self._compliance)
+
+    def unloaded(self, motions: Pose) -> LinkLoad:
+        """Zero loads, a force for each row."""
+        return replace(unloaded(motions), force=np.zeros(len(self._compliance)))
 
     def misfit(self, motions: Pose, time: float) -> FloatArray:
         """Constraint violations of rigid links, one for each row [length | rad]."""
@@ -148,7 +144,20 @@ class JointLinkage:
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Wrenches of the springs on the N motions."""
         bodies, kinematics = self._bodies(motions, time)
-        return free_wrench(kinematics, self._pull(bodies))
+        return kinematics.motion_wrench(self._pull(bodies))
+
+    def with_springs(self, wrench: Wrench, motions: Pose, time: float) -> Wrench:
+        """Sum of the ``wrench`` on the motions and that of the springs."""
+        return wrench_sum(wrench, self.spring_wrench(motions, time))
+
+    def load(self, links: Links, force: FloatArray, motions: Pose, time: float) -> LinkLoad:
+        """Load of links with forces (c,), Cᵀ force on the motions, and of the springs there."""
+        wrench = np.tensordot(force, links.rows, axes=1)
+        return LinkLoad(force, wrench + flat(self.spring_wrench(motions, time)))
+
+    def over(self, motions: PushedDynamics, start: float) -> JointedDynamics:
+        """Dynamics of the motions with these joints from ``start`` on [time]."""
+        return JointedDynamics(motions, self, start)
 
     def spring_energy(self, motions: Pose, time: float) -> float:
         """Energy stored in springs [energy]."""
@@ -165,14 +174,13 @@ class JointLinkage:
     def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
         return zip(self._constraints, self._markers.placed(bodies), strict=True)
 
-    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray | None) -> list[LinkReading]:
+    def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray) -> list[LinkReading]:
         """Readings of all joints and then all ground links; ``bodies`` and ``twist`` are those of the n bodies,
-        ``force`` (c,) that of the rows, None while it is unknown."""
-        known = np.zeros(len(self._compliance)) if force is None else force
+        ``force`` (c,) that of the rows."""
         placed, readings = iter(self._markers.placed(bodies)), []
         for part, rows in zip(self._parts, self._slices, strict=True):
             own = [next(placed) for _ in part.constraints]
-            readings.append(part.reading(own, bodies, twist, time, known[rows]))
+            readings.append(part.reading(own, bodies, twist, time, force[rows]))
         return readings
 
     def following(self, controlled_twist: Callable[[float], FloatArray]) -> JointLinkage:
@@ -187,26 +195,18 @@ class JointLinkage:
             spring.add_wrench(bodies, wrench)
         return wrench
 
-    def _bodies(self, motions: Pose, time: float) -> tuple[Pose, Kinematics | None]:
-        if self._mechanisms is None:
-            return motions, None
-        return self._mechanisms.poses(motions, time), self._mechanisms.kinematics(motions, time)
+    def _bodies(self, motions: Pose, time: float) -> tuple[Pose, Kinematics]:
+        return self._motions.poses(motions, time), self._motions.kinematics(motions, time)
 
-    def _prescribed_twist(self, bodies: Pose, kinematics: Kinematics | None, time: float) -> FloatArray:
+    def _prescribed_twist(self, bodies: Pose, kinematics: Kinematics, time: float) -> FloatArray:
         """Twists of the bodies (n, d+k) by prescribed motions and strokes alone, free motions at rest."""
         d = bodies.position.shape[1]
         held = np.where(self._controlled[:, None], self._controlled_twist(time), 0.0)
-        return flat(component_twist(kinematics, Twist(held[:, :d], held[:, d:])))
+        return flat(kinematics.component_twist(Twist(held[:, :d], held[:, d:])))
 
-    def _rows_on_motions(self, rows: FloatArray, kinematics: Kinematics | None) -> FloatArray:
+    def _rows_on_motions(self, rows: FloatArray, kinematics: Kinematics) -> FloatArray:
         """C G of rows (c, n, d+k) on the bodies, zero for given motions (c, N, d+k)."""
-        if kinematics is not None:
-            d = kinematics.arm.shape[1]
-            turning = moment(np.broadcast_to(kinematics.arm, rows[..., :d].shape), rows[..., :d])
-            whole = np.concatenate([rows[..., :d], rows[..., d:] + turning], axis=2)
-            total = carried_sum(kinematics.carrier, np.swapaxes(whole, 0, 1), len(kinematics.centre))
-            rows = np.swapaxes(total, 0, 1)
-        return np.asarray(rows * ~self._controlled[:, None])
+        return np.asarray(kinematics.motion_rows(rows) * ~self._controlled[:, None])
 
     def _rigid(self, rows: FloatArray) -> FloatArray:
         return np.asarray(rows[self._compliance == 0.0])
@@ -221,10 +221,10 @@ class JointLinkage:
     def _inverse_masses(self, motions: Pose, time: float) -> FloatArray:
         """M⁻¹ of each motion (N, d+k, d+k)."""
         count, d = motions.position.shape
-        inertia = self._own_inertia if self._mechanisms is None else self._mechanisms.inertia(time)
+        inertia = self._motions.inertia(time)
         width = d + inertia.shape[1]
         blocks = np.zeros((count, width, width))
-        blocks[:, :d, :d] = np.eye(d) / self._mass[:, None, None]
+        blocks[:, :d, :d] = np.eye(d) / self._motions.mass[:, None, None]
         blocks[:, d:, d:] = inverse_lab_inertia(inertia, motions.orientation)
         return blocks
 
@@ -253,7 +253,7 @@ class JointLinkage:
         """Mask (N,) of the motions that have links, and the lowest number (N,) of those that each is linked with."""
         from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
 
-        count, linked = len(self._mass), np.zeros(len(self._mass), dtype=bool)
+        count, linked = len(self._controlled), np.zeros(len(self._controlled), dtype=bool)
         linked[
             [self._carrier[body] for body in (*ground, *(one for pair in joints for one in pair if one is not None))]
         ] = True

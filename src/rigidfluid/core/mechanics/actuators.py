@@ -7,13 +7,14 @@ import numpy as np
 from rigidfluid.core.mechanics.motions import kinematics_now
 from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Kinematics, Pose, Twist
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 
 def actuator_work(
-    system: System, state: State, kinematics: Kinematics | None, pose: Pose, twist: Twist, size: float
+    system: System, state: State, kinematics: Kinematics, pose: Pose, twist: Twist, size: float
 ) -> float:
     """Work ∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W weight and applied wrenches
     [energy].
@@ -22,9 +23,9 @@ def actuator_work(
     + g) the free motions balance their share by Newton–Euler's equations. ``state`` is that at the start;
     ``kinematics``, ``pose`` and ``twist`` are those of the bodies at the end; ``size`` is the step [time].
     """
-    before = kinematics_now(system, state)
-    if before is None or kinematics is None or system.mechanisms is None or not system.mechanisms.driven:
+    if not system.motions.driven:
         return 0.0
+    before = kinematics_now(system, state)
     gained: FloatArray = momentum(system.mass, system.inertia, pose, twist)
     gained = gained - momentum(system.mass, system.inertia, state.pose, state.twist)
     gained[:, : system.dimension] -= size * system.weight

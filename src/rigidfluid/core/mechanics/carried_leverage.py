@@ -8,26 +8,24 @@ import numpy as np
 
 from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.mechanics.leverage import leverage_at, most_leverage, surface_points
-from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import FloatArray, Pose
 
 _TIMES = 33
 """Number of times at which a mechanism that changes its shape is sampled."""
 
 
-def leverages(bodies: Sequence[Body], carried: CarriedBodies | None, end: float) -> FloatArray:
+def leverages(bodies: Sequence[Body], motions: Motions, end: float) -> FloatArray:
     """Greatest m (r × n)·I⁻¹(r × n) on each surface (n,), with m and I of the body alone or of the motion that carries
     it, whichever gives more [1]; mechanisms that change their shape are sampled until ``end`` [time]."""
     alone = np.array([most_leverage(body) for body in bodies])
-    if carried is None:
-        return alone
-    times = np.linspace(0.0, end, _TIMES) if carried.driven else np.zeros(1)
-    together = np.max([_within(bodies, carried, time) for time in times], axis=0)
+    times = np.linspace(0.0, end, _TIMES) if motions.driven else np.zeros(1)
+    together = np.max([_within(bodies, motions, time) for time in times], axis=0)
     return np.asarray(np.maximum(alone, together))
 
 
-def _within(bodies: Sequence[Body], carried: CarriedBodies, time: float) -> FloatArray:
+def _within(bodies: Sequence[Body], carried: Motions, time: float) -> FloatArray:
     """Leverage of each body as part of its mechanism at one time (n,), zero for bodies that move by themselves [1]."""
     motions = Pose(np.zeros_like(carried.pose.position), np.zeros_like(carried.pose.orientation))
     motions.orientation[:, : motions.orientation.shape[1] - 3] = 1.0  # a quaternion's scalar; nothing in 2D

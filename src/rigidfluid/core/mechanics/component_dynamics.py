@@ -8,20 +8,23 @@ from typing import Protocol, Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.dynamics import BodyDynamics, LinkWork
-from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, jacobian, levers
+from rigidfluid.core.mechanics.kinematics import CarriedKinematics, jacobian, levers
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.model.state import FreeMotions
-from rigidfluid.core.model.system import Mechanisms
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
+from rigidfluid.core.model.dynamics import LinkWork, MotionDynamics
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.state import MotionState
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 
-class MotionDynamics(BodyDynamics, Protocol):
-    """Dynamics of the motions themselves."""
+class Carried(Protocol):
+    """Bodies that motions carry."""
 
-    def angular_pull(self, time: float) -> FloatArray:
-        """Greatest angular acceleration of each motion (N,) within ``time`` from now, contacts apart [rad/time²]."""
+    def poses(self, motions: Pose, time: float) -> Pose:
+        """Pose of the bodies, where the ``motions`` are there."""
+
+    def kinematics(self, motions: Pose, time: float) -> CarriedKinematics:
+        """G and g, where the ``motions`` are there."""
 
 
 class ComponentDynamics:
@@ -33,25 +36,28 @@ class ComponentDynamics:
     """
 
     def __init__(
-        self, motions: MotionDynamics, mechanisms: Mechanisms, time: float, load: Wrench | None = None
+        self, motions: MotionDynamics, carried: Carried, time: float, load: Wrench | None = None
     ) -> None:
-        self._motions, self._mechanisms, self._time, self._load = motions, mechanisms, time, load
+        self._motions, self._carried, self._time, self._load = motions, carried, time, load
         self._impulse = nothing(motions.pose)
         self._place()
 
-    @property
-    def free(self) -> FreeMotions:
-        """Motions, and the impulse of contacts on them."""
-        return FreeMotions(self._motions.pose, self._motions.twist, self._impulse, nothing(self._motions.pose))
+    def motions(self, impulse: Wrench) -> MotionState:
+        """Motions, and the impulse of contacts on them, summed along the way."""
+        return MotionState(self._motions.pose, self._motions.twist, self._impulse, nothing(self._motions.pose))
 
     @property
     def twist(self) -> Twist:
-        return component_twist(self.kinematics, self._motions.twist)
+        return self.kinematics.component_twist(self._motions.twist)
 
-    def given_twist(self, controlled: BoolArray) -> Twist:
+    @property
+    def motion_twist(self) -> Twist:
+        return self._motions.twist
+
+    def prescribed_twist(self, controlled: BoolArray) -> Twist:
         """Prescribed part of the bodies' twists, n rows, where some motions (N,) are ``controlled``."""
         twist, given = self._motions.twist, controlled[:, None]
-        return component_twist(self.kinematics, Twist(given * twist.velocity, given * twist.angular_velocity))
+        return self.kinematics.component_twist(Twist(given * twist.velocity, given * twist.angular_velocity))
 
     @property
     def friction_loss(self) -> float:
@@ -64,8 +70,8 @@ class ComponentDynamics:
         return self._motions.resisted
 
     @property
-    def link_work(self) -> LinkWork | None:
-        """Work of joints on the motions so far, None without any."""
+    def link_work(self) -> LinkWork:
+        """Work of joints on the motions so far."""
         return self._motions.link_work
 
     def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
@@ -100,18 +106,18 @@ class ComponentDynamics:
         of the relative velocity over the time [length/time²]."""
         now, pull = self.kinematics, self._motions.angular_pull(time)
         if self._load is not None:
-            torque = free_wrench(now, self._load).torque
+            torque = now.motion_wrench(self._load).torque
             pull = pull + np.linalg.norm(np.einsum("nij,nj->ni", self._motions.inverse_inertia, torque), axis=1)
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
         turning = (pull + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
-        later = self._mechanisms.kinematics(self._motions.pose, self._time + time)
+        later = self._carried.kinematics(self._motions.pose, self._time + time)
         change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
         return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change the motions' twists by contacts with this ``wrench`` on the bodies, and by all other forces, for
         ``time``."""
-        pushed, so_far = free_wrench(at or self.kinematics, wrench), self._impulse
+        pushed, so_far = (at or self.kinematics).motion_wrench(wrench), self._impulse
         self._motions.kick(self._turned(pushed), time)
         self._impulse = Wrench(so_far.force + time * pushed.force, so_far.torque + time * pushed.torque)
 
@@ -124,9 +130,9 @@ class ComponentDynamics:
         """Wrench on the motions, with the torque of the constant load."""
         if self._load is None:
             return wrench
-        return Wrench(wrench.force, wrench.torque + free_wrench(self.kinematics, self._load).torque)
+        return Wrench(wrench.force, wrench.torque + self.kinematics.motion_wrench(self._load).torque)
 
     def _place(self) -> None:
         motions = self._motions.pose
-        self.pose: Pose = self._mechanisms.poses(motions, self._time)
-        self.kinematics: Kinematics = self._mechanisms.kinematics(motions, self._time)
+        self.pose: Pose = self._carried.poses(motions, self._time)
+        self.kinematics: CarriedKinematics = self._carried.kinematics(motions, self._time)

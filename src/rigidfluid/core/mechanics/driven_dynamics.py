@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate, turned
-from rigidfluid.core.model.system import Mechanisms
+from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.errors import StepRejected
 
@@ -29,7 +29,7 @@ class DrivenDynamics(DryDynamics):
         self,
         pose: Pose,
         twist: Twist,
-        mechanisms: Mechanisms,
+        mechanisms: Motions,
         weight: FloatArray,
         start: float,
         controlled_twist: Callable[[float], FloatArray],

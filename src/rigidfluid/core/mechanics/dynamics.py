@@ -1,101 +1,22 @@
-"""Dynamics of bodies between contacts, and without a fluid in particular."""
+"""Dynamics of bodies without a fluid, between contacts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
 from scipy import sparse
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
+from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
-from rigidfluid.core.model.state import FreeMotions, LinkLoad
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
-
-
-@dataclass(frozen=True, slots=True)
-class LinkWork:
-    """Sums over the work of joints: the ``impulse`` (c,) of each link [force·time | force·length·time], the ``pushed``
-    (N, d+k) impulse of all links and springs on the motions, the energies ``driven`` into the motions by prescribed
-    ones and ``damped`` away [energy]."""
-
-    impulse: FloatArray
-    pushed: FloatArray
-    driven: float
-    damped: float
-
-    def load(self, time: float) -> LinkLoad:
-        """Mean loads over ``time``."""
-        return LinkLoad(self.impulse / time, self.pushed / time)
-
-
-class BodyDynamics(Protocol):
-    """Dynamics of n bodies; kicked and drifting in turn they follow the velocity Verlet scheme."""
-
-    @property
-    def pose(self) -> Pose:
-        """Present pose."""
-
-    @property
-    def free(self) -> FreeMotions | None:
-        """Motions that carry the bodies, None where each moves by itself."""
-
-    @property
-    def kinematics(self) -> Kinematics | None:
-        """Present G and g of the motions that carry the bodies, None where each moves by itself."""
-
-    @property
-    def twist(self) -> Twist:
-        """Present twist."""
-
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """Inverse mass e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for prescribed bodies [1/mass]."""
-
-    @property
-    def mobility(self) -> FloatArray:
-        """Inverse mass M⁻¹ of each body alone in translation (n, d, d), zero for prescribed bodies [1/mass]."""
-
-    @property
-    def inverse_inertia(self) -> FloatArray:
-        """Inverse inertia (R I Rᵀ)⁻¹ (n, k, k), zero for prescribed bodies [1/(mass·length²)]."""
-
-    def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """Matrix M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for prescribed bodies: M⁻¹ W ``time`` is the change of
-        the velocities by a wrench W that lasts for ``time`` [1/mass | 1/(mass·length²)]."""
-
-    @property
-    def friction_loss(self) -> float:
-        """Energy dissipated by drag within substeps, unresolved by the fluid solves [energy]."""
-
-    @property
-    def resisted(self) -> bool:
-        """Whether drag acts in kicks too: the work of a force is then its product with the displacement in drifts
-        alone."""
-
-    @property
-    def link_work(self) -> LinkWork | None:
-        """Work of joints so far, None without any."""
-
-    def copied(self) -> Self:
-        """Copy of the motion, for a trial."""
-
-    def max_acceleration(self, time: float) -> FloatArray:
-        """Greatest acceleration of each body (n,) within ``time`` from now, contacts apart [length/time²]."""
-
-    def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
-        """Change the twist by contacts with this ``wrench``, and by all other forces, for ``time``.
-
-        ``at``: kinematics at the pose that the wrench belongs to, None for the present one.
-        """
-
-    def drift(self, time: float) -> None:
-        """Change the pose with the present twist for ``time``."""
 
 
 class Turning(NamedTuple):
@@ -106,7 +27,7 @@ class Turning(NamedTuple):
     arm: FloatArray
 
 
-class DryDynamics:
+class DryDynamics(OwnMotions):
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
     ``mass`` (n,) [mass]; ``inertia`` (n, k, k) in each body's frame [mass·length²]; ``weight`` W (n, d), all constant
@@ -114,11 +35,8 @@ class DryDynamics:
     start to (n, d+k); ``turning``: constant torques, None without.
     """
 
-    free: FreeMotions | None = None
-    kinematics: Kinematics | None = None
     friction_loss: float = 0.0
     resisted: bool = False
-    link_work: LinkWork | None = None
 
     def __init__(
         self,

@@ -11,9 +11,11 @@ from rigidfluid.core.mechanics.motions import applied_wrench, weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat, wrench_of, wrench_sum
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.system import Mechanisms, System
-from rigidfluid.core.model.types import FloatArray, Kinematics, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import NO_LINKS, FloatArray, Mesh, Pose, Step, Twist, Wrench
 
 
 def step_to(
@@ -21,24 +23,23 @@ def step_to(
 ) -> Step:
     """Step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
     derivative = derivative_weights(size, state.past_step)
-    mechanisms = system.mechanisms
-    kinematics = None if mechanisms is None else mechanisms.kinematics(pose, time)
+    kinematics = system.motions.kinematics(pose, time)
     mass_matrix, load = _newton_euler(system, state, time, size, pose, impulse, derivative, kinematics)
     return Step(
         time=time,
         derivative=derivative,
         extrapolation=extrapolation_weights(size, state.past_step),
-        pose=pose if mechanisms is None else mechanisms.poses(pose, time),
+        pose=system.motions.poses(pose, time),
         points=None if mesh is None else mesh.geometry,
         mass_matrix=mass_matrix,
         load=load,
-        controlled=system.controlled_motions,
+        controlled=system.motions.controlled,
         controlled_twist=system.controlled_twist(time),
         impulse=flat(impulse),
         load_scale=_load_scale(system, state, impulse, derivative),
         turning=np.zeros_like(load),
         kinematics=kinematics,
-        links=None if system.linkage is None or not system.has_fluid else system.linkage.links(pose, time),
+        links=system.joints.links(pose, time) if system.has_fluid else NO_LINKS,
     )
 
 
@@ -58,44 +59,39 @@ def _newton_euler(
     pose: Pose,
     impulse: Wrench,
     derivative: FloatArray,
-    kinematics: Kinematics | None,
+    kinematics: Kinematics,
 ) -> tuple[FloatArray, FloatArray]:
     """Mass matrix (N, d+k, d+k) and load (N, d+k) of the motions, with all bodies that they carry."""
-    past = [_Moment(time - size, state.free_pose, state.free_twist)]
+    past = [_Moment(time - size, state.motions.pose, state.motions.twist)]
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
     applied = applied_wrench(system, state, kinematics)
     pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
-    if system.linkage is not None and system.has_fluid:
-        pushed = wrench_sum(pushed, system.linkage.spring_wrench(pose, time))
-    mechanisms = system.mechanisms
-    if mechanisms is None:
-        wrench = Wrench(pushed.force + system.weight, pushed.torque)
-        return newton_euler(system.mass, system.inertia, pose, poses, twists, derivative, wrench)
-    weight = weights(system, kinematics)
-    wrench = wrench_sum(pushed, weight)
-    inertia = mechanisms.inertia(time)
-    mass_matrix, load = newton_euler(mechanisms.mass, inertia, pose, poses, twists, derivative, wrench)
-    if mechanisms.driven:
-        load[:, system.dimension :] -= _relative_momentum_rate(mechanisms, inertia, time, pose, past, derivative)
+    if system.has_fluid:
+        pushed = system.joints.with_springs(pushed, pose, time)
+    motions, wrench = system.motions, wrench_sum(pushed, weights(system, kinematics))
+    inertia = motions.inertia(time)
+    mass_matrix, load = newton_euler(motions.mass, inertia, pose, poses, twists, derivative, wrench)
+    if motions.driven:
+        load[:, system.dimension :] -= _relative_momentum_rate(motions, inertia, time, pose, past, derivative)
     return mass_matrix, load
 
 
 def _latest_push(system: System, state: State) -> Wrench:
     """Mean wrench on the motions in the latest step: contacts, applied wrenches, and without a fluid joints, which
     enter the time scheme in the same way."""
-    pushed = state.free_contact
+    pushed = state.motions.contact
     if state.past is not None and state.past.applied is not None:
         pushed = wrench_sum(pushed, state.past.applied)
-    if state.link is None or system.has_fluid:
+    if system.has_fluid:
         return pushed
     return wrench_sum(pushed, wrench_of(state.link.wrench, system.dimension))
 
 
 def _relative_momentum_rate(
-    mechanisms: Mechanisms,
+    motions: Motions,
     inertia: FloatArray,
     time: float,
     pose: Pose,
@@ -103,11 +99,11 @@ def _relative_momentum_rate(
     derivative: FloatArray,
 ) -> FloatArray:
     """Rate d/dt of R h and of R (I - I_new) Rᵀ ω: angular momentum (N, k) by relative motion [force·length]."""
-    rate = derivative[0] * turned(pose.orientation, mechanisms.spin(time))
+    rate = derivative[0] * turned(pose.orientation, motions.spin(time))
     for weight, (then, there, twist) in zip(derivative[1:], past, strict=False):
-        change = lab_inertia(mechanisms.inertia(then) - inertia, there.orientation)
+        change = lab_inertia(motions.inertia(then) - inertia, there.orientation)
         extra = np.einsum("nij,nj->ni", change, twist.angular_velocity)
-        rate = rate + weight * (extra + turned(there.orientation, mechanisms.spin(then)))
+        rate = rate + weight * (extra + turned(there.orientation, motions.spin(then)))
     return np.asarray(rate)
 
 
@@ -116,7 +112,7 @@ def _load_scale(system: System, state: State, impulse: Wrench, derivative: Float
 
     Their sum is rounding there, and no residual can be made small relative to it.
     """
-    pushed = derivative[0] * np.linalg.norm(impulse.force[~system.controlled_motions])
+    pushed = derivative[0] * np.linalg.norm(impulse.force[~system.motions.controlled])
     applied = 0.0 if state.applied is None else np.linalg.norm(state.applied.force)
     return float(0.01 * max(np.linalg.norm(system.weight[~system.controlled]), pushed, applied))
 

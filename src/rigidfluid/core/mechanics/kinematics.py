@@ -1,78 +1,75 @@
-"""Map from the motions that carry bodies to the bodies, and back: component twist = G u + g, free wrench = Gᵀ wrench.
-
-Bodies without kinematics move each by itself: G = 1, g = 0; arguments are returned unchanged.
-"""
+"""Kinematics of bodies that motions carry: body twist = G u + g, motion wrench = Gᵀ body wrench."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Step, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Step, Twist, Wrench
 
 
-def component_twist(kinematics: Kinematics | None, motion: Twist) -> Twist:
-    """Twists of the bodies, Uᵢ = U + ω × armᵢ + gᵢ, ωᵢ = ω + gᵢ.
+@dataclass(frozen=True, slots=True)
+class CarriedKinematics:
+    """Kinematics of n components on N motions at one moment.
 
-    Parameters
-    ----------
-    kinematics : Kinematics or None
-        Of n bodies on N motions.
-    motion : Twist
-        Of the motions, N rows.
-
-    Returns
-    -------
-    Twist
-        Of the bodies, n rows.
+    Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
+    leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
+    ``given`` (n, d+k): g, the twist that relative motion adds [length/time, rad/time].
     """
-    if kinematics is None:
-        return motion
-    d, spin = kinematics.arm.shape[1], motion.angular_velocity[kinematics.carrier]
-    velocity = motion.velocity[kinematics.carrier] + cross(spin, kinematics.arm)
-    return Twist(velocity + kinematics.given[:, :d], spin + kinematics.given[:, d:])
+
+    carrier: IntArray
+    centre: FloatArray
+    arm: FloatArray
+    given: FloatArray
+
+    def centres(self, bodies: Pose) -> FloatArray:
+        return self.centre
+
+    def component_twist(self, motion: Twist) -> Twist:
+        """Twists of the bodies, Uᵢ = U + ω × armᵢ + gᵢ, ωᵢ = ω + gᵢ."""
+        d, spin = self.arm.shape[1], motion.angular_velocity[self.carrier]
+        velocity = motion.velocity[self.carrier] + cross(spin, self.arm)
+        return Twist(velocity + self.given[:, :d], spin + self.given[:, d:])
+
+    def motion_twist(self, twist: FloatArray) -> FloatArray:
+        """Twists of the motions, read from the first body of each."""
+        d, first = self.arm.shape[1], np.unique(self.carrier, return_index=True)[1]
+        free = twist[first] - self.given[first]
+        free[:, :d] -= cross(free[:, d:], self.arm[first])
+        return free
+
+    def motion_wrench(self, wrench: Wrench) -> Wrench:
+        """Wrench on the motions, F = Σ Fᵢ, T = Σ (armᵢ × Fᵢ + Tᵢ)."""
+        torque = wrench.torque + moment(self.arm, wrench.force)
+        return Wrench(*(carried_sum(self.carrier, rows, len(self.centre)) for rows in (wrench.force, torque)))
+
+    def motion_rows(self, rows: FloatArray) -> FloatArray:
+        d = self.arm.shape[1]
+        turning = moment(np.broadcast_to(self.arm, rows[..., :d].shape), rows[..., :d])
+        whole = np.concatenate([rows[..., :d], rows[..., d:] + turning], axis=2)
+        return np.swapaxes(carried_sum(self.carrier, np.swapaxes(whole, 0, 1), len(self.centre)), 0, 1)
+
+    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
+        return np.asarray(np.any(twist.velocity, axis=1) | np.any(twist.angular_velocity, axis=1))
+
+    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+        """Accelerations A + α × arm + ω × (ω × arm) of the motions that carry the bodies, and that of g."""
+        d, carrier = self.arm.shape[1], self.carrier
+        spin = motion.angular_velocity[carrier]
+        turning = cross(rate[carrier, d:], self.arm) + cross(spin, cross(spin, self.arm))
+        carried = np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
+        return np.asarray(carried + given_rate)
 
 
 def given_twist(step: Step) -> tuple[Twist, BoolArray]:
     """Prescribed part of the body twists, n rows, and whether a body has one (n,)."""
-    kinematics, d = step.kinematics, step.pose.position.shape[1]
+    d = step.pose.position.shape[1]
     held = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
-    given = component_twist(kinematics, Twist(held[:, :d], held[:, d:]))
-    if kinematics is None:
-        return given, step.controlled
-    return given, np.any(given.velocity, axis=1) | np.any(given.angular_velocity, axis=1)
-
-
-def motion_twist(kinematics: Kinematics | None, twist: FloatArray) -> FloatArray:
-    """Twists (N, d+k) of the motions that give the bodies this ``twist`` (n, d+k), read from the first body of each."""
-    if kinematics is None:
-        return twist
-    d, first = kinematics.arm.shape[1], np.unique(kinematics.carrier, return_index=True)[1]
-    free = twist[first] - kinematics.given[first]
-    free[:, :d] -= cross(free[:, d:], kinematics.arm[first])
-    return free
-
-
-def free_wrench(kinematics: Kinematics | None, wrench: Wrench) -> Wrench:
-    """Wrench on the motions by wrenches on the bodies, F = Σ Fᵢ, T = Σ (armᵢ × Fᵢ + Tᵢ).
-
-    Parameters
-    ----------
-    kinematics : Kinematics or None
-        Of n bodies on N motions.
-    wrench : Wrench
-        On the bodies, n rows.
-
-    Returns
-    -------
-    Wrench
-        On the motions, about their centres of mass, N rows.
-    """
-    if kinematics is None:
-        return wrench
-    torque = wrench.torque + moment(kinematics.arm, wrench.force)
-    return Wrench(*(carried_sum(kinematics.carrier, rows, len(kinematics.centre)) for rows in (wrench.force, torque)))
+    given = step.kinematics.component_twist(Twist(held[:, :d], held[:, d:]))
+    return given, step.kinematics.prescribed(step.controlled, given)
 
 
 def carried_sum(carrier: IntArray, rows: FloatArray, motions: int) -> FloatArray:
@@ -82,7 +79,7 @@ def carried_sum(carrier: IntArray, rows: FloatArray, motions: int) -> FloatArray
     return total
 
 
-def jacobian(kinematics: Kinematics) -> sparse.csr_matrix:
+def jacobian(kinematics: CarriedKinematics) -> sparse.csr_matrix:
     """Matrix G (n·(d+k), N·(d+k)) from velocities of the motions to those of the bodies."""
     count, d = kinematics.arm.shape
     width = kinematics.given.shape[1]

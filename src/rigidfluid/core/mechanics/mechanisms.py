@@ -3,16 +3,21 @@ these."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import carried_sum
+from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
+from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
+from rigidfluid.core.mechanics.dynamics import DryDynamics
+from rigidfluid.core.mechanics.kinematics import CarriedKinematics, carried_sum, levers
 from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices, turned
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.interfaces import Mechanism
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 
 class Relative(NamedTuple):
@@ -65,32 +70,76 @@ class CarriedBodies:
         orientation = compose(motions.orientation[carrier], relative.orientation)
         return Pose(motions.position[carrier] + arm, orientation)
 
-    def kinematics(self, motions: Pose, time: float) -> Kinematics:
+    def kinematics(self, motions: Pose, time: float) -> CarriedKinematics:
         """Arms R s, and the relative velocities R ds/dt and R ν."""
         relative, orientation = self._relative(time), motions.orientation[self.carrier]
         velocity, spin = relative.twist.velocity, relative.twist.angular_velocity
         given = np.concatenate([_turned(orientation, velocity), turned(orientation, spin)], axis=1)
-        return Kinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
+        return CarriedKinematics(self.carrier, motions.position, _turned(orientation, relative.pose.position), given)
+
+    def kinematics_between(self, motions: Pose, bodies: Pose, motion: Twist, body: Twist) -> CarriedKinematics:
+        """G and g, read from poses and twists."""
+        arm = bodies.position - motions.position[self.carrier]
+        rigid = CarriedKinematics(self.carrier, motions.position, arm, np.zeros_like(flat(body)))
+        given = flat(body) - flat(rigid.component_twist(motion))
+        return CarriedKinematics(self.carrier, motions.position, arm, given)
 
     def inertia(self, time: float) -> FloatArray:
         """Inertia Σ Q I Qᵀ + m (|s|² - s sᵀ) of all that each motion carries, (N, k, k) [mass·length²]."""
         pose = self._relative(time).pose
         own = lab_inertia(self._own_inertia, pose.orientation)
-        return self._sum(own + self._own_mass[:, None, None] * _unit_inertia(pose.position))
+        return self.sums(own + self._own_mass[:, None, None] * _unit_inertia(pose.position))
+
+    def inverse_masses(self, mass: FloatArray, bodies: Pose, centre: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inverse of Σ m and of Σ R I Rᵀ + Xᵀ m X, with the lever matrices X of the bodies' arms."""
+        lever = levers(bodies.position - centre[self.carrier])
+        turning = lab_inertia(self._own_inertia, bodies.orientation) + np.swapaxes(lever, -1, -2) @ mass @ lever
+        return np.asarray(np.linalg.inv(self.sums(mass))), np.asarray(np.linalg.inv(self.sums(turning)))
 
     def spin(self, time: float) -> FloatArray:
         """Relative angular momentum Σ Q I Qᵀ ν + m s × ds/dt of all that each motion carries, (N, k)
         [mass·length²/time]."""
         pose, twist = self._relative(time)
         own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
-        return self._sum(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
+        return self.sums(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
 
     def next_corner(self, time: float) -> float:
         """First time after this at which the rate of a mechanism jumps [time]."""
         return min(mechanism.next_corner(time) for mechanism in self._mechanisms)
 
-    def _sum(self, rows: FloatArray) -> FloatArray:
+    def sums(self, rows: FloatArray) -> FloatArray:
         return carried_sum(self.carrier, rows, len(self.mass))
+
+    def least(self, values: FloatArray) -> FloatArray:
+        least = np.full(len(self.mass), np.inf)
+        np.minimum.at(least, self.carrier, values)
+        return least
+
+    def reaches(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Largest radius, and greatest sum of arm and radius at the start."""
+        arm = np.linalg.norm(self.poses(self.pose, 0.0).position - self.pose.position[self.carrier], axis=1)
+        largest, farthest = np.zeros((2, len(self.mass)))
+        np.maximum.at(largest, self.carrier, radii)
+        np.maximum.at(farthest, self.carrier, arm + radii)
+        return largest, farthest
+
+    def dry_dynamics(
+        self,
+        pose: Pose,
+        twist: Twist,
+        load: Wrench,
+        arms: FloatArray,
+        start: float,
+        controlled_twist: Callable[[float], FloatArray],
+    ) -> DryDynamics:
+        """Dynamics that know the force of the load; its torque about the centres is `carry`'s."""
+        force = self.sums(load.force)
+        if self.driven:
+            return DrivenDynamics(pose, twist, self, force, start, controlled_twist)
+        return DryDynamics(pose, twist, self.mass, self.inertia(start), force, self.controlled, controlled_twist)
+
+    def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> ComponentDynamics:
+        return ComponentDynamics(motions, self, start, load)
 
     def _relative(self, time: float) -> Relative:
         """Relative poses and rates at a ``time``; the latest are kept, since one time is asked for repeatedly."""

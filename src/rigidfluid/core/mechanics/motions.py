@@ -1,29 +1,33 @@
-"""Motions that carry a system's bodies: their loads, accelerations, inverse masses and extents."""
+"""Loads, accelerations, inverse masses and extents of the motions that carry a system's bodies."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist, free_wrench, levers
-from rigidfluid.core.mechanics.rigid import cross, inverse_lab_inertia, lab_inertia, rotation_matrices
+from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of, wrench_sum
+from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Kinematics, Pose, Twist, Wrench
+from rigidfluid.core.model.types import BoolArray, FloatArray, Pose, Twist, Wrench
 
 
-def weights(system: System, kinematics: Kinematics | None) -> Wrench:
+def body_load(system: System, state: State) -> Wrench:
+    """Weight and applied wrenches on the bodies, n rows."""
+    weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
+    return weight if state.applied is None else wrench_sum(weight, state.applied)
+
+
+def weights(system: System, kinematics: Kinematics) -> Wrench:
     """Weight of all that each motion carries, and its torque about the centre of mass, N rows."""
-    return free_wrench(kinematics, Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))
+    return kinematics.motion_wrench(Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))
 
 
-def applied_wrench(system: System, state: State, kinematics: Kinematics | None) -> Wrench:
+def applied_wrench(system: System, state: State, kinematics: Kinematics) -> Wrench:
     """Mean applied wrench on the motions in the step from ``state`` to ``kinematics`` at its end, N rows."""
     if state.applied is None:
-        return nothing(state.free_pose)
-    if kinematics is None:
-        return state.applied
-    start, end = (flat(free_wrench(at, state.applied)) for at in (kinematics_now(system, state), kinematics))
+        return nothing(state.motions.pose)
+    start, end = (flat(at.motion_wrench(state.applied)) for at in (kinematics_now(system, state), kinematics))
     return wrench_of(0.5 * (start + end), system.dimension)
 
 
@@ -43,20 +47,12 @@ def newly_applied(system: System, state: State) -> Wrench:
 
 def carried_bodies(system: System, motions: Pose, twist: Twist, time: float) -> tuple[Pose, Twist]:
     """Poses and twists of the bodies, evaluated from those of the motions at a ``time``."""
-    if system.mechanisms is None:
-        return motions, twist
-    return system.mechanisms.poses(motions, time), component_twist(system.mechanisms.kinematics(motions, time), twist)
+    return system.motions.poses(motions, time), system.motions.kinematics(motions, time).component_twist(twist)
 
 
-def kinematics_now(system: System, state: State) -> Kinematics | None:
+def kinematics_now(system: System, state: State) -> Kinematics:
     """Kinematics G and g of a state, read from its poses and twists."""
-    if system.mechanisms is None:
-        return None
-    carrier, centre = system.mechanisms.carrier, state.free_pose.position
-    arm = state.pose.position - centre[carrier]
-    rigid = Kinematics(carrier, centre, arm, np.zeros_like(flat(state.twist)))
-    given = flat(state.twist) - flat(component_twist(rigid, state.free_twist))
-    return Kinematics(carrier, centre, arm, given)
+    return system.motions.kinematics_between(state.motions.pose, state.pose, state.motions.twist, state.twist)
 
 
 def accelerations(system: System, state: State) -> FloatArray:
@@ -65,25 +61,19 @@ def accelerations(system: System, state: State) -> FloatArray:
     linear, angular = mobility(system, state)
     if state.past is None:
         return _answer(linear, angular, outer_load(system, state))
-    rate = (flat(state.free_twist) - flat(state.past.twist)) / state.past.step
-    rate -= _answer(linear, angular, state.free_contact)
+    rate = (flat(state.motions.twist) - flat(state.past.twist)) / state.past.step
+    rate -= _answer(linear, angular, state.motions.contact)
     if state.applied is None:
         return rate
     return rate + _answer(linear, angular, newly_applied(system, state))
 
 
 def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
-    """Accelerations of the bodies (n, d+k), A + α × arm + ω × (ω × arm) of the motions that carry them, and the mean
-    rate of the relative velocity from ``time`` on over ``size`` [length/time² | rad/time²]."""
-    rate, mechanisms = accelerations(system, state), system.mechanisms
-    if mechanisms is None:
-        return rate
-    now, later = (mechanisms.kinematics(state.free_pose, when) for when in (time, time + size))
-    d, carrier, arm = system.dimension, now.carrier, now.arm
-    spin = state.free_twist.angular_velocity[carrier]
-    turning = cross(rate[carrier, d:], arm) + cross(spin, cross(spin, arm))
-    carried = np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
-    return np.asarray(carried + (later.given - now.given) / size)
+    """Accelerations of the bodies (n, d+k) with the motions that carry them, and the mean rate of the relative velocity
+    from ``time`` on over ``size`` [length/time² | rad/time²]."""
+    rate, motions = accelerations(system, state), system.motions
+    now, later = (motions.kinematics(state.motions.pose, when) for when in (time, time + size))
+    return now.body_rates(rate, state.motions.twist, (later.given - now.given) / size)
 
 
 def _answer(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArray:
@@ -95,32 +85,18 @@ def _answer(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArr
 def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
     """Inverse mass (N, d, d), with the added mass of bodies, and inverse inertia (N, k, k) of each motion alone in the
     lab frame, zero for prescribed motions [1/mass | 1/(mass·length²)]."""
-    orientation, eye = state.pose.orientation, np.eye(system.dimension)
-    rotation = rotation_matrices(orientation)
-    own = system.mass[:, None, None] * eye
+    rotation = rotation_matrices(state.pose.orientation)
+    own = system.mass[:, None, None] * np.eye(system.dimension)
     mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
-    free, kinematics = ~system.controlled_motions[:, None, None], kinematics_now(system, state)
-    if kinematics is None:
-        return free * np.linalg.inv(mass), free * inverse_lab_inertia(system.inertia, orientation)
-    lever = levers(kinematics.arm)
-    turning = lab_inertia(system.inertia, orientation) + np.swapaxes(lever, -1, -2) @ mass @ lever
-    whole = (carried_sum(kinematics.carrier, each, len(kinematics.centre)) for each in (mass, turning))
-    linear, angular = (free * np.linalg.inv(each) for each in whole)
-    return linear, angular
+    free = ~system.motions.controlled[:, None, None]
+    linear, angular = system.motions.inverse_masses(mass, state.pose, state.motions.pose.position)
+    return free * linear, free * angular
 
 
 def reaches(system: System) -> tuple[FloatArray, FloatArray]:
     """Largest bounding radius of the bodies of each motion, and the distance of its farthest point from its centre of
     mass, (N,) each [length]."""
-    radii = np.array([body.bounding_radius for body in system.bodies])
-    if system.mechanisms is None:
-        return radii, radii
-    carrier, centre = system.mechanisms.carrier, system.mechanisms.pose.position
-    arm = np.linalg.norm(system.pose.position - centre[carrier], axis=1)
-    largest, farthest = np.zeros((2, len(centre)))
-    np.maximum.at(largest, carrier, radii)
-    np.maximum.at(farthest, carrier, arm + radii)
-    return largest, farthest
+    return system.motions.reaches(np.array([body.bounding_radius for body in system.bodies]))
 
 
 def twist_arms(system: System) -> FloatArray:
@@ -133,12 +109,5 @@ def twist_arms(system: System) -> FloatArray:
 def round_motions(system: System) -> BoolArray:
     """Whether a motion is that of a single ball, which turns in its place (N,)."""
     balls = np.array([body.radius is not None for body in system.bodies])
-    if system.mechanisms is None:
-        return balls
-    count = np.bincount(system.mechanisms.carrier)
-    return np.asarray((carried_sum(system.mechanisms.carrier, balls, len(count)) == 1) & (count == 1))
-
-
-def carriers(system: System) -> IntArray:
-    """Number of the motion of each body (n,)."""
-    return np.arange(len(system.bodies)) if system.mechanisms is None else system.mechanisms.carrier
+    count = np.bincount(system.motions.carrier)
+    return np.asarray((system.motions.sums(balls) == 1) & (count == 1))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.types import Contacts, FloatArray, FluidState, Mesh, Pose, Twist, Wrench
@@ -31,9 +33,10 @@ class FailedRemesh:
 
 
 @dataclass(frozen=True, slots=True)
-class FreeMotions:
-    """The N motions that carry the bodies: their ``pose``, of the centres of mass, and ``twist``; ``contact``: the
-    wrench of their contacts in a state, the impulse at the end of a path; ``hydrodynamic``: the fluid's wrench."""
+class MotionState:
+    """The N motions that carry the bodies, the bodies themselves where each moves by itself: their ``pose``, of the
+    centres of mass, and ``twist``; ``contact``: the wrench of their contacts in a state, the impulse at the end of a
+    path; ``hydrodynamic``: the fluid's wrench."""
 
     pose: Pose
     twist: Twist
@@ -48,6 +51,12 @@ class LinkLoad:
 
     force: FloatArray
     wrench: FloatArray
+
+
+def unloaded(motions: Pose) -> LinkLoad:
+    """Load of no joints on motions at this pose."""
+    count, d = motions.position.shape
+    return LinkLoad(np.zeros(0), np.zeros((count, d + (1 if d == 2 else 3))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,26 +99,6 @@ class ErrorEstimate:
         return replace(self, steps=0, error=math.inf, with_contacts=math.inf)
 
 
-class CarriedState:
-    """Pose and twist of bodies, and in ``free`` those of the motions that carry them, None where each moves by
-    itself."""
-
-    __slots__ = ()
-    pose: Pose
-    twist: Twist
-    free: FreeMotions | None
-
-    @property
-    def free_pose(self) -> Pose:
-        """Pose of the motions that carry the bodies."""
-        return self.pose if self.free is None else self.free.pose
-
-    @property
-    def free_twist(self) -> Twist:
-        """Twist of the motions that carry the bodies."""
-        return self.twist if self.free is None else self.free.twist
-
-
 @dataclass(frozen=True, slots=True)
 class Past:
     """Pose and twist of the motions one step earlier, for second order in time. ``applied``: the mean wrench from
@@ -122,16 +111,16 @@ class Past:
 
 
 @dataclass(frozen=True, slots=True)
-class State(CarriedState):
+class State:
     """An accepted state.
 
     ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
     a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
     wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
     impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that this mesh
-    could not be made anew, None if it has not been tried. ``free``: what carries the bodies, from which ``pose`` and
-    ``twist`` are then evaluated; None where each moves by itself. ``estimate``: of the latest step's error; None before
-    the first step, and without a tolerance. ``link``: of joints; None before the first step, and without any.
+    could not be made anew, None if it has not been tried. ``motions``: what carries the bodies, from which ``pose`` and
+    ``twist`` are then evaluated. ``estimate``: of the latest step's error; None before the first step, and without a
+    tolerance. ``link``: of joints.
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
@@ -151,25 +140,15 @@ class State(CarriedState):
     gaps: FloatArray
     hydrodynamic_wrench: Wrench
     contact_wrench: Wrench
+    motions: MotionState
+    link: LinkLoad
     ledger: Ledger
     impact: int | None = None
     remesh_failed: FailedRemesh | None = None
-    free: FreeMotions | None = None
     estimate: ErrorEstimate | None = None
-    link: LinkLoad | None = None
     prescription: Prescription | None = None
     applied: Wrench | None = None
     jumped: int | None = None
-
-    @property
-    def free_contact(self) -> Wrench:
-        """Wrench of contacts on the motions that carry the bodies."""
-        return self.contact_wrench if self.free is None else self.free.contact
-
-    @property
-    def free_hydrodynamic(self) -> Wrench:
-        """Wrench of the fluid on the motions that carry the bodies."""
-        return self.hydrodynamic_wrench if self.free is None else self.free.hydrodynamic
 
     @property
     def is_on_new_mesh(self) -> bool:

@@ -4,50 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
-from rigidfluid.core.model.linkage import Linkage
-from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, IntArray, Kinematics, Loads, Pose, Twist
+from rigidfluid.core.model.joints import Joints
+from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, IntArray, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall, WallVelocities
 from rigidfluid.core.model.window import Window
-
-
-class Mechanisms(Protocol):
-    """The N motions of a system with mechanisms, and how they carry its n bodies.
-
-    ``names``: of the mechanisms, the last of the motions. ``carrier`` (n,): the motion of each body. ``controlled``
-    (N,): which motions are given. ``mass`` (N,) of all that a motion carries. ``pose``, ``twist``: of the motions at
-    the start. ``driven_motions`` (N,): in which something moves relatively; ``driven``: whether there is any.
-    """
-
-    names: tuple[str, ...]
-    carrier: IntArray
-    controlled: BoolArray
-    mass: FloatArray
-    pose: Pose
-    twist: Twist
-    driven_motions: BoolArray
-    driven: bool
-
-    def poses(self, motions: Pose, time: float) -> Pose:
-        """Pose of the bodies, where the ``motions`` are there."""
-
-    def kinematics(self, motions: Pose, time: float) -> Kinematics:
-        """G and g, where the ``motions`` are there."""
-
-    def inertia(self, time: float) -> FloatArray:
-        """Inertia of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
-
-    def spin(self, time: float) -> FloatArray:
-        """Angular momentum of the relative motion, in the motions' frames, (N, k) [mass·length²/time]."""
-
-    def next_corner(self, time: float) -> float:
-        """The first time after this at which the rate of a relative motion jumps; infinite without one [time]."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +30,8 @@ class System:
     ``controlled_pose(time)``.
     ``fluid``: its equations and boundary conditions, None in a dry scene. ``make_backend()``: the one backend, of
     ``backend_type``.
-    ``mechanisms``: which motions carry the bodies, None where each moves by itself; twists and poses that are given are
-    then the motions'.
-    ``linkage``: joints, held directions and springs of the motions, None where there are none.
+    ``motions``: those that carry the bodies; twists and poses that are given are the motions'. ``joints``: joints, held
+    directions and springs of the motions.
     ``window``: the part of the domain that is meshed, None where all is.
     ``assembly`` (n,): equal for parts of one articulated body, which do not repel each other. ``joined`` (p, 2): bodies
     that a joint joins, the lower number first, which do not either.
@@ -88,6 +54,8 @@ class System:
     weight: FloatArray
     pose: Pose
     twist: Twist
+    motions: Motions
+    joints: Joints
     assembly: IntArray
     controlled: BoolArray
     controlled_twist: Callable[[float], FloatArray]
@@ -104,15 +72,8 @@ class System:
     loads: Loads
     substeps: int | None
     implicit: bool
-    mechanisms: Mechanisms | None = None
     window: Window | None = None
-    linkage: Linkage | None = None
     joined: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
-
-    @property
-    def controlled_motions(self) -> BoolArray:
-        """Whether the twist of each motion is prescribed, (N,)."""
-        return self.controlled if self.mechanisms is None else self.mechanisms.controlled
 
     @property
     def quasi_steady(self) -> bool:

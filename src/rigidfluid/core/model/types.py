@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks
 
 FloatArray = NDArray[np.float64]
@@ -208,22 +209,6 @@ class BoundaryCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class Kinematics:
-    """Kinematics of n components on N motions at one moment: component twist = G u + g, free wrench = Gᵀ component
-    wrench.
-
-    Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
-    leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
-    ``given`` (n, d+k): g, the twist that relative motion adds [length/time, rad/time].
-    """
-
-    carrier: IntArray
-    centre: FloatArray
-    arm: FloatArray
-    given: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
 class Links:
     """Constraints and dampers of N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ
     force acts on them.
@@ -239,13 +224,17 @@ class Links:
     compliance: FloatArray
 
 
+NO_LINKS = Links(np.zeros((0, 0, 0)), np.zeros(0), np.zeros(0))
+"""Nothing that holds motions."""
+
+
 @dataclass(frozen=True, slots=True)
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
 
     With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
     mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):
-    the motion that carries each body, None where each moves by itself. ``initial``: the flow at the start, at rest but
+    the motion that carries each body, its own if not given. ``initial``: the flow at the start, at rest but
     for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
     """
 
@@ -256,13 +245,16 @@ class FluidProblem:
     inertia: bool
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None
-    carrier: tuple[int, ...] | None = None
+    carrier: tuple[int, ...] = ()
     initial: Literal["rest", "steady"] | Callable[[float, FloatArray], FloatArray] = "rest"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "carrier", self.carrier or tuple(range(self.bodies)))
 
     @property
     def motions(self) -> int:
         """Number of motions that carry the bodies."""
-        return self.bodies if self.carrier is None else max(self.carrier) + 1
+        return max(self.carrier, default=-1) + 1
 
     @property
     def inert_density(self) -> float:
@@ -280,14 +272,14 @@ class Step:
     and for responses on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
-    With ``kinematics`` all these are of the N motions that carry the bodies, and the fluid's wrench on them is Gᵀ of
-    that on the bodies; None where each body moves by itself.
+    All these are of the N motions that carry the bodies, by ``kinematics``, and the fluid's wrench on them is Gᵀ of
+    that on the bodies.
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
     ``turning`` (n, d+k): impulses whose answer by the masses of bodies and fluid is added to the convecting velocity,
     zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
-    ``links``: what else holds the motions at the new time; None where nothing does.
+    ``links``: what else holds the motions at the new time.
     """
 
     time: float
@@ -302,9 +294,9 @@ class Step:
     impulse: FloatArray
     load_scale: float
     turning: FloatArray
-    kinematics: Kinematics | None = None
+    kinematics: Kinematics = EACH_ITS_OWN
     provisional: bool = False
-    links: Links | None = None
+    links: Links = NO_LINKS
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,11 +332,11 @@ class Response:
 class Advance:
     """Result of a backend's step: its candidate state, the new twist, and the fluid's own figures.
 
-    ``twist`` is what Newton–Euler's equations are solved for: the motions', where a step has kinematics.
+    ``twist`` is what Newton–Euler's equations are solved for: the motions'.
     ``hydrodynamic_wrench`` is the fluid's force and torque on each body alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
-    ``link_force`` (c,): of the step's links; None without any [force | force·length]. ``leak``: kinetic energy that
+    ``link_force`` (c,): of the step's links [force | force·length]. ``leak``: kinetic energy that
     convection takes through faces that let none pass, an error of the mesh [energy/time]. ``grad_div``: what
     stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow [energy/time].
     ``source_power``: that of the problem's source on the fluid, ∫ f·u [energy/time].
@@ -359,7 +351,7 @@ class Advance:
     dissipation: float
     dissipation_midway: float
     boundary_power: float
-    link_force: FloatArray | None = None
+    link_force: FloatArray = field(default_factory=lambda: np.zeros(0))
     leak: float = 0.0
     grad_div: float = 0.0
     source_power: float = 0.0

@@ -24,7 +24,7 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 7
+FORMAT = 8
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.output.records import COORDINATES, Records, Row, columns
+from rigidfluid.core.model.joints import COORDINATES
+from rigidfluid.core.output.records import Records, Row, columns
 from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
 from rigidfluid.errors import OutputError
 

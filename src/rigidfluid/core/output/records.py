@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.system import Mechanisms, System
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Twist, Wrench
 
 Row = tuple[float | int | str, ...]
@@ -21,10 +22,6 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
-
-
-COORDINATES: Mapping[str, str] = {"angle": "rad"}
-"""Coordinates of joints that have a column in any case, with their units."""
 
 
 def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
@@ -78,29 +75,20 @@ def records(
 
 def joint_coordinates(system: System) -> Mapping[str, str]:
     """Units of the coordinates of a system's joints, by the names of their columns, in order."""
-    return COORDINATES if system.linkage is None else system.linkage.coordinates
+    return system.joints.coordinates
 
 
 def moving(system: System) -> tuple[str, ...]:
     """Names of all bodies, and of the mechanisms after them: one for each row of a state."""
-    wholes = () if system.mechanisms is None else system.mechanisms.names
-    return (*system.surfaces[: len(system.bodies)], *wholes)
-
-
-def least_gaps_of_motions(mechanisms: Mechanisms, gaps: FloatArray) -> FloatArray:
-    """Least of the ``gaps`` (n,) of the bodies that each motion carries, (N,) [length]."""
-    least = np.full(len(mechanisms.mass), np.inf)
-    np.minimum.at(least, mechanisms.carrier, gaps)
-    return least
+    return (*system.surfaces[: len(system.bodies)], *system.motions.names)
 
 
 def _body_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     """A row for each body, and one for each mechanism, with the least gap of its components."""
     numbers = _numbers(state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench, state.gaps)
-    if system.mechanisms is not None and state.free is not None:
-        gaps = least_gaps_of_motions(system.mechanisms, state.gaps)
-        free = _numbers(state.free.pose, state.free.twist, state.free.hydrodynamic, state.free.contact, gaps)
-        numbers += free[-len(system.mechanisms.names) :]
+    motions, gaps = state.motions, system.motions.least(state.gaps)
+    wholes = _numbers(motions.pose, motions.twist, motions.hydrodynamic, motions.contact, gaps)
+    numbers += wholes[len(wholes) - len(system.motions.names) :]
     for name, row in zip(moving(system), numbers, strict=True):
         yield (*stamp, name, *row)
 
@@ -124,17 +112,15 @@ def _contact_rows(system: System, state: State, stamp: Row, forces: FloatArray) 
 
 
 def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterator[Row]:
-    if system.linkage is None:
-        return
-    force, names = None if state.link is None else state.link.force, joint_coordinates(system)
-    for one in system.linkage.readings(state.pose, state.twist, time, force):
+    names = joint_coordinates(system)
+    for one in system.joints.readings(state.pose, state.twist, time, state.link.force):
         values = [one.value if name == one.coordinate else math.nan for name in names]
         yield (*stamp, one.name, one.gap, *values, one.rate, *one.force.tolist(), *one.torque.tolist())
 
 
 def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
     """The error is infinite where it is not known."""
-    unknowns = system.backend.unknowns(state.mesh, system.controlled_motions)
+    unknowns = system.backend.unknowns(state.mesh, system.motions.controlled)
     error = math.inf if state.estimate is None else state.estimate.error
     return (*stamp, cost.size, error, unknowns, cost.remeshes, count_cells(state.mesh), cost.quality)
 

@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TextIO
 
+from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.ranks import ALONE, ROOT, Ranks
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.checkpoint import (
@@ -22,7 +23,7 @@ from rigidfluid.core.output.checkpoint import (
     read_staged,
     stage_checkpoint,
 )
-from rigidfluid.core.output.records import COORDINATES, Records, columns
+from rigidfluid.core.output.records import Records, columns
 from rigidfluid.core.output.run_folder import clear, locked, refuse_foreign
 from rigidfluid.core.output.tables import Table, table_path
 from rigidfluid.core.output.vtu import read_pvd, write_pvd, write_pvtu, write_vtu

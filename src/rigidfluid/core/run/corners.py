@@ -58,4 +58,4 @@ def _corner_after(system: System, clock: Clock, tick: int) -> float:
 
 
 def _next_corner(system: System, time: float) -> float:
-    return min((part.next_corner(time) for part in (system.mechanisms, system.linkage) if part), default=math.inf)
+    return min(system.motions.next_corner(time), system.joints.next_corner(time))

@@ -63,7 +63,7 @@ def _energy_of_contacts(system: System, clock: Clock, state: State, candidate: S
     An impact changes them at once, in its step and back in the next; contacts at rest, or that yield slowly, hardly.
     """
     assert candidate.past is not None
-    impulse = candidate.past.step * (flat(candidate.free_contact) - flat(state.free_contact))
+    impulse = candidate.past.step * (flat(candidate.motions.contact) - flat(state.motions.contact))
     if not impulse.any():
         return 0.0
     return float(Masses(system, clock.time(candidate.tick), candidate).energies_by(impulse).sum())

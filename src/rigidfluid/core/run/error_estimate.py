@@ -35,7 +35,7 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
     estimate of the step before stands.
     """
     before, masses = state.estimate or _expected(system), Masses(system, time, candidate)
-    speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.free_twist))))
+    speed = max(before.speed, masses.fastest(masses.energies(flat(candidate.motions.twist))))
     after = replace(
         before,
         steps=before.steps + 1,
@@ -47,8 +47,8 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
         return after
     size, previous = candidate.past.step, state.past.step
     weight, (e0, e1) = path_error_weight(size, previous), extrapolation_weights(size, previous)
-    otherwise = flat(candidate.free_twist) - e0 * flat(state.free_twist) - e1 * flat(state.past.twist)
-    impulse = size * (flat(candidate.free_contact) - flat(state.free_contact))
+    otherwise = flat(candidate.motions.twist) - e0 * flat(state.motions.twist) - e1 * flat(state.past.twist)
+    impulse = size * (flat(candidate.motions.contact) - flat(state.motions.contact))
     bodies, contacts = masses.energies(otherwise), masses.energies_by(impulse)
     fluid = system.backend.prediction_error(state.fluid, candidate.fluid, candidate.mesh, np.array([e0, e1]))
     whole = max(_ratio(masses.fastest(bodies), speed), _ratio(fluid**0.5, after.energy**0.5))

@@ -8,7 +8,7 @@ from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
 from rigidfluid.core.model.energy import Ledger, Power
-from rigidfluid.core.model.state import FreeMotions, State
+from rigidfluid.core.model.state import MotionState, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.step import bodies_energy, stored_energy
@@ -24,8 +24,8 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
-    motions = system.pose if system.mechanisms is None else system.mechanisms.pose
-    stored = stored_energy(system, contacts, motions, 0.0)
+    motions = system.motions
+    stored = stored_energy(system, contacts, motions.pose, 0.0)
     state = State(
         tick=0,
         count=0,
@@ -41,8 +41,9 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
         gaps=gaps,
         hydrodynamic_wrench=zero,
         contact_wrench=zero,
+        motions=MotionState(motions.pose, motions.twist, nothing(motions.pose), nothing(motions.pose)),
+        link=system.joints.unloaded(motions.pose),
         ledger=Ledger(0.0, stored, stored),
-        free=_free_motions(system),
     )
     return _with_flow(system, clock, state)
 
@@ -81,13 +82,6 @@ def _power(system: System, state: State, faces: bool) -> Power | None:
     return Power() if at_rest or state.mesh is None else None
 
 
-def _free_motions(system: System) -> FreeMotions | None:
-    motions = system.mechanisms
-    if motions is None:
-        return None
-    return FreeMotions(motions.pose, motions.twist, nothing(motions.pose), nothing(motions.pose))
-
-
 def _starts_at_once(system: System, state: State, faces: bool) -> bool:
     """Whether the motion does not start smoothly.
 
@@ -99,7 +93,7 @@ def _starts_at_once(system: System, state: State, faces: bool) -> bool:
     if state.mesh is None or problem is None:
         return False
     given = not isinstance(problem.initial, str)
-    driven = faces and (problem.inertia or not system.controlled_motions.all())
+    driven = faces and (problem.inertia or not system.motions.controlled.all())
     released = state.ledger.contact > 0.0 or (not problem.inertia and system.weight.any())
     return bool(_bodies_move(state) or given or driven or released)
 

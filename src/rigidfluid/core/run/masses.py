@@ -14,10 +14,9 @@ class Masses:
     """Kinetic energies of the free motions at a ``time``, where the ``state`` has them."""
 
     def __init__(self, system: System, time: float, state: State) -> None:
-        self._free, mechanisms = ~system.controlled_motions, system.mechanisms
-        mass = system.mass if mechanisms is None else mechanisms.mass
-        inertia = system.inertia if mechanisms is None else mechanisms.inertia(time)
-        self._mass, self._matrix = mass[self._free], generalised_mass(mass, inertia, state.free_pose)[self._free]
+        motions = system.motions
+        self._free, self._mass = ~motions.controlled, motions.mass[~motions.controlled]
+        self._matrix = generalised_mass(motions.mass, motions.inertia(time), state.motions.pose)[self._free]
 
     def energies(self, twist: FloatArray) -> FloatArray:
         """½ u·Mu of each of the ``twist`` (N, d+k) [energy]."""

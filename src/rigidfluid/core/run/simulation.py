@@ -24,7 +24,7 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import StepCost, joint_coordinates, least_gaps_of_motions, records
+from rigidfluid.core.output.records import StepCost, joint_coordinates, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
@@ -178,11 +178,9 @@ class Simulation:
         now = _bodies_now(
             self.system.surfaces[:count], s.pose, s.twist, s.hydrodynamic_wrench, s.contact_wrench, s.gaps
         )
-        mechanisms, free = self.system.mechanisms, s.free
-        if mechanisms is not None and free is not None:
-            whole = (free.pose, free.twist, free.hydrodynamic, free.contact, least_gaps_of_motions(mechanisms, s.gaps))
-            now |= _bodies_now(mechanisms.names, *whole, first=len(mechanisms.mass) - len(mechanisms.names))
-        return now
+        motions, known = s.motions, self.system.motions
+        whole = (motions.pose, motions.twist, motions.hydrodynamic, motions.contact, known.least(s.gaps))
+        return now | _bodies_now(known.names, *whole, first=len(known.mass) - len(known.names))
 
     def step(self) -> State:
         """Take one accepted step, record it, call who is due, and return the new state.
@@ -394,14 +392,13 @@ class Simulation:
         """Prescribed motion at present: since the start by the scene, or by the caller."""
         if self.state.prescription is not None:
             return PrescribedMotion(self.state.prescription)
-        system = self.system
-        return prescribed_motion(self.scene, system.pose if system.mechanisms is None else system.mechanisms.pose)
+        return prescribed_motion(self.scene, self.system.motions.pose)
 
     def _follow(self, motion: PrescribedMotion) -> None:
         """Let prescribed bodies move so."""
-        linkage = None if self.system.linkage is None else self.system.linkage.following(motion)
+        joints = self.system.joints.following(motion)
         self.stepper.system = replace(
-            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, linkage=linkage
+            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, joints=joints
         )
 
     def _row(self, name: str, prescribed: bool) -> int:

@@ -11,14 +11,14 @@ from rigidfluid.core.contact.convection import turning
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench, given_twist
+from rigidfluid.core.mechanics.kinematics import given_twist
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
-from rigidfluid.core.model.state import FreeMotions, LinkLoad, Past, State
+from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Advance, Contacts, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
@@ -58,16 +58,15 @@ def attempt(
         nearest = int(np.argmin(gaps))
         refuse_overlap(system, nearest, float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.raise_on_all():
-        step = step_to(system, state, time, size, path.free_pose, _pushed(path, size), mesh)
+        step = step_to(system, state, time, size, path.motions.pose, _pushed(path, size), mesh)
         if path.coupling is not None:
             step.load.flat[path.coupling.model.velocities] += path.coupling.correction
             step = replace(step, turning=turning(system, state, path, step), provisional=provisional)
         advance = system.backend.advance(state.fluid, state.mesh, step)
-        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.controlled_motions))
-    twist = component_twist(step.kinematics, advance.twist)
-    link = _link_load(system, path, step, advance)
+        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))
+    twist = step.kinematics.component_twist(advance.twist)
     ledger = _ledger_at_start(system, state, advance, step, time - size)
-    power = _power(system, advance, step, path.free_pose)
+    power = _power(system, advance, step, path.motions.pose)
     if system.quasi_steady:
         power = replace(power, dissipation_midway=_dissipation_midway(state, ledger.power, advance, twist, power))
     candidate = State(
@@ -76,7 +75,7 @@ def attempt(
         level=level,
         pose=pose,
         twist=twist,
-        past=Past(state.free_pose, state.free_twist, size, _applied(system, state, step)),
+        past=Past(state.motions.pose, state.motions.twist, size, _applied(system, state, step)),
         mesh=mesh,
         reference=state.reference,
         fluid=advance.fluid,
@@ -85,17 +84,17 @@ def attempt(
         gaps=gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         contact_wrench=_mean(path.impulse, size),
+        motions=_motions(path, step, advance, size),
+        link=_link_load(system, path, step, advance),
         ledger=ledger.after(
             size,
             power,
             _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
             advance.kinetic_energy + bodies_energy(system, pose, twist),
-            stored_energy(system, contacts, path.free_pose, time),
+            stored_energy(system, contacts, path.motions.pose, time),
         ),
         impact=state.impact,
         remesh_failed=state.remesh_failed,
-        free=_free_motions(path, step, advance, size),
-        link=link,
         prescription=state.prescription,
         applied=state.applied,
         jumped=state.jumped,
@@ -105,29 +104,23 @@ def attempt(
 
 def _pushed(path: BodyStep, size: float) -> Wrench:
     """The impulse of contacts, and without a fluid of joints, on the motions."""
-    if path.link is None:
-        return path.free_impulse
-    return wrench_sum(path.free_impulse, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
+    return wrench_sum(path.motions.contact, wrench_of(size * path.link.wrench, path.pose.position.shape[1]))
 
 
 def _applied(system: System, state: State, step: Step) -> Wrench | None:
     return None if state.applied is None else applied_wrench(system, state, step.kinematics)
 
 
-def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad | None:
+def _link_load(system: System, path: BodyStep, step: Step, advance: Advance) -> LinkLoad:
     """Load of the joints: in a fluid their forces follow from its solution, else from the path."""
-    if system.linkage is None or step.links is None or advance.link_force is None:
+    if not system.has_fluid:
         return path.link
-    wrench = np.tensordot(advance.link_force, step.links.rows, axes=1)
-    springs = flat(system.linkage.spring_wrench(path.free_pose, step.time))
-    return LinkLoad(advance.link_force, wrench + springs)
+    return system.joints.load(step.links, advance.link_force, path.motions.pose, step.time)
 
 
-def _free_motions(path: BodyStep, step: Step, advance: Advance, size: float) -> FreeMotions | None:
-    if path.free is None:
-        return None
-    by_fluid = free_wrench(step.kinematics, advance.hydrodynamic_wrench)
-    return FreeMotions(path.free.pose, advance.twist, _mean(path.free.contact, size), by_fluid)
+def _motions(path: BodyStep, step: Step, advance: Advance, size: float) -> MotionState:
+    by_fluid = step.kinematics.motion_wrench(advance.hydrodynamic_wrench)
+    return MotionState(path.motions.pose, advance.twist, _mean(path.motions.contact, size), by_fluid)
 
 
 def _mean(impulse: Wrench, size: float) -> Wrench:
@@ -142,8 +135,7 @@ def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
 
 def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float) -> float:
     """Energy stored in contacts and springs [energy]."""
-    in_springs = 0.0 if system.linkage is None else system.linkage.spring_energy(motions, time)
-    return in_springs + contact_energy(system, contacts)
+    return system.joints.spring_energy(motions, time) + contact_energy(system, contacts)
 
 
 def contact_energy(system: System, contacts: Contacts) -> float:
@@ -159,17 +151,16 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
     """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
     dissipated by fluid and dampers."""
     given, where = given_twist(step)
-    control, damping = -float(power(advance.hydrodynamic_wrench, given)[where].sum()), 0.0
-    if step.links is not None and advance.link_force is not None:
+    control = -float(power(advance.hydrodynamic_wrench, given)[where].sum())
+    if system.has_fluid:
         control += float(advance.link_force @ step.links.rate)
-        control += 0.0 if system.linkage is None else system.linkage.spring_power(motions, step.time)
-        damping = float(step.links.compliance @ advance.link_force**2)
+        control += system.joints.spring_power(motions, step.time)
     return Power(
         boundary=advance.boundary_power,
         control=control,
         dissipation=advance.dissipation,
         dissipation_midway=advance.dissipation_midway,
-        damping=damping,
+        damping=float(step.links.compliance @ advance.link_force**2),
         leak=advance.leak,
         grad_div=advance.grad_div,
         source=advance.source_power,
@@ -201,8 +192,8 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
         return ledger
     if system.quasi_steady:
         return replace(ledger, power=None)
-    motions, held = state.free_pose, system.controlled_twist(time)
-    links = None if step.links is None or system.linkage is None else system.linkage.links(motions, time)
+    motions, held = state.motions.pose, system.controlled_twist(time)
+    links = system.joints.links(motions, time) if system.has_fluid else step.links
     before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
     return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 

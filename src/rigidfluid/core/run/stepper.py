@@ -129,7 +129,7 @@ class Stepper:
                 if number > 0 or state.past is not None or state.mesh is None:
                     return candidate, True
                 end, size = self._end(state, level), self._clock.size(level)
-                again = first_step_again(self.system, state, candidate.free_twist, end, size)
+                again = first_step_again(self.system, state, candidate.motions.twist, end, size)
                 path = self._with_prescribed(again, state, level)
                 continue
             with self._watch("response"):
@@ -157,16 +157,13 @@ class Stepper:
         """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies; and
         with joints that fit."""
         end = self._end(state, level)
-        given, is_given = self.system.controlled_pose(end), self.system.controlled_motions[:, None]
-        position = np.where(is_given, given.position, path.free_pose.position)
-        orientation = np.where(is_given, given.orientation, path.free_pose.orientation)
+        given, is_given = self.system.controlled_pose(end), self.system.motions.controlled[:, None]
+        position = np.where(is_given, given.position, path.motions.pose.position)
+        orientation = np.where(is_given, given.orientation, path.motions.pose.orientation)
         motions = Pose(position, orientation)
-        if self.system.linkage is not None:
-            motions = self.system.linkage.closed(motions, end)
-        if path.free is None or self.system.mechanisms is None:
-            return replace(path, pose=motions)
-        bodies = self.system.mechanisms.poses(motions, end)
-        return replace(path, pose=bodies, free=replace(path.free, pose=motions))
+        motions = self.system.joints.closed(motions, end)
+        bodies = self.system.motions.poses(motions, end)
+        return replace(path, pose=bodies, motions=replace(path.motions, pose=motions))
 
     def _end(self, state: State, level: int) -> float:
         """Time when a step of this level ends [time]."""

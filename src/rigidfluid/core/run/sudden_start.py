@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.mechanics.fluid_step import step_to
-from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -39,10 +38,10 @@ def struck(system: System, state: State, time_step: float) -> tuple[State, float
     fluid; and the fluid's kinetic energy. None where the backend leaves that to the first step."""
     assert state.mesh is not None
     size = VANISHING * time_step
-    step = step_to(system, state, size, size, state.free_pose, nothing(state.free_pose), state.mesh)
+    step = step_to(system, state, size, size, state.motions.pose, nothing(state.motions.pose), state.mesh)
     after = system.backend.struck(state.mesh, state.pose, state.twist, step)
     if after is None:
         return None
     fluid, kinetic, motions = after
-    free = None if state.free is None else replace(state.free, twist=motions)
-    return replace(state, fluid=fluid, twist=component_twist(step.kinematics, motions), free=free), kinetic
+    twist, moving = step.kinematics.component_twist(motions), replace(state.motions, twist=motions)
+    return replace(state, fluid=fluid, twist=twist, motions=moving), kinetic

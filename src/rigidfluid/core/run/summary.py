@@ -64,7 +64,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "seed": simulation.scene.scene.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
-        "unknowns": system.backend.unknowns(state.mesh, system.controlled_motions),
+        "unknowns": system.backend.unknowns(state.mesh, system.motions.controlled),
         "cells": count_cells(state.mesh),
         "worst_quality": _finite(np.min(simulation.history.steps["quality"], initial=np.inf)),
         "ranks": system.backend.ranks.size,

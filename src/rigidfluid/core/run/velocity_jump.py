@@ -28,7 +28,7 @@ def halvings_after(
     """
     if over is not None and over >= step:
         return 0
-    radius, d, now = system.bodies[row].bounding_radius, system.dimension, flat(state.free_twist)[row]
+    radius, d, now = system.bodies[row].bounding_radius, system.dimension, flat(state.motions.twist)[row]
     jump, accelerated = _speed(twist - now, radius, d), 0.0
     if state.past is not None:
         accelerated = _speed(now - flat(state.past.twist)[row], radius, d) * step / state.past.step

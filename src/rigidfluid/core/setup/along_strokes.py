@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.joints.coordinates import Drive
-from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Detector, Mechanism
+from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
@@ -45,13 +45,15 @@ def corners(moving: Mechanism | Drive, end: float) -> Iterator[float]:
         time = moving.next_corner(time)
 
 
-def fastest_given(carried: CarriedBodies, mechanisms: Iterable[Mechanism], end: float) -> FloatArray:
+def fastest_given(motions: Motions, mechanisms: Iterable[Mechanism], end: float) -> FloatArray:
     """Greatest velocity and angular velocity (n, 2) [length/time], [rad/time] that mechanisms give components about
     their own centres of mass, at the sampled times up to the ``end`` [time]; zero for single bodies."""
     driven = [mechanism for mechanism in mechanisms if mechanism.driven]
     times = [float(time) for mechanism in driven for time in times_along(mechanism, end)]
-    given = np.array([carried.kinematics(carried.pose, time).given for time in times or [0.0]])
-    d = carried.pose.position.shape[1]
+    if not times:
+        return np.zeros((len(motions.carrier), 2))
+    given = np.array([motions.kinematics(motions.pose, time).given for time in times])
+    d = motions.pose.position.shape[1]
     return np.stack([np.linalg.norm(part, axis=2).max(axis=0) for part in (given[..., :d], given[..., d:])], axis=1)
 
 

@@ -9,15 +9,17 @@ from functools import cache, partial
 
 import numpy as np
 
-from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
-from rigidfluid.core.mechanics.kinematics import carried_sum, component_twist
+from rigidfluid.core.mechanics.kinematics import carried_sum
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
+from rigidfluid.core.model.joints import Joints
+from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     BoolArray,
@@ -37,7 +39,7 @@ from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, impact_speeds, travel_speeds
 from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
-from rigidfluid.core.setup.joints import build_linkage, joined_bodies
+from rigidfluid.core.setup.joints import build_joints, joined_bodies
 from rigidfluid.core.setup.parts import Parts, known_parts
 from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
@@ -63,23 +65,22 @@ def build_system(scene: Scene) -> System:
     start = initial_pose(tables, scene.dimension)
     motion = prescribed_motion(scene, start)
     started = _initial_twist(initial_twist(tables, scene.dimension), controlled[:single], motion(0.0))
-    carried = CarriedBodies(mechanisms, mass, inertia, controlled, start, started) if mechanisms else None
-    pose = start if carried is None else carried.poses(start, 0.0)
+    own = mass, inertia, controlled, start, started
+    motions: Motions = CarriedBodies(mechanisms, *own) if mechanisms else SingleBodies(*own)
+    pose = motions.poses(start, 0.0)
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
     held = open_wake_end(conditions(scene, domain), window)
     creeping = parts.backend.part.needs_mesh and scene.fluid.model == "stokes"
     resistance = creeping_resistances(scene, domain, parts.bodies) if creeping else None
-    linkage = build_linkage(scene, pose, mass, inertia, controlled, motion, carried, resistance)
-    if linkage is not None:
-        started = linkage.fitting(start, started, 0.0)
-    if carried is not None:
-        carried = carried.starting_with(started)
+    joints = build_joints(scene, pose, motions, motion, resistance)
+    started = joints.fitting(start, started, 0.0)
+    motions = motions.starting_with(started)
     weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
     added = inert * np.array([added_mass(body) for body in parts.bodies])
-    moved = _sum_linked(carried, linkage, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
-    pulled = _sum_linked(carried, linkage, weight)
-    given = None if carried is None else fastest_given(carried, mechanisms.values(), scene.time.end)
+    moved = _sum_linked(motions, joints, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
+    pulled = _sum_linked(motions, joints, weight)
+    given = fastest_given(motions, mechanisms.values(), scene.time.end)
     wet = parts.backend.part.needs_mesh
     speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, wet, given)
     loads = _loads(scene, parts, controlled, moved, pulled, speed)
@@ -88,7 +89,7 @@ def build_system(scene: Scene) -> System:
         loads = replace(loads, travel_speed=travel, flow_speed=fastest_flow(scene, domain))
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
-    problem = _problem(scene, held, carried)
+    problem = _problem(scene, held, motions)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
@@ -102,7 +103,9 @@ def build_system(scene: Scene) -> System:
         inertia=inertia,
         weight=weight,
         pose=pose,
-        twist=started if carried is None else component_twist(carried.kinematics(start, 0.0), started),
+        twist=motions.kinematics(start, 0.0).component_twist(started),
+        motions=motions,
+        joints=joints,
         assembly=_assemblies(scene),
         controlled=controlled,
         controlled_twist=motion,
@@ -113,15 +116,13 @@ def build_system(scene: Scene) -> System:
         detector=detector,
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
-        leverage=leverages(parts.bodies, carried, scene.time.end),
+        leverage=leverages(parts.bodies, motions, scene.time.end),
         interactions=interactions,
         law=law,
         loads=loads,
         substeps=scene.contact.substeps,
         implicit=scene.contact.stepping == "implicit",
-        mechanisms=carried,
         window=window,
-        linkage=linkage,
         joined=joined_bodies(scene),
     )
 
@@ -143,14 +144,11 @@ def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Tw
     )
 
 
-def _sum_linked(carried: CarriedBodies | None, linkage: JointLinkage | None, rows: FloatArray) -> FloatArray:
+def _sum_linked(motions: Motions, joints: Joints, rows: FloatArray) -> FloatArray:
     """Sum, for each body, of ``rows`` (n, …) over all bodies that a motion or joints link with it: an upper bound of
     what it hits something with."""
-    if carried is None and linkage is None:
-        return rows
-    motion = np.arange(len(rows)) if carried is None else carried.carrier
-    whole = motion if linkage is None else linkage.clusters[motion]
-    return carried_sum(whole, rows, int(whole.max()) + 1)[whole]
+    whole = joints.clusters[motions.carrier]
+    return carried_sum(whole, rows, int(whole.max(initial=-1)) + 1)[whole]
 
 
 def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
@@ -190,7 +188,7 @@ def _film(scene: Scene, parts: Parts) -> Film | None:
 
 
 def _problem(
-    scene: Scene, boundary: tuple[BoundaryCondition, ...], carried: CarriedBodies | None
+    scene: Scene, boundary: tuple[BoundaryCondition, ...], motions: Motions
 ) -> FluidProblem | None:
     fluid = scene.fluid
     if fluid.density is None or fluid.viscosity is None:
@@ -203,7 +201,7 @@ def _problem(
         inertia=fluid.model == "navier-stokes",
         conditions=boundary,
         source=body_force(scene),
-        carrier=None if carried is None else tuple(carried.carrier.tolist()),
+        carrier=tuple(motions.carrier.tolist()),
         initial=initial_flow(scene),
     )
 

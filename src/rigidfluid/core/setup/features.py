@@ -96,11 +96,10 @@ def _contact(system: System) -> Iterator[Feature]:
 
 
 def _joints(system: System) -> Feature:
-    linkage = system.linkage
-    if linkage is None:
+    linked = system.joints.linked
+    if not linked.any():
         return Feature("joints", False, "no table [[joint]], no body with `free` or `spring`")
-    count = int(np.count_nonzero(linkage.linked))
-    return Feature("joints", True, f"they hold {count} of {len(linkage.linked)} motions")
+    return Feature("joints", True, f"they hold {int(np.count_nonzero(linked))} of {len(linked)} motions")
 
 
 def _law(system: System, interaction: Interaction) -> str:

@@ -34,7 +34,7 @@ def impact_speeds(
     mass: FloatArray,
     weight: FloatArray,
     wet: bool,
-    carried: FloatArray | None = None,
+    carried: FloatArray,
 ) -> FloatArray:
     """Speed at which each body is expected to hit something (n,) [length/time].
 
@@ -59,7 +59,7 @@ def travel_speeds(
     bodies: Sequence[Body],
     mass: FloatArray,
     weight: FloatArray,
-    carried: FloatArray | None = None,
+    carried: FloatArray,
 ) -> FloatArray:
     """Highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
 
@@ -78,13 +78,12 @@ def _own_speeds(
     mass: FloatArray,
     weight: FloatArray,
     wet: bool,
-    carried: FloatArray | None,
+    carried: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """v₀, and what it becomes by falling, each (n,) [length/time]."""
     lever = _measure_bodies(_lever, bodies)
     start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
-    if carried is not None:
-        start = np.maximum(start, carried[:, 0] + lever * carried[:, 1])
+    start = np.maximum(start, carried[:, 0] + lever * carried[:, 1])
     pull = np.linalg.norm(weight, axis=1)
     falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
     if wet:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.setup.joint_kinds import build_joints
+from rigidfluid.core.setup.joint_kinds import joint_kinds
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -31,7 +31,7 @@ def check_joints(scene: Scene) -> None:
             raise SceneError("joint.name", repr(name), "a name that no other joint or body has", "Rename it.")
     for number, joint in enumerate(scene.joint):
         _check_ends(scene, joint, f"joint.{number}")
-    build_joints(scene)
+    joint_kinds(scene)
 
 
 def held_directions(body: BodyTable, dimension: int) -> BoolArray:

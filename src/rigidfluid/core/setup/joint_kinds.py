@@ -11,7 +11,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import JOINT, Registry
 
 
-def build_joints(scene: Scene) -> list[Joint]:
+def joint_kinds(scene: Scene) -> list[Joint]:
     """Build the joints of a scene, without their bodies; raises PluginError for a type that is not there, SceneError
     for options that are unknown or contradict each other."""
     registry = _registry(scene)
@@ -20,7 +20,7 @@ def build_joints(scene: Scene) -> list[Joint]:
 
 def read_drives(scene: Scene) -> Scene:
     """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file; raises as
-    `build_joints` does."""
+    `joint_kinds` does."""
     registry = _registry(scene)
     tables = [_with_rows(table, registry, f"joint.{number}") for number, table in enumerate(scene.joint)]
     return scene.model_copy(update={"joint": tuple(tables)})

@@ -9,17 +9,18 @@ import numpy as np
 
 from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
-from rigidfluid.core.model.linkage import GroundLink
+from rigidfluid.core.model.joints import GroundLink, NoJoints
 from rigidfluid.core.scene.scene import SpringTable
 from rigidfluid.core.setup.joint_checks import held_directions
-from rigidfluid.core.setup.joint_kinds import build_joints
+from rigidfluid.core.setup.joint_kinds import joint_kinds
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
-    from rigidfluid.core.model.system import Mechanisms
-    from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose
+    from rigidfluid.core.model.joints import Joints
+    from rigidfluid.core.model.motions import Motions
+    from rigidfluid.core.model.types import FloatArray, IntArray, Pose
     from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
 
 LONGEST_TURN = 0.5
@@ -27,35 +28,32 @@ LONGEST_TURN = 0.5
 The rate at which a spring relaxes in a fluid without inertia counts as its frequency: half of what is still stable."""
 
 
-def build_linkage(
+def build_joints(
     scene: Scene,
     pose: Pose,
-    mass: FloatArray,
-    inertia: FloatArray,
-    controlled: BoolArray,
+    motions: Motions,
     controlled_twist: Callable[[float], FloatArray],
-    mechanisms: Mechanisms | None,
     resistance: FloatArray | None,
-) -> JointLinkage | None:
-    """Joints and ground links between the motions of a scene at the start, None without any.
+) -> Joints:
+    """Joints and ground links between the motions of a scene at the start.
 
-    ``pose``, ``mass`` (n,), ``inertia`` (n, k, k) and ``controlled`` (n,) are the bodies', ``controlled_twist`` the
-    prescribed twists (N, d+k) of the N motions by time; ``resistance`` (n, d+k) is a lower bound of that of a fluid
+    ``pose`` is the bodies', ``controlled_twist`` the prescribed twists (N, d+k) of the N motions by time;
+    ``resistance`` (n, d+k) is a lower bound of that of a fluid
     without inertia [force·time/length | force·length·time]. Raises SceneError if joints hold what is held already,
     nothing can move in one, or a spring is too stiff for the step.
     """
     ground = [_ground_link(body, number, scene.dimension) for number, body in enumerate(scene.body) if _is_held(body)]
     if not scene.joint and not ground:
-        return None
+        return NoJoints(len(motions.mass))
     joints = joints_of(scene, pose)
-    linkage = JointLinkage(pose, joints, ground, mass, inertia, controlled, controlled_twist, mechanisms, resistance)
+    linkage = JointLinkage(pose, joints, ground, motions, controlled_twist, resistance)
     _check_step(scene, linkage)
     return linkage
 
 
 def joints_of(scene: Scene, pose: Pose) -> list[PlacedJoint]:
     """The joints of a scene, with the components of mechanisms among its bodies, that are at ``pose`` at the start."""
-    return [_placed(scene, table, kind, pose) for table, kind in zip(scene.joint, build_joints(scene), strict=True)]
+    return [_placed(scene, table, kind, pose) for table, kind in zip(scene.joint, joint_kinds(scene), strict=True)]
 
 
 def joined_bodies(scene: Scene) -> IntArray:

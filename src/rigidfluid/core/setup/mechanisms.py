@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import component_twist
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Component, Mechanism
 from rigidfluid.core.model.types import FloatArray
@@ -97,7 +96,7 @@ def _component_tables(scene: Scene, mechanisms: Mapping[str, Mechanism]) -> list
     inertia = mass[:, None, None] * np.array([part.shape.unit_inertia for _, part in owners])
     pose, twist = initial_pose(scene.mechanism, scene.dimension), initial_twist(scene.mechanism, scene.dimension)
     carried = CarriedBodies(mechanisms, mass, inertia, np.zeros(len(mass), dtype=bool), pose, twist)
-    poses, twists = carried.poses(pose, 0.0), component_twist(carried.kinematics(pose, 0.0), twist)
+    poses, twists = carried.poses(pose, 0.0), carried.kinematics(pose, 0.0).component_twist(twist)
     rows = zip(*map(_rows, (poses.position, poses.orientation, twists.velocity, twists.angular_velocity)), strict=True)
     turned = "angle" if scene.dimension == 2 else "orientation"
     return [

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.kinematics import component_twist, free_wrench
-from rigidfluid.core.model.types import FloatArray, Kinematics, Step
+from rigidfluid.core.mechanics.kinematics import CarriedKinematics
+from rigidfluid.core.model.types import FloatArray, Step
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose, box_with_balls
 from rigidfluid.testing.fluid.exact import problem
@@ -25,7 +25,7 @@ class CarriedContract(FluidContract):
         flow, step = self._pushed(dimension, given=0.3)
         advance = flow.backend.advance(flow.fluid, flow.mesh, step)
         assert advance.twist.velocity.shape == (1, dimension)
-        twist = components(component_twist(step.kinematics, advance.twist))
+        twist = components(step.kinematics.component_twist(advance.twist))
         moved = replace(flow, fluid=advance.fluid, pose=step.pose)
         self.assert_rigid(moved, twist, box_with_balls(dimension))
         assert np.abs(twist[1] - twist[0]).max() > 0.1
@@ -36,7 +36,7 @@ class CarriedContract(FluidContract):
         advance = flow.backend.advance(flow.fluid, flow.mesh, step)
         wrench = advance.hydrodynamic_wrench
         assert wrench.force.shape == (2, dimension)
-        pulled = components(free_wrench(step.kinematics, wrench))
+        pulled = components(step.kinematics.motion_wrench(wrench))
         moved = np.einsum("nij,nj->ni", step.mass_matrix, components(advance.twist))
         scale = float(np.abs(components(wrench)).max())
         self.assert_close(moved - step.load, pulled, scale=scale)
@@ -64,7 +64,7 @@ class CarriedContract(FluidContract):
         centre = pose.position.mean(axis=0, keepdims=True)
         relative = np.zeros((2, size(pose)))
         relative[1] = given
-        kinematics = Kinematics(carrier, centre, pose.position - centre, relative)
+        kinematics = CarriedKinematics(carrier, centre, pose.position - centre, relative)
         width = size(pose)
         random: FloatArray = np.random.default_rng(8).normal(size=(width, width))
         masses = 0.1 * np.eye(width) + 0.01 * random @ random.T

@@ -1,0 +1,69 @@
+"""Kinematics of bodies on the motions that carry them: body twist = G u + g, motion wrench = Gᵀ body wrench."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.types import BoolArray, FloatArray, Pose, Twist, Wrench
+
+
+class Kinematics(Protocol):
+    """Kinematics of n bodies on N motions at one moment."""
+
+    @property
+    def given(self) -> FloatArray:
+        """Twist g that relative motion adds, (n, d+k), or () where there is none [length/time | rad/time]."""
+
+    def centres(self, bodies: Pose) -> FloatArray:
+        """Centres of mass of the motions (N, d), with the ``bodies`` there [length]."""
+
+    def component_twist(self, motion: Twist) -> Twist:
+        """Twists G u + g of the bodies, n rows, by those of the motions, N rows."""
+
+    def motion_twist(self, twist: FloatArray) -> FloatArray:
+        """Twists (N, d+k) of the motions that give the bodies this ``twist`` (n, d+k)."""
+
+    def motion_wrench(self, wrench: Wrench) -> Wrench:
+        """Wrench Gᵀ W on the motions about their centres of mass, N rows, by that on the bodies, n rows."""
+
+    def motion_rows(self, rows: FloatArray) -> FloatArray:
+        """Rows C G (c, N, d+k) on the motions of rows C (c, n, d+k) on the bodies."""
+
+    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
+        """Whether a body has a prescribed ``twist`` (n,), with the motions ``controlled`` (N,)."""
+
+    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+        """Accelerations of the bodies (n, d+k) by the ``rate`` of the motions' twists (N, d+k) and that of g."""
+
+
+class EachItsOwn:
+    """Bodies that move each by itself: G = 1, g = 0; arguments are returned unchanged."""
+
+    given: FloatArray = np.zeros(())
+
+    def centres(self, bodies: Pose) -> FloatArray:
+        return bodies.position
+
+    def component_twist(self, motion: Twist) -> Twist:
+        return motion
+
+    def motion_twist(self, twist: FloatArray) -> FloatArray:
+        return twist
+
+    def motion_wrench(self, wrench: Wrench) -> Wrench:
+        return wrench
+
+    def motion_rows(self, rows: FloatArray) -> FloatArray:
+        return rows
+
+    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
+        return controlled
+
+    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+        return rate
+
+
+EACH_ITS_OWN = EachItsOwn()

@@ -1,0 +1,79 @@
+"""The motions of a system, and how they carry its bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from rigidfluid.core.model.dynamics import BodyDynamics, MotionDynamics, PushedDynamics
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+
+
+class Motions(Protocol):
+    """The N motions of a system, and how they carry its n bodies.
+
+    ``names``: of the mechanisms, the last of the motions. ``carrier`` (n,): the motion of each body. ``controlled``
+    (N,): which motions are given. ``mass`` (N,) of all that a motion carries. ``pose``, ``twist``: of the motions at
+    the start. ``driven_motions`` (N,): in which something moves relatively; ``driven``: whether there is any.
+    """
+
+    names: tuple[str, ...]
+    carrier: IntArray
+    controlled: BoolArray
+    mass: FloatArray
+    pose: Pose
+    twist: Twist
+    driven_motions: BoolArray
+    driven: bool
+
+    def poses(self, motions: Pose, time: float) -> Pose:
+        """Pose of the bodies, where the ``motions`` are there."""
+
+    def kinematics(self, motions: Pose, time: float) -> Kinematics:
+        """G and g, where the ``motions`` are there."""
+
+    def kinematics_between(self, motions: Pose, bodies: Pose, motion: Twist, body: Twist) -> Kinematics:
+        """G and g of motions and bodies at these poses and with these twists."""
+
+    def inertia(self, time: float) -> FloatArray:
+        """Inertia of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
+
+    def inverse_masses(self, mass: FloatArray, bodies: Pose, centre: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inverse mass (N, d, d) and inverse inertia (N, k, k) of the motions in the lab frame, with ``mass`` (n, d, d)
+        of the bodies there and ``centre`` (N, d) of the motions [1/mass | 1/(mass·length²)]."""
+
+    def spin(self, time: float) -> FloatArray:
+        """Angular momentum of the relative motion, in the motions' frames, (N, k) [mass·length²/time]."""
+
+    def reaches(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Largest of the bounding ``radii`` (n,) of the bodies of each motion, and the distance of its farthest point
+        from its centre of mass, (N,) each [length]."""
+
+    def sums(self, rows: FloatArray) -> FloatArray:
+        """Sums of ``rows`` (n, …) over the bodies that each motion carries, (N, …)."""
+
+    def least(self, values: FloatArray) -> FloatArray:
+        """Least of ``values`` (n,) of the bodies that each motion carries, (N,)."""
+
+    def next_corner(self, time: float) -> float:
+        """The first time after this at which the rate of a relative motion jumps; infinite without one [time]."""
+
+    def dry_dynamics(
+        self,
+        pose: Pose,
+        twist: Twist,
+        load: Wrench,
+        arms: FloatArray,
+        start: float,
+        controlled_twist: Callable[[float], FloatArray],
+    ) -> PushedDynamics:
+        """Dynamics of the motions without a fluid, with a constant ``load`` on the bodies, whose farthest points are
+        ``arms`` (n,) away [length]; ``controlled_twist`` (N, d+k) from a time since the ``start``."""
+
+    def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> BodyDynamics:
+        """Dynamics of the bodies on these ``motions`` from ``start`` on [time]; ``load``: that of `dry_dynamics`, None
+        where the motions know all of it."""
+
+    def starting_with(self, twist: Twist) -> Motions:
+        """The same bodies with another ``twist`` of the motions at the start."""
