@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import rigidfluid
-from rigidfluid.core.contact.contact_path import advance_bodies
+from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.evaluation.crosscheck.kinds import kinds
 from rigidfluid.evaluation.crosscheck.library import lammps_session
@@ -66,7 +66,7 @@ def measure(law: str, side: int, steps: int, repeats: int) -> dict[str, Any]:
         engine.command(f"run {steps} post no")
         for _ in range(repeats):
             start = time.perf_counter()
-            advance_bodies(run.system, run.state, run.time, run.clock.size(0), None)
+            scheme_of(run.system).follow(run.state, run.time, run.clock.size(0), None)
             middle = time.perf_counter()
             engine.command(f"run {steps} post no")
             ours.append(1e3 * (middle - start) / steps)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.answers import ALONE, updated_model
+from rigidfluid.core.coupling.impulse_responses import ALONE, updated_model
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN
 from rigidfluid.core.model.reduced_model import ReducedModel

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rigidfluid.core.contact.contact_path import advance_bodies, near_contacts
+from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
+from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
-from rigidfluid.core.model.state import Past, State
+from rigidfluid.core.model.state import MotionState, Past, State, unloaded
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Twist, Wrench
 from rigidfluid.core.setup.build import build_system
@@ -63,6 +64,7 @@ def accelerations(system: System, force: FloatArray, torque: FloatArray) -> tupl
 
 def state_after(system: System, before: Twist, contact_wrench: Wrench) -> State:
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, None)
+    none = Wrench(np.zeros_like(before.velocity), np.zeros_like(before.angular_velocity))
     return State(
         tick=1,
         count=1,
@@ -76,8 +78,10 @@ def state_after(system: System, before: Twist, contact_wrench: Wrench) -> State:
         coupling=None,
         contacts=contacts,
         gaps=gaps,
-        hydrodynamic_wrench=Wrench(np.zeros_like(before.velocity), np.zeros_like(before.angular_velocity)),
+        hydrodynamic_wrench=none,
         contact_wrench=contact_wrench,
+        motions=MotionState(system.pose, system.twist, contact_wrench, none),
+        link=unloaded(system.pose),
         ledger=Ledger(0.0, 0.0, 0.0),
     )
 
@@ -96,7 +100,7 @@ def test_what_contacts_gave_in_the_latest_step_does_not_go_on(dimension: int) ->
     before = Twist(system.twist.velocity - STEP * linear, system.twist.angular_velocity - STEP * angular)
     state = state_after(system, before, Wrench(force[None, :], torque[None, :]))
     empty = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), NONE, Asked(NONE, NONE), False)
-    end = advance_bodies(system, state, 0.0, STEP, Coupling(empty, NONE, NONE, NONE))
+    end = scheme_of(system).follow(state, 0.0, STEP, Coupling(empty, NONE, NONE, NONE))
     for found, kept, given in (
         (end.twist.velocity, system.twist.velocity, linear),
         (end.twist.angular_velocity, system.twist.angular_velocity, angular),
@@ -108,7 +112,8 @@ def test_contacts_that_weight_can_close_in_a_step_are_near() -> None:
     """From rest, by twice the size of the step times what weight can make of the speed in it."""
     system = moving(2, gravity=-1000.0)
     at_rest = Twist(np.zeros((1, 2)), np.zeros((1, 1)))
-    state = replace(state_after(system, at_rest, Wrench(np.zeros((1, 2)), np.zeros((1, 1)))), twist=at_rest, past=None)
+    state = state_after(system, at_rest, Wrench(np.zeros((1, 2)), np.zeros((1, 1))))
+    state = replace(state, twist=at_rest, motions=replace(state.motions, twist=at_rest), past=None)
     left = state.contacts.body_b == 1
     pull = abs(accelerations(system, system.weight[0], np.zeros(1))[0])
     needed = np.sqrt((state.contacts.gap[left][0] - 0.02) / (2.0 * np.linalg.norm(pull)))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.core.contact import contact_path
+from rigidfluid.core.contact import contact_load
+from rigidfluid.core.coupling import dry_scheme
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Wrench
 from rigidfluid.core.setup.load import scene_from_dict
@@ -86,7 +87,7 @@ def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
         wrench = contact_wrench(*arguments)
         return Wrench(wrench.force, -wrench.torque)
 
-    monkeypatch.setattr(contact_path, "contact_wrench", flipped)
+    monkeypatch.setattr(contact_load, "contact_wrench", flipped)
     try:
         energies, _ = tilted(10.0)
     except StepError:
@@ -143,8 +144,8 @@ def test_what_flies_apart_needs_ever_fewer_substeps(monkeypatch):
         counts.append(path.substeps)
         return path
 
-    follow = contact_path._resolve
-    monkeypatch.setattr(contact_path, "_resolve", counted)
+    follow = dry_scheme.advance_by_substeps
+    monkeypatch.setattr(dry_scheme, "advance_by_substeps", counted)
     pair = [{"position": [x, 0.5], "velocity": [0.0, 0.0]} for x in (0.4 - 5e-8, 0.6 + 5e-8)]
     history = rigidfluid.run(dry(*pair, step=0.01, end=0.02, law="barrier", epsilon=1e-2))
     assert abs(history.summary["energy"]["relative_residual"]) < 1e-4

@@ -6,11 +6,12 @@ import fluid_contacts as scenes
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.contact_path import BodyStep
-from rigidfluid.core.contact.convection import turning
+from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
+from rigidfluid.core.model.state import MotionState, unloaded
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.core.run.simulation import Simulation
 
@@ -23,18 +24,21 @@ def path_to(simulation: Simulation, moved: float) -> BodyStep:
     pose = Pose(state.pose.position + [[0.0, moved]], state.pose.orientation)
     zero = np.zeros(2)
     model = ReducedModel(count, np.eye(2) / np.sqrt(MASS), zero, Asked(zero, zero), False)
-    return BodyStep(pose, state.twist, nothing(pose), 0.0, 0.0, 1, coupling=Coupling(model, zero, zero, zero))
+    moved_state = MotionState(pose, state.twist, nothing(pose), nothing(pose))
+    coupling = Coupling(model, zero, zero, zero)
+    return BodyStep(pose, state.twist, moved_state, nothing(pose), 0.0, 0.0, 1, unloaded(pose), coupling=coupling)
 
 
 def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArray:
     """For a disk that falls at first."""
     simulation = Simulation(scene(STEP), None, False)
     falls = Twist(np.array([[0.0, -SPEED]]), np.zeros((1, 1)))
-    simulation.state = state = replace(simulation.state, twist=falls)
+    motions = replace(simulation.state.motions, twist=falls)
+    simulation.state = state = replace(simulation.state, twist=falls, motions=motions)
     path = path_to(simulation, moved)
     path = path if coupled else replace(path, coupling=None)
     step = step_to(simulation.system, state, STEP, STEP, path.pose, path.impulse, None)
-    return turning(simulation.system, state, path, step)
+    return scheme_of(simulation.system).prepare(step, state, path).turning
 
 
 def test_impulses_make_up_for_what_was_extrapolated():

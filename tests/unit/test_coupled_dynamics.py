@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
+from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel, reduced_model
 from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
 

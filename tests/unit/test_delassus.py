@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box_walls, ellipsoid, upright
 
-from rigidfluid.core.contact.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.contact.delassus import delassus
+from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
 from rigidfluid.core.model.interfaces import PartOptions

@@ -8,19 +8,12 @@ import fluid_contacts as scenes
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.coupling.stirring import FELT, STORED, impact_tick
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.state import ErrorEstimate, State
-from rigidfluid.core.run.impacts import (
-    FELT,
-    HALVINGS,
-    STORED,
-    TOLERATED,
-    impact_tick,
-    is_unresolved,
-    level_after_impact,
-)
+from rigidfluid.core.run.impacts import HALVINGS, TOLERATED, is_unresolved, level_after_impact
 from rigidfluid.core.run.simulation import Simulation
 
 STEP = 4e-3
@@ -42,7 +35,8 @@ def state(run: Simulation) -> State:
 
 
 def path(state: State, friction: float) -> BodyStep:
-    return BodyStep(state.pose, state.twist, nothing(state.pose), 0.0, 0.0, 1, friction)
+    none = nothing(state.pose)
+    return BodyStep(state.pose, state.twist, state.motions, none, 0.0, 0.0, 1, state.link, friction)
 
 
 def test_what_comes_in_counts_as_put_in_and_what_goes_out_does_not(state):

@@ -11,7 +11,7 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid
-from rigidfluid.core.contact import contact_path
+from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.leverage import ELLIPSOIDS, most_leverage
 from rigidfluid.core.run.simulation import Simulation
@@ -56,7 +56,7 @@ def test_substeps_are_as_short_as_the_leverage_asks(monkeypatch: pytest.MonkeyPa
     counts = []
     for leverage in (5.0, 22.0):
         system = replace(simulation.system, leverage=np.array([leverage]))
-        counts.append(contact_path.advance_bodies(system, simulation.state, 0.0, 0.01, None).substeps)
+        counts.append(scheme_of(system).follow(simulation.state, 0.0, 0.01, None).substeps)
     assert counts[1] > 1.5 * counts[0]
 
 
@@ -69,7 +69,7 @@ def test_a_point_that_gives_way_easily_may_hit_with_more_speed() -> None:
     simulation = Simulation(dry_scene(law, disk, end=0.1, step=0.01), None, False)
     for leverage in (5.0, 22.0):
         system = replace(simulation.system, leverage=np.array([leverage]))
-        counts.append(contact_path.advance_bodies(system, simulation.state, 0.0, 0.01, None).substeps)
+        counts.append(scheme_of(system).follow(simulation.state, 0.0, 0.01, None).substeps)
     assert counts[1] > 8 * counts[0]
 
 

@@ -54,9 +54,7 @@ def test_forces_on_balls_pass_through_their_centres_however_coarse_the_mesh():
     np.testing.assert_allclose(contacts.normal[1], [0.0, 1.0], atol=1e-15)
     away = np.linalg.norm(centre[1] - centre[0])
     np.testing.assert_allclose(contacts.gap, [away - 0.16, 0.025], atol=1e-15)
-    np.testing.assert_allclose(
-        contacts.point_b, contacts.point_a - contacts.gap[:, None] * contacts.normal, atol=1e-15
-    )
+    np.testing.assert_allclose(contacts.point_b, contacts.point_a - contacts.gap[:, None] * contacts.normal, atol=1e-15)
 
 
 def test_an_ellipse_falls_and_its_gap_is_recorded_within_the_band():

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from falling import falling_disk
 
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.run import step, stepper
+from rigidfluid.core.run import step
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.stepper import Stepper
 
@@ -38,12 +39,12 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         monkeypatch.setattr(owner, name, call)
 
     recorded(Stepper, "longest", "propose a level")
-    recorded(stepper, "expected_coupling", "expect the coupling")
-    recorded(stepper, "advance_bodies", "follow the bodies")
+    recorded(FluidScheme, "expect", "expect the coupling")
+    recorded(FluidScheme, "follow", "follow the bodies")
     recorded(MeshUpdater, "remesh_if_needed", "adapt the mesh")
     recorded(MeshUpdater, "deform", "move the mesh")
     recorded(step, "detect_contacts_and_gaps", "detect contacts")
-    recorded(stepper, "shown_coupling", "show the coupling")
+    recorded(FluidScheme, "_shown", "show the coupling")
     recorded(Simulation, "_record", "record")
     return made
 

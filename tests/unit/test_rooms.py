@@ -19,8 +19,9 @@ BELOW = {
     "output": "model",
     "mesh": "mechanics model",
     "contact": "joints mechanics model",
+    "coupling": "contact mechanics model",
     "setup": "contact joints mechanics scene model",
-    "run": "setup mesh contact output joints mechanics scene model",
+    "run": "setup mesh coupling contact output joints mechanics scene model",
 }
 
 PARTS = {

@@ -9,8 +9,8 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, figure, round_down
-from rigidfluid.core.contact.contact_path import MOST_SUBSTEPS
 from rigidfluid.core.contact.substep import RESOLUTION
+from rigidfluid.core.contact.substep_path import MOST_SUBSTEPS
 from rigidfluid.core.scene.scene import TimeTable
 
 QUESTION = "step"

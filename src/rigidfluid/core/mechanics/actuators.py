@@ -13,9 +13,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 
-def actuator_work(
-    system: System, state: State, kinematics: Kinematics, pose: Pose, twist: Twist, size: float
-) -> float:
+def actuator_work(system: System, state: State, kinematics: Kinematics, pose: Pose, twist: Twist, size: float) -> float:
     """Work ∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W weight and applied wrenches
     [energy].
 

@@ -35,9 +35,7 @@ class ComponentDynamics:
     but not the torque about their centres, None without.
     """
 
-    def __init__(
-        self, motions: MotionDynamics, carried: Carried, time: float, load: Wrench | None = None
-    ) -> None:
+    def __init__(self, motions: MotionDynamics, carried: Carried, time: float, load: Wrench | None = None) -> None:
         self._motions, self._carried, self._time, self._load = motions, carried, time, load
         self._impulse = nothing(motions.pose)
         self._place()

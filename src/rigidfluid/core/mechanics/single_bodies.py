@@ -21,9 +21,7 @@ class SingleBodies:
     names: tuple[str, ...] = ()
     driven: bool = False
 
-    def __init__(
-        self, mass: FloatArray, inertia: FloatArray, controlled: BoolArray, pose: Pose, twist: Twist
-    ) -> None:
+    def __init__(self, mass: FloatArray, inertia: FloatArray, controlled: BoolArray, pose: Pose, twist: Twist) -> None:
         self.mass, self._inertia, self.controlled, self.pose, self.twist = mass, inertia, controlled, pose, twist
         self.carrier: IntArray = np.arange(len(mass))
         self.driven_motions: BoolArray = np.zeros(len(mass), dtype=bool)

@@ -11,9 +11,7 @@ from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 
-def twist_row(
-    dimension: int, velocity: Sequence[float] | None, angular_velocity: Sequence[float] | None
-) -> FloatArray:
+def twist_row(dimension: int, velocity: Sequence[float] | None, angular_velocity: Sequence[float] | None) -> FloatArray:
     """Velocity and angular velocity of a body (d+k,), zero where not given; raises SceneError."""
     return _row(dimension, {"velocity": velocity, "angular_velocity": angular_velocity})
 

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.model.state import State
 from rigidfluid.core.run.clock import Clock
 
 TOLERATED = 3e-4
 """Friction loss on the bodies' path of one step, over the energy put in since the start, above which the step is
 halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
-
-FELT, STORED = 3e-5, 1e-2
-"""Shares of the energy put in: an impact whose friction takes less than the first in a step, and whose contacts store
-or give back less than the second, leaves the fluid as it was."""
 
 HALVINGS = 3
 """An impact halves a step so many times at most: it may last a millionth of it."""
@@ -25,12 +21,6 @@ def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
     """
     before = 0 if state.estimate is None else state.estimate.level
     return level < before + HALVINGS and path.friction > TOLERATED * state.ledger.put_in
-
-
-def impact_tick(state: State, path: BodyStep, candidate: State) -> int | None:
-    """The ``candidate``'s tick where an impact is on the ``path`` that led there, and else that of the one before."""
-    put_in, stored = candidate.ledger.put_in, abs(candidate.ledger.contact - state.ledger.contact)
-    return candidate.tick if path.friction > FELT * put_in or stored > STORED * put_in else state.impact
 
 
 def level_after_impact(state: State, clock: Clock, level: int) -> int:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import contact_forces
+from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.mesh.regions import Wake
@@ -354,7 +354,7 @@ class Simulation:
         if self.state.count > 0 and level is not None:
             quality = self.mesh_updater.quality(self.state)
             cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
-        forces = contact_forces(self.system, self.state, self.time)
+        forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
         now = records(self.system, self._probes, self.state, self.time, cost, forces)
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)

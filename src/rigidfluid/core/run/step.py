@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodyStep
-from rigidfluid.core.contact.convection import turning
+from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
+from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.mechanics.actuators import actuator_work
 from rigidfluid.core.mechanics.fluid_step import step_to
 from rigidfluid.core.mechanics.kinematics import given_twist
@@ -36,6 +36,7 @@ def attempt(
     clock: Clock,
     mesh_updater: MeshUpdater,
     watch: Stopwatch,
+    scheme: Scheme,
     state: State,
     level: int,
     path: BodyStep,
@@ -59,9 +60,7 @@ def attempt(
         refuse_overlap(system, nearest, float(gaps[nearest]))
     with watch("advance"), system.backend.ranks.raise_on_all():
         step = step_to(system, state, time, size, path.motions.pose, _pushed(path, size), mesh)
-        if path.coupling is not None:
-            step.load.flat[path.coupling.model.velocities] += path.coupling.correction
-            step = replace(step, turning=turning(system, state, path, step), provisional=provisional)
+        step = replace(scheme.prepare(step, state, path), provisional=provisional)
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))
     twist = step.kinematics.component_twist(advance.twist)

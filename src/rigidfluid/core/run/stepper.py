@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.contact.contact_path import BodyStep, advance_bodies, first_step_again
-from rigidfluid.core.contact.coupling import expected_coupling, settled, shown_coupling, unforeseen, unsteady
+from rigidfluid.core.contact.body_step import BodyStep, first_step_again
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, least_gaps, travel
+from rigidfluid.core.coupling.scheme import Scheme
+from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
@@ -19,7 +20,7 @@ from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.corners import begun_anew, level_to_corner
 from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
-from rigidfluid.core.run.impacts import impact_tick, is_unresolved, level_after_impact
+from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
 from rigidfluid.core.run.process import give_back_memory
 from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
 from rigidfluid.core.run.step_controller import StepController
@@ -65,6 +66,11 @@ class Stepper:
         self.counts = Counts()
         self._controller = None if tolerance is None else StepController(clock, tolerance)
         self.propose: Callable[[State], int] = self._controller.propose if self._controller else self.longest
+
+    @property
+    def scheme(self) -> Scheme:
+        """Scheme of the present system's steps."""
+        return scheme_of(self.system)
 
     def longest(self, state: State) -> int:
         """The level of the longest step on the clock's grid, at most twice the last, and after a start at once at most
@@ -119,38 +125,35 @@ class Stepper:
 
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
         """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
+        scheme, size = self.scheme, self._clock.size(level)
         for number in range(MOST_ATTEMPTS):
-            provisional = number == 0 and unsteady(self.system, state, path, self._clock.size(level))
+            provisional = number == 0 and scheme.is_unsteady(state, path, size)
             tools = self.system, self._clock, self._mesh_updater, self._watch
-            candidate, step = attempt(*tools, state, level, path, provisional)
-            if level < self._clock.levels and unforeseen(self.system, state, candidate):
+            candidate, step = attempt(*tools, scheme, state, level, path, provisional)
+            if level < self._clock.levels and scheme.missed_contacts(state, candidate):
                 raise _too_fast()
-            if path.coupling is None:
-                if number > 0 or state.past is not None or state.mesh is None:
-                    return candidate, True
-                end, size = self._end(state, level), self._clock.size(level)
-                again = first_step_again(self.system, state, candidate.motions.twist, end, size)
+            if number == 0 and scheme.repeats_start(state, path):
+                again = first_step_again(self.system, state, candidate.motions.twist, self._end(state, level), size)
                 path = self._with_prescribed(again, state, level)
                 continue
             with self._watch("response"):
-                found = shown_coupling(self.system, state, candidate, path, step)
-            agreed = not provisional and settled(self.system, found, path, state, candidate)
+                candidate, agree = scheme.converge(state, candidate, path, step)
+            agreed = agree and not provisional
             if agreed or number == MOST_ATTEMPTS - 1:
                 break
-            path = self._path(state, level, found)
+            path = self._path(state, level, candidate.coupling)
             if level < self._clock.levels and self._changes_gaps_too_fast(state, path.pose):
                 raise _too_fast()
-        impact = None if self.system.quasi_steady else impact_tick(state, path, candidate)
-        return replace(candidate, coupling=found, impact=impact), agreed
+        return candidate, agreed
 
     def _path(self, state: State, level: int, coupling: Coupling | None = None) -> BodyStep:
         """The bodies' way through a step, with a ``coupling`` that an attempt has shown or else the expected one."""
         time, size = self._clock.time(state.tick), self._clock.size(level)
         if coupling is None:
             with self._watch("response"):
-                coupling = expected_coupling(self.system, state, time, size)
+                coupling = self.scheme.expect(state, time, size)
         with self._watch("contact"):
-            path = advance_bodies(self.system, state, time, size, coupling)
+            path = self.scheme.follow(state, time, size, coupling)
         return self._with_prescribed(path, state, level)
 
     def _with_prescribed(self, path: BodyStep, state: State, level: int) -> BodyStep:

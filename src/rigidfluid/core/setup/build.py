@@ -187,9 +187,7 @@ def _film(scene: Scene, parts: Parts) -> Film | None:
     return Film(fluid.viscosity, radius, mesh.size_body / 2**mesh.refinements, fluid.model == "navier-stokes")
 
 
-def _problem(
-    scene: Scene, boundary: tuple[BoundaryCondition, ...], motions: Motions
-) -> FluidProblem | None:
+def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...], motions: Motions) -> FluidProblem | None:
     fluid = scene.fluid
     if fluid.density is None or fluid.viscosity is None:
         return None

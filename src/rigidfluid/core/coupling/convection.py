@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.answers import CHANGED
-from rigidfluid.core.contact.contact_path import BodyStep
+from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.coupling.impulse_responses import CHANGED
 from rigidfluid.core.mechanics.motions import reaches, round_motions
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.mechanics.wrenches import flat
@@ -25,7 +25,7 @@ def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatAr
     ``path`` the bodies' way through it, with its coupling.
     """
     none, coupling = np.zeros_like(step.load), path.coupling
-    if coupling is None or system.fluid is None or not system.fluid.inertia:
+    if coupling is None:
         return none
     change = _on_the_mesh(system, state, path, step) - _extrapolated(state, step)
     reach, farthest = reaches(system)

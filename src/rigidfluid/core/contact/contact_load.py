@@ -1,0 +1,55 @@
+"""Loads of the contacts at one moment."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
+from rigidfluid.core.model.contacts import middle
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Wrench
+
+
+class ContactLoad(NamedTuple):
+    """Loads of the contacts at one moment: their ``wrench``, the forces of ``damping`` (m, d) in it, None without
+    dampers, the power ``loss`` of these, and the power ``actuator_work`` of prescribed bodies and walls."""
+
+    wrench: Wrench
+    damping: FloatArray | None
+    loss: float
+    actuator_work: float
+
+
+def contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> ContactLoad:
+    """Loads of the contacts on the bodies, by law and dampers."""
+    if len(contacts) == 0:
+        return ContactLoad(nothing(movement.pose), None, 0.0, 0.0)
+    force, damping, loss = law.force(contacts), None, 0.0
+    if law.dissipative:
+        motion = relative_motion(contacts, movement, system.wall_velocity)
+        damping = law.damping(contacts, motion)
+        force, loss = force + damping, -float(np.sum(damping * motion.velocity))
+    wrench, actuator_work = contact_wrench(contacts, force, movement.pose), 0.0
+    driven = driven_bodies(system)
+    if driven.any():
+        actuator_work = -float(power(wrench, movement.prescribed_twist(system.motions.controlled))[driven].sum())
+    if system.wall_velocity is not None:
+        actuator_work += float(np.sum(force * system.wall_velocity(contacts.body_b, middle(contacts))))
+    return ContactLoad(wrench, damping, loss, actuator_work)
+
+
+def damping_loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: FloatArray | None) -> float:
+    """Power of the dampers half-way through their kick: times the substep it is the loss of the whole kick."""
+    if damping is None:
+        return 0.0
+    return -float(np.sum(damping * relative_motion(contacts, movement, system.wall_velocity).velocity))
+
+
+def driven_bodies(system: System) -> BoolArray:
+    """Whether the motion of a body is prescribed, in space or relatively to other bodies (n,)."""
+    return np.ones_like(system.controlled) if system.motions.driven else system.controlled

@@ -1,0 +1,106 @@
+"""Path of the bodies through one step in implicit steps of their contacts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
+from rigidfluid.core.contact.contact_load import driven_bodies
+from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.implicit_contacts import KEPT, implicit_contact_step
+from rigidfluid.core.contact.look_ahead import fastest_speed, foreseen
+from rigidfluid.core.contact.substep_path import fly_freely, spring_parts
+from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.mechanics.wrenches import nothing, power
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
+from rigidfluid.errors import StepRejected
+
+M = TypeVar("M", bound=BodyDynamics)
+
+IMPLICIT_PARTS = 8
+"""Number of implicit steps of the bodies in one step of a fluid."""
+
+
+def implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
+    """Advance by one implicit step, or as many as springs need; return also the movement at the end."""
+    parts = spring_parts(system, size)
+    path, movement = _implicit_or_free(system, law, movement, size / parts)
+    for _ in range(1, parts):
+        before = path
+        path, movement = _implicit_or_free(system, law, movement, size / parts)
+        impulse = add_wrench(path.impulse, before.impulse, 1.0)
+        path = replace(
+            path,
+            motions=movement.motions(impulse),
+            impulse=impulse,
+            dissipated=path.dissipated + before.dissipated,
+            actuator_work=path.actuator_work + before.actuator_work,
+            substeps=path.substeps + before.substeps,
+        )
+    return path, movement
+
+
+def _implicit_or_free(
+    system: System, law: ForceLaw, movement: BodyDynamics, size: float
+) -> tuple[BodyStep, BodyDynamics]:
+    contacts = foreseen(system, law, movement, size, 0.0)
+    if len(contacts.start) == 0:
+        return fly_freely(system, movement, size), movement
+    return _implicit_step(system, law, movement, contacts.start, contacts, size)
+
+
+def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
+    """Advance by several implicit steps in one of the fluid's: an impact takes no time, and friction acts before and
+    after it.
+
+    The impact in a single one would last as long as the fluid's step and meet friction all the while, and the impulse
+    be too great for the fluid's mass.
+    """
+    part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
+    on_mesh = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    reach = max(float(near.gap.max()), law.range + 4.0 * fastest_speed(system, movement, size) * size)
+    for _ in range(IMPLICIT_PARTS):
+        followed = on_mesh or foreseen(system, law, movement, part, reach)
+        start = followed.start if isinstance(followed, TrackedPairs) else followed.extrapolate(movement.pose)
+        if len(start) == 0:
+            fly_freely(system, movement, part)
+            continue
+        path, movement = _implicit_step(system, law, movement, start, followed, part)
+        impulse = add_wrench(impulse, path.impulse, 1.0)
+        lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
+    return arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS, movement.friction_loss)
+
+
+def _implicit_step(
+    system: System,
+    law: ForceLaw,
+    movement: M,
+    start: Contacts,
+    followed: TrackedPairs | ExtrapolatedContacts,
+    size: float,
+) -> tuple[BodyStep, M]:
+    """Advance by one implicit step; return also the movement at its end."""
+    crossing = implicit_contact_step(law, movement, start, followed.extrapolate, size, system.wall_velocity)
+    end, wrench, lost, driven, stored = crossing
+    if isinstance(followed, TrackedPairs):
+        _refuse_unseen(law, followed, end.pose, KEPT * stored)
+    impulse = Wrench(size * wrench.force, size * wrench.torque)
+    before, after = (each.prescribed_twist(system.motions.controlled) for each in (movement, end))
+    mean = Twist(
+        0.5 * (before.velocity + after.velocity),
+        0.5 * (before.angular_velocity + after.angular_velocity),
+    )
+    actuator_work = driven - float(power(impulse, mean)[driven_bodies(system)].sum())
+    return arrived(end, impulse, lost, actuator_work, 1), end
+
+
+def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: float) -> None:
+    """Raise StepRejected if contacts that came or went untracked hold more energy than ``allowed``."""
+    missed = followed.missed(law, end)
+    if abs(missed) > allowed:
+        found = f"contacts of a pair that came or went within it, with an energy of {missed:.1e}"
+        raise StepRejected("the implicit contact step", found, "contacts that last through it", "Shorten the step.")

@@ -1,0 +1,85 @@
+"""Contacts that a step may bring into range, and how far they are detected ahead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from rigidfluid.core.contact.proximity import arms, detect, interacting
+from rigidfluid.core.contact.substep import relative_velocity
+from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.mechanics.motions import body_accelerations
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Pose
+
+
+def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
+    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: by twice the present
+    speed of their surfaces and the greatest acceleration."""
+    contacts = state.contacts
+    if system.law is None or len(contacts) == 0:
+        return select(contacts, np.zeros(len(contacts), dtype=bool))
+    speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
+    rate, d = body_accelerations(system, state, start, size), system.dimension
+    pull = np.linalg.norm(rate[:, :d], axis=1) + arms(system) * np.linalg.norm(rate[:, d:], axis=1)
+    pull = np.append(pull, 0.0)
+    both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
+    return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
+
+
+def horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
+    """Gap up to which contacts are detected ahead [length], and the time for which that suffices [time]."""
+    law_range = system.law.range if system.law else 0.0
+    if system.substeps:
+        return law_range, size
+    largest = max(body.bounding_radius for body in system.bodies)
+    fastest = fastest_speed(system, movement, size)
+    ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
+    return law_range + ahead, 0.5 * ahead / fastest if fastest > 0 else size
+
+
+def detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
+    """Function of the pose that detects the contacts, by a detector that needs no mesh."""
+
+    def contacts_at(pose: Pose) -> Contacts:
+        near = detect(system, pose, None, reach)
+        chosen = interacting(system, near)
+        return near if chosen.all() else select(near, chosen)
+
+    return contacts_at
+
+
+def foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float, reach: float) -> TrackedPairs:
+    """Contacts that a step of this ``size`` may bring into range, and at least those in ``reach`` [length].
+
+    The speed allowed for is four times the fastest, as impacts may double that of both bodies, and twice the speed that
+    bodies at rest, pressed together, may get from the energy of their contacts.
+    """
+    reach = max(reach, law.range + 4.0 * fastest_speed(system, movement, size) * size)
+    contacts = TrackedPairs(system, movement.pose, reach)
+    released = _released(system, law, movement, contacts.start)
+    if released > 0.0:
+        contacts = TrackedPairs(system, movement.pose, reach + 2.0 * released * size)
+    return contacts
+
+
+def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
+    """Greatest speed of a surface if a body had all energy that its contacts store [length/time]."""
+    energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
+    np.add.at(stored, contacts.body_a, energy)
+    np.add.at(stored, contacts.body_b, energy)
+    straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
+    lightness = straight + arms(system) ** 2 * turning
+    return float(np.sqrt(2.0 * np.max(stored[: len(lightness)] * lightness)))
+
+
+def fastest_speed(system: System, movement: BodyDynamics, size: float) -> float:
+    """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
+    twist = movement.twist
+    turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
+    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.max_acceleration(size)))

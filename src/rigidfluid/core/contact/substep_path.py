@@ -1,0 +1,133 @@
+"""Path of the bodies through one step in velocity Verlet substeps, kicked by their contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+
+import numpy as np
+
+from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
+from rigidfluid.core.contact.contact_load import contact_load, damping_loss
+from rigidfluid.core.contact.proximity import arms, refuse_overlap
+from rigidfluid.core.contact.substep import Plan, Reach, plan
+from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.errors import StepRejected
+
+MOST_SUBSTEPS = 100_000
+"""Largest number of substeps in one step; more reject it."""
+
+HOPELESS = 1_000 * MOST_SUBSTEPS
+"""A planned substep count above this rejects the step at once; separating bodies need fewer in the end, but not by so
+much."""
+
+MOST_ALIKE = 1_000
+"""Re-plan the substep length after this many equal substeps; separating bodies need fewer."""
+
+SPRING_RESOLUTION = 0.2
+"""A substep times the highest frequency of springs in joints: some thirty substeps in a period."""
+
+ROUNDING = 1e-9
+"""Remainder of a step, over the step, that is taken for the rounding of sums."""
+
+
+def fly_freely(system: System, movement: BodyDynamics, size: float) -> BodyStep:
+    """Advance without contacts, in as many parts as springs need."""
+    none, parts = nothing(movement.pose), spring_parts(system, size)
+    for _ in range(parts):
+        movement.kick(none, 0.5 * size / parts)
+        movement.drift(size / parts)
+        movement.kick(none, 0.5 * size / parts)
+    return arrived(movement, none, 0.0, 0.0, parts)
+
+
+def spring_parts(system: System, size: float) -> int:
+    """Number of parts of a step that resolve the springs of joints."""
+    return max(1, ceil(size * system.joints.frequency / SPRING_RESOLUTION))
+
+
+def advance_by_substeps(
+    system: System,
+    law: ForceLaw,
+    movement: BodyDynamics,
+    contacts_at: Callable[[Pose], Contacts],
+    size: float,
+    span: float,
+) -> BodyStep:
+    """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+
+    Substeps are planned for a ``span`` [time] at a time, as far ahead as contacts are detected, and anew when the
+    contacts are over.
+    """
+    contacts = contacts_at(movement.pose)
+    impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
+    push = contact_load(system, law, contacts, movement)
+    planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
+    while left > 0.0:
+        if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
+            planned = min(left, span)
+            free_flight, substep = _plan(system, law, contacts, movement, size, planned)
+            planned = min(planned, free_flight + MOST_ALIKE * substep)
+        part = min(free_flight or substep, left, longest)
+        movement.kick(push.wrench, 0.5 * part)
+        movement.drift(part)
+        contacts = contacts_at(movement.pose)
+        _refuse_overlap(system, contacts)
+        before, push = push, contact_load(system, law, contacts, movement)
+        movement.kick(push.wrench, 0.5 * part)
+        push = push._replace(loss=damping_loss(system, contacts, movement, push.damping))
+        impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
+        dissipated += 0.5 * part * (before.loss + push.loss)
+        actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
+        count, planned = count + 1, planned - part
+        free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
+        left = left - part if left - part > ROUNDING * size else 0.0
+        if count == MOST_SUBSTEPS and left > 0.0:
+            raise _too_stiff(system, contacts, part)
+    return arrived(movement, impulse, dissipated, actuator_work, count)
+
+
+def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
+    if system.substeps:
+        return Plan(0.0, size / system.substeps)
+    planned = planned_substeps(system, law, contacts, movement, size, span)
+    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.free_flight > HOPELESS * planned.substep:
+        raise _too_stiff(system, contacts, planned.substep)
+    return planned
+
+
+def planned_substeps(
+    system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float
+) -> Plan:
+    """Free flight and substep of the next ``span`` of a step ``size`` [time]."""
+    return plan(law, contacts, movement, _surfaces(system), size, span, system.quasi_steady)
+
+
+def _surfaces(system: System) -> Reach:
+    """Reach of the surfaces: balls turn in their place, but not as components of a mechanism."""
+    radii = np.array([body.bounding_radius for body in system.bodies])
+    alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
+    return Reach(np.where(alone, arms(system), radii), system.leverage)
+
+
+def _refuse_overlap(system: System, contacts: Contacts) -> None:
+    if len(contacts) == 0 or contacts.gap.min() > 0.0:
+        return
+    worst = int(np.argmin(contacts.gap))
+    refuse_overlap(system, int(contacts.body_a[worst]), float(contacts.gap[worst]))
+
+
+def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
+    subject = "the bodies"
+    if len(contacts):
+        subject = f"body {system.surfaces[contacts.body_a[int(np.argmin(contacts.gap))]]}"
+    return StepRejected(
+        subject,
+        f"a contact that needs substeps of {part:.1e}",
+        f"at most {MOST_SUBSTEPS} substeps in a step",
+        "Soften the contact force: raise its epsilon, or widen its range.",
+    )

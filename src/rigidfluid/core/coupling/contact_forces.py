@@ -1,0 +1,23 @@
+"""Forces of the contacts of a state, for its tables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.coupling.scheme import Scheme
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray
+
+
+def contact_forces(system: System, scheme: Scheme, state: State, time: float) -> FloatArray:
+    """Force of each contact of a state on its first body, by all laws and their dampers (m, d), zero at the start
+    [force]."""
+    contacts, law = state.contacts, system.law
+    if law is None or len(contacts) == 0 or state.count == 0:
+        return np.zeros((len(contacts), system.dimension))
+    if not law.dissipative:
+        return law.force(contacts)
+    motion = relative_motion(contacts, scheme.bodies_now(state, time), system.wall_velocity)
+    return np.asarray(law.force(contacts) + law.damping(contacts, motion))

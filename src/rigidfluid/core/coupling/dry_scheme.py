@@ -1,0 +1,73 @@
+"""Steps of bodies without a fluid: substeps or implicit steps of their contacts are the whole motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.implicit_path import implicit_free
+from rigidfluid.core.contact.look_ahead import detected, horizon
+from rigidfluid.core.contact.proximity import arms
+from rigidfluid.core.contact.substep_path import advance_by_substeps, fly_freely
+from rigidfluid.core.mechanics.motions import body_load
+from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
+from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray, Step
+
+
+class DryScheme:
+    """`Scheme` of a system without a fluid: there is no coupling, and one path is enough."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+
+    def expect(self, state: State, time: float, size: float) -> Coupling | None:
+        return None
+
+    def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
+        """Follow the bodies by velocity Verlet, or with implicit contacts by implicit steps."""
+        system, movement = self._system, self._dynamics(state, start)
+        if system.law is None:
+            path = fly_freely(system, movement, size)
+        elif system.implicit:
+            path, movement = implicit_free(system, system.law, movement, size)
+        else:
+            reach, span = horizon(system, movement, size)
+            path = advance_by_substeps(system, system.law, movement, detected(system, reach), size, span)
+        done = movement.link_work
+        dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
+        return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))
+
+    def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
+        return step
+
+    def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
+        return False
+
+    def repeats_start(self, state: State, path: BodyStep) -> bool:
+        return False
+
+    def missed_contacts(self, state: State, candidate: State) -> bool:
+        return False
+
+    def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
+        return candidate, True
+
+    def bodies_now(self, state: State, time: float) -> BodyDynamics:
+        return self._system.motions.carry(self._motions(state, time), time)
+
+    def _dynamics(self, state: State, start: float) -> BodyDynamics:
+        """Dynamics of the bodies, on motions that joints may link."""
+        system = self._system
+        linked = system.joints.over(self._motions(state, start), start)
+        return system.motions.carry(linked, start, body_load(system, state))
+
+    def _motions(self, state: State, start: float) -> PushedDynamics:
+        system, now = self._system, state.motions
+
+        def given(elapsed: float) -> FloatArray:
+            return system.controlled_twist(start + elapsed)
+
+        return system.motions.dry_dynamics(now.pose, now.twist, body_load(system, state), arms(system), start, given)

@@ -1,0 +1,258 @@
+"""Steps of bodies in a fluid: near contacts their path follows a reduced model, which the solutions show."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.contact.body_step import BodyStep, undisturbed
+from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.implicit_path import implicit_coupled
+from rigidfluid.core.contact.look_ahead import detected, horizon, near_contacts
+from rigidfluid.core.contact.substep_path import advance_by_substeps
+from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
+from rigidfluid.core.coupling.impulse_responses import updated_model
+from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.motions import (
+    accelerations,
+    mobility,
+    newly_applied,
+    outer_load,
+    round_motions,
+    twist_arms,
+)
+from rigidfluid.core.mechanics.time_scheme import derivative_weights, predict_pose
+from rigidfluid.core.mechanics.wrenches import flat, nothing
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within, uncoupled
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose, Step
+
+SETTLED = 1e-3
+"""Relative change of the bodies' velocities below which the iteration of a step has converged."""
+
+SETTLED_SHARED = 1e-2
+"""Relative change of velocities for convergence where bodies share questions, whose responses are no better."""
+
+STEADY = 1e-2
+"""Relative change of the contacts' impulses below which one fluid solve may be enough."""
+
+
+class FluidScheme(ABC):
+    """`Scheme` of bodies in a fluid.
+
+    Substeps take the place of the fluid's own small steps: the bodies near contacts respond with the mass and the
+    friction of the coupling, and the fluid then responds to the impulse.
+    """
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+
+    def expect(self, state: State, time: float, size: float) -> Coupling | None:
+        """Coupling with the present mesh and the latest step's loads, and the state's own model where it has one."""
+        system, near = self._system, near_contacts(self._system, state, time, size)
+        if len(near) == 0:
+            return None
+        velocities = _velocities(system, near)
+        step = step_to(system, state, time + size, size, state.motions.pose, nothing(state.motions.pose), None)
+        known = None if state.coupling is None else state.coupling.model
+        model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
+        before, expected = self._expected_loads(state, model)
+        return Coupling(model, expected, before, np.zeros(len(velocities)))
+
+    def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
+        """Follow the bodies by Adams–Bashforth 2 as one formula where nothing can touch, else through contacts."""
+        system, motions = self._system, state.motions
+        if coupling is None or system.law is None:
+            pose = predict_pose(motions.pose, motions.twist, state.past_twist, size, state.past_step)
+            return undisturbed(system, pose, motions.twist, start + size)
+        alone, near = self._motions(state, coupling), near_contacts(system, state, start, size)
+        movement = system.motions.carry(system.joints.over(alone, start), start)
+        self._vary_load(alone, movement, near, size)
+        if system.implicit:
+            path = implicit_coupled(system, system.law, movement, near, size)
+        else:
+            contacts_at: Callable[[Pose], Contacts] = ExtrapolatedContacts(near, state.pose).extrapolate
+            span = size
+            if not system.detector.needs_mesh:
+                reach, span = horizon(system, movement, size)
+                contacts_at = detected(system, reach)
+            path = advance_by_substeps(system, system.law, movement, contacts_at, size, span)
+            path = replace(path, friction=movement.friction_loss)
+        return replace(self._with_friction(path), coupling=coupling)
+
+    def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
+        """Add the correction of the load, and what makes the advecting velocity follow contacts."""
+        if path.coupling is None:
+            return step
+        step.load.flat[path.coupling.model.velocities] += path.coupling.correction
+        return self._convected(step, state, path)
+
+    def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
+        """Whether contact impulses changed by more than STEADY."""
+        if path.coupling is None:
+            return False
+        arms = twist_arms(self._system)
+        now, before = flat(path.motions.contact) / arms, size * flat(state.motions.contact) / arms
+        return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
+
+    def repeats_start(self, state: State, path: BodyStep) -> bool:
+        """Whether nothing touches in a first step."""
+        return path.coupling is None and state.past is None
+
+    def missed_contacts(self, state: State, candidate: State) -> bool:
+        """Whether a contact is in range at the end of a step that was beyond the detector's reach at its start, or a
+        pair has more of them than were seen.
+
+        A detector that needs no mesh is asked on the way, and misses none.
+        """
+        system = self._system
+        if system.law is None or not system.detector.needs_mesh:
+            return False
+        count = len(system.surfaces)
+        seen, found = (now.contacts.body_a * count + now.contacts.body_b for now in (state, candidate))
+        pairs, met = np.unique(found[candidate.contacts.gap < system.law.range], return_counts=True)
+        return bool(np.any(met > np.count_nonzero(seen == pairs[:, None], axis=1)))
+
+    def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
+        """The candidate with its coupling, and whether the fixed-point iteration has converged."""
+        if path.coupling is None:
+            return candidate, True
+        found = self._shown(state, candidate, path, path.coupling, step)
+        agree = self._agree(path.coupling, found, path, state, candidate)
+        return self._stirred(state, replace(candidate, coupling=found), path), agree
+
+    def bodies_now(self, state: State, time: float) -> BodyDynamics:
+        """Dynamics by the coupling that the state's solution has shown."""
+        return self._system.motions.carry(self._motions(state, state.coupling or uncoupled()), time)
+
+    @abstractmethod
+    def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
+        """Load Φ (c,) at the start of a step, NaN where unknown, and at its end."""
+
+    @abstractmethod
+    def _known_load(self, state: State, coupling: Coupling) -> FloatArray | None:
+        """Load (c,) besides the fluid's friction, where all else of Φ is that; None where it is not."""
+
+    @abstractmethod
+    def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
+        """Let Φ grow within a step of this ``size`` [time] where that serves contacts ``near`` the ``bodies``."""
+
+    @abstractmethod
+    def _with_friction(self, path: BodyStep) -> BodyStep:
+        """The path with its friction where the ledger wants it."""
+
+    @abstractmethod
+    def _convected(self, step: Step, state: State, path: BodyStep) -> Step:
+        """The step with what its advecting velocity has to know of contacts."""
+
+    @abstractmethod
+    def _stirred(self, state: State, candidate: State, path: BodyStep) -> State:
+        """The candidate with the latest impact that stirred the fluid."""
+
+    @abstractmethod
+    def _correction(self, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
+        """Force (c,) of the velocities ``missed`` (c,) by the solution of a step."""
+
+    @abstractmethod
+    def _response(self, model: ReducedModel, d0: float, force: FloatArray) -> FloatArray:
+        """Velocities (c,) that a force (c,) gives over time, of the path's end."""
+
+    def _motions(self, state: State, coupling: Coupling) -> CoupledDynamics:
+        """Dynamics of the motions; those outside the model keep their acceleration, and respond with mass and added
+        mass."""
+        linear, angular = mobility(self._system, state)
+        now, rate = state.motions, accelerations(self._system, state)
+        known = self._known_load(state, coupling)
+        return CoupledDynamics(now.pose, now.twist, rate, linear, angular, coupling, known)
+
+    def _shown(self, state: State, candidate: State, path: BodyStep, used: Coupling, step: Step) -> Coupling:
+        """Coupling by the solution of a ``step`` from ``state`` to ``candidate`` along ``path``: responses on the mesh
+        at its end, and loads in it, of the same velocities."""
+        twist, velocities = flat(candidate.motions.twist), used.model.velocities
+        model = updated_model(self._system, state, step, candidate.contacts, twist, velocities, used.model)
+        past = state.past_twist or state.motions.twist
+        twists = tuple(components(model, flat(twist)) for twist in (candidate.motions.twist, state.motions.twist, past))
+        before = (flat(state.motions.contact) + _applied(state)) * (state.past_step or 0.0)
+        applied = _applied(candidate)
+        impulses = components(model, step.impulse + (candidate.past_step or 0.0) * applied), components(model, before)
+        load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
+        load = load + components(model, applied)
+        load = load - components(model, candidate.link.wrench)
+        missed = components(model, flat(path.motions.twist)) - twists[0]
+        return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
+
+    def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
+        """Whether path and solution agree: changes are those of velocities."""
+        model, size = found.model, (candidate.past_step or 0.0)
+        if len(model.velocities) == 0:
+            return True
+        impulse, d0 = components(model, flat(path.motions.contact)), float(derivative_weights(size, state.past_step)[0])
+        gained = self._response(model, d0, impulse)
+        before, after = (components(model, flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
+        by_load = size * (self._response(model, d0, found.load) - self._response(used.model, d0, used.load))
+        by_answer = gained - self._response(used.model, d0, impulse)
+        missed = model.answer(d0, found.correction - used.correction) / d0
+        arm = components(model, twist_arms(self._system))
+        scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
+        enough = SETTLED_SHARED if model.shared else SETTLED
+        return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_answer, missed)) <= enough * scale
+
+
+def _velocities(system: System, near: Contacts) -> IntArray:
+    """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone.
+
+    Motions that joints hold are always among them, as joint forces are found from the responses of all.
+    """
+    count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
+    width = d + (1 if d == 2 else 3)
+    touching = np.zeros(len(system.motions.controlled), dtype=bool)
+    touching[carrier[near.body_a]] = True
+    touching[carrier[near.body_b[near.body_b < count]]] = True
+    moves = np.repeat((touching & ~system.motions.controlled)[:, None], width, axis=1)
+    if system.law is not None and not system.law.dissipative:
+        moves[round_motions(system), d:] = False
+    moves[system.joints.linked & ~system.motions.controlled] = True
+    return np.flatnonzero(moves)
+
+
+def load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
+    """Load Φ (c,) at the start of a step: at the end of the one before, less the friction that came up in that step;
+    NaN where unknown."""
+    before = np.full(len(model.velocities), np.nan)
+    if state.coupling is None or state.past is None:
+        return before
+    latest = state.coupling.model.velocities
+    _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
+    change = flat(state.motions.twist) - flat(state.past.twist)
+    slowed = state.coupling.model.friction_times(components(state.coupling.model, change))
+    added = components(model, flat(newly_applied(system, state)))
+    before[here] = (state.coupling.load - slowed)[there] + added[here]
+    return before
+
+
+def expected_load_of(system: System, state: State, model: ReducedModel) -> FloatArray:
+    """Load Φ (c,) at the end of a step as the latest one lets expect it."""
+    if state.past is None:
+        return components(model, flat(outer_load(system, state)))
+    change = components(model, flat(state.motions.twist) - flat(state.past.twist))
+    pushed = flat(state.motions.contact) + state.link.wrench
+    impulse = components(model, pushed) * state.past.step
+    applied = components(model, flat(newly_applied(system, state)))
+    return expected_load(model, change, impulse, state.past.step) + applied
+
+
+def _applied(state: State) -> FloatArray:
+    """Mean applied wrench on the motions in the step that led to a ``state``, (N, d+k)."""
+    if state.past is None or state.past.applied is None:
+        return np.zeros_like(flat(state.motions.contact))
+    return flat(state.past.applied)
+
+
+def components(model: ReducedModel, field: FloatArray) -> FloatArray:
+    """Components (c,) of a field (n, d+k) that the model has."""
+    return np.asarray(field.ravel()[model.velocities])

@@ -1,0 +1,54 @@
+"""Steps of bodies in a fluid with inertia."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.substep_path import planned_substeps
+from rigidfluid.core.coupling.convection import turning
+from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme, expected_load_of, load_before
+from rigidfluid.core.coupling.stirring import impact_tick
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.reduced_model import Coupling, ReducedModel
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.types import Contacts, FloatArray, Step
+
+RESOLVED = 8.0
+"""Largest number of substeps with which a step resolves its contacts: all forces then vary within it."""
+
+
+class NavierStokesScheme(FluidScheme):
+    """`Scheme` of bodies in a fluid with inertia: it resists contacts by added mass at once, and remembers them."""
+
+    def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
+        return load_before(self._system, state, model), expected_load_of(self._system, state, model)
+
+    def _known_load(self, state: State, coupling: Coupling) -> None:
+        return None
+
+    def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
+        """Let Φ grow where the step resolves its contacts."""
+        system = self._system
+        if system.law and size <= RESOLVED * planned_substeps(system, system.law, near, bodies, size, size).substep:
+            motions.vary_load(size)
+
+    def _with_friction(self, path: BodyStep) -> BodyStep:
+        return path
+
+    def _convected(self, step: Step, state: State, path: BodyStep) -> Step:
+        return replace(step, turning=turning(self._system, state, path, step))
+
+    def _stirred(self, state: State, candidate: State, path: BodyStep) -> State:
+        return replace(candidate, impact=impact_tick(state, path, candidate))
+
+    def _correction(self, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
+        """Zero: the solution has the inertia of what the path missed."""
+        return np.zeros_like(missed)
+
+    def _response(self, model: ReducedModel, d0: float, force: FloatArray) -> FloatArray:
+        """Response by the masses alone."""
+        return np.asarray(model.mobility @ force)
