@@ -16,7 +16,7 @@ import numpy as np
 from mpi4py import MPI
 from shared_steps import go_on, resident, started
 
-from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 
 STEPS = 3
@@ -25,7 +25,7 @@ STEPS = 3
 def answers(simulation):
     """On the present mesh, to each component of an impulse by itself, and of a step to all of them."""
     system, state = simulation.system, simulation.state
-    step = step_to(system, state, 1.0, simulation.scene.time.step, state.pose, nothing(state.pose), state.mesh)
+    step = step_to(system, state, StepEnd(1.0, simulation.scene.time.step, state.pose, nothing(state.pose)), state.mesh)
     units = np.eye(step.load.size).reshape(-1, *step.load.shape)
     response = system.backend.response(state.fluid, state.mesh, step, units)
     impulse = 0.01 * (1.0 + np.arange(step.load.size)).reshape(step.load.shape)

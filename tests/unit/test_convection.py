@@ -8,7 +8,7 @@ import pytest
 
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.coupling.schemes import scheme_of
-from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.state import MotionState, unloaded
@@ -37,7 +37,7 @@ def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArr
     simulation.state = state = replace(simulation.state, twist=falls, motions=motions)
     path = path_to(simulation, moved)
     path = path if coupled else replace(path, coupling=None)
-    step = step_to(simulation.system, state, STEP, STEP, path.pose, path.impulse, None)
+    step = step_to(simulation.system, state, StepEnd(STEP, STEP, path.pose, path.impulse), None)
     return scheme_of(simulation.system).prepare(step, state, path).turning
 
 

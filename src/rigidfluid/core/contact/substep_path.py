@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
@@ -50,61 +51,64 @@ def spring_parts(system: System, size: float) -> int:
     return max(1, ceil(size * system.joints.frequency / SPRING_RESOLUTION))
 
 
-def advance_by_substeps(
-    system: System,
-    law: ForceLaw,
-    movement: BodyDynamics,
-    contacts_at: Callable[[Pose], Contacts],
-    size: float,
-    span: float,
-) -> BodyStep:
-    """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+@dataclass(frozen=True)
+class SubstepPath:
+    """Bodies that a ``law`` kicks on their path through one step of this ``size`` [time]: ``movement`` changes in
+    place."""
 
-    Substeps are planned for a ``span`` [time] at a time, as far ahead as contacts are detected, and anew when the
-    contacts are over.
-    """
-    contacts = contacts_at(movement.pose)
-    impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
-    push = contact_load(system, law, contacts, movement)
-    planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
-    while left > 0.0:
-        if planned <= 0.0 or contacts.gap.min(initial=np.inf) > law.range:
-            planned = min(left, span)
-            free_flight, substep = _plan(system, law, contacts, movement, size, planned)
-            planned = min(planned, free_flight + MOST_ALIKE * substep)
-        part = min(free_flight or substep, left, longest)
-        movement.kick(push.wrench, 0.5 * part)
-        movement.drift(part)
+    system: System
+    law: ForceLaw
+    movement: BodyDynamics
+    size: float
+
+    def advance(self, contacts_at: Callable[[Pose], Contacts], span: float) -> BodyStep:
+        """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+
+        Substeps are planned for a ``span`` [time] at a time, as far ahead as contacts are detected, and anew when the
+        contacts are over.
+        """
+        system, movement, size = self.system, self.movement, self.size
         contacts = contacts_at(movement.pose)
-        _refuse_overlap(system, contacts)
-        before, push = push, contact_load(system, law, contacts, movement)
-        movement.kick(push.wrench, 0.5 * part)
-        push = push._replace(loss=damping_loss(system, contacts, movement, push.damping))
-        impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
-        dissipated += 0.5 * part * (before.loss + push.loss)
-        actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
-        count, planned = count + 1, planned - part
-        free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
-        left = left - part if left - part > ROUNDING * size else 0.0
-        if count == MOST_SUBSTEPS and left > 0.0:
-            raise _too_stiff(system, contacts, part)
-    return arrived(movement, impulse, dissipated, actuator_work, count)
+        impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
+        push = contact_load(system, self.law, contacts, movement)
+        planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
+        while left > 0.0:
+            if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
+                planned = min(left, span)
+                free_flight, substep = self._plan(contacts, planned)
+                planned = min(planned, free_flight + MOST_ALIKE * substep)
+            part = min(free_flight or substep, left, longest)
+            movement.kick(push.wrench, 0.5 * part)
+            movement.drift(part)
+            contacts = contacts_at(movement.pose)
+            _refuse_overlap(system, contacts)
+            before, push = push, contact_load(system, self.law, contacts, movement)
+            movement.kick(push.wrench, 0.5 * part)
+            push = push._replace(loss=damping_loss(system, contacts, movement, push.damping))
+            impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
+            dissipated += 0.5 * part * (before.loss + push.loss)
+            actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
+            count, planned = count + 1, planned - part
+            free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
+            left = left - part if left - part > ROUNDING * size else 0.0
+            if count == MOST_SUBSTEPS and left > 0.0:
+                raise _too_stiff(system, contacts, part)
+        return arrived(movement, impulse, dissipated, actuator_work, count)
 
+    def planned(self, contacts: Contacts, span: float) -> Plan:
+        """Free flight and substep of the next ``span`` [time]."""
+        reach = _surfaces(self.system)
+        return plan(self.law, contacts, self.movement, reach, self.size, span, self.system.quasi_steady)
 
-def _plan(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float) -> Plan:
-    if system.substeps:
-        return Plan(0.0, size / system.substeps)
-    planned = planned_substeps(system, law, contacts, movement, size, span)
-    if contacts.gap.min(initial=np.inf) <= law.range and span - planned.free_flight > HOPELESS * planned.substep:
-        raise _too_stiff(system, contacts, planned.substep)
-    return planned
-
-
-def planned_substeps(
-    system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics, size: float, span: float
-) -> Plan:
-    """Free flight and substep of the next ``span`` of a step ``size`` [time]."""
-    return plan(law, contacts, movement, _surfaces(system), size, span, system.quasi_steady)
+    def _plan(self, contacts: Contacts, span: float) -> Plan:
+        """The scene's substeps, or those that contacts need."""
+        if self.system.substeps:
+            return Plan(0.0, self.size / self.system.substeps)
+        planned = self.planned(contacts, span)
+        touch = contacts.gap.min(initial=np.inf) <= self.law.range
+        if touch and span - planned.free_flight > HOPELESS * planned.substep:
+            raise _too_stiff(self.system, contacts, planned.substep)
+        return planned
 
 
 def _surfaces(system: System) -> Reach:

@@ -8,7 +8,7 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.implicit_path import implicit_free
 from rigidfluid.core.contact.look_ahead import detected, horizon
 from rigidfluid.core.contact.proximity import arms
-from rigidfluid.core.contact.substep_path import advance_by_substeps, fly_freely
+from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.mechanics.motions import body_load
 from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
 from rigidfluid.core.model.reduced_model import Coupling
@@ -35,7 +35,7 @@ class DryScheme:
             path, movement = implicit_free(system, system.law, movement, size)
         else:
             reach, span = horizon(system, movement, size)
-            path = advance_by_substeps(system, system.law, movement, detected(system, reach), size, span)
+            path = SubstepPath(system, system.law, movement, size).advance(detected(system, reach), span)
         done = movement.link_work
         dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
         return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))
@@ -70,4 +70,4 @@ class DryScheme:
         def given(elapsed: float) -> FloatArray:
             return system.controlled_twist(start + elapsed)
 
-        return system.motions.dry_dynamics(now.pose, now.twist, body_load(system, state), arms(system), start, given)
+        return system.motions.dry_dynamics(now, body_load(system, state), arms(system), start, given)

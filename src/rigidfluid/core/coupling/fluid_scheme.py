@@ -12,10 +12,10 @@ from rigidfluid.core.contact.body_step import BodyStep, undisturbed
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_path import implicit_coupled
 from rigidfluid.core.contact.look_ahead import detected, horizon, near_contacts
-from rigidfluid.core.contact.substep_path import advance_by_substeps
+from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
-from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
     accelerations,
     mobility,
@@ -58,7 +58,7 @@ class FluidScheme(ABC):
         if len(near) == 0:
             return None
         velocities = _velocities(system, near)
-        step = step_to(system, state, time + size, size, state.motions.pose, nothing(state.motions.pose), None)
+        step = step_to(system, state, StepEnd(time + size, size, state.motions.pose, nothing(state.motions.pose)), None)
         known = None if state.coupling is None else state.coupling.model
         model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
         before, expected = self._expected_loads(state, model)
@@ -81,7 +81,7 @@ class FluidScheme(ABC):
             if not system.detector.needs_mesh:
                 reach, span = horizon(system, movement, size)
                 contacts_at = detected(system, reach)
-            path = advance_by_substeps(system, system.law, movement, contacts_at, size, span)
+            path = SubstepPath(system, system.law, movement, size).advance(contacts_at, span)
             path = replace(path, friction=movement.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
 

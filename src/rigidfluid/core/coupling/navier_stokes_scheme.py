@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.contact.substep_path import planned_substeps
+from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, expected_load_of, load_before
@@ -33,7 +33,7 @@ class NavierStokesScheme(FluidScheme):
     def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
         """Let Φ grow where the step resolves its contacts."""
         system = self._system
-        if system.law and size <= RESOLVED * planned_substeps(system, system.law, near, bodies, size, size).substep:
+        if system.law and size <= RESOLVED * SubstepPath(system, system.law, bodies, size).planned(near, size).substep:
             motions.vary_load(size)
 
     def _with_friction(self, path: BodyStep) -> BodyStep:

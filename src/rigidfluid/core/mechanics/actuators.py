@@ -10,21 +10,22 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import FloatArray
 
 
-def actuator_work(system: System, state: State, kinematics: Kinematics, pose: Pose, twist: Twist, size: float) -> float:
+def actuator_work(system: System, state: State, end: State, kinematics: Kinematics) -> float:
     """Work ∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W weight and applied wrenches
     [energy].
 
     The work of g against contacts and fluid added, it is the actuators' ∫ g · (dP/dt - F) dt: in the power of F · (G u
-    + g) the free motions balance their share by Newton–Euler's equations. ``state`` is that at the start;
-    ``kinematics``, ``pose`` and ``twist`` are those of the bodies at the end; ``size`` is the step [time].
+    + g) the free motions balance their share by Newton–Euler's equations. ``state`` is that at the start,
+    ``end`` that at the end, with the bodies' ``kinematics`` there.
     """
     if not system.motions.driven:
         return 0.0
+    size = end.past_step or 0.0
     before = kinematics_now(system, state)
-    gained: FloatArray = momentum(system.mass, system.inertia, pose, twist)
+    gained: FloatArray = momentum(system.mass, system.inertia, end.pose, end.twist)
     gained = gained - momentum(system.mass, system.inertia, state.pose, state.twist)
     gained[:, : system.dimension] -= size * system.weight
     if state.applied is not None:

@@ -15,31 +15,39 @@ from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import NO_LINKS, FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Step, Twist, Wrench
 
 
-def step_to(
-    system: System, state: State, time: float, size: float, pose: Pose, impulse: Wrench, mesh: Mesh | None
-) -> Step:
-    """Step of this ``size`` that ends at ``time`` with the motions at ``pose``, after ``impulse`` by contacts."""
-    derivative = derivative_weights(size, state.past_step)
+class StepEnd(NamedTuple):
+    """End of a step of this ``size`` at a ``time`` [time], with the motions at ``pose`` after an ``impulse`` of
+    contacts [force·time | force·length·time]."""
+
+    time: float
+    size: float
+    pose: Pose
+    impulse: Wrench
+
+
+def step_to(system: System, state: State, end: StepEnd, mesh: Mesh | None) -> Step:
+    """Step from a ``state`` to its ``end``, on ``mesh`` there."""
+    time, pose, derivative = end.time, end.pose, derivative_weights(end.size, state.past_step)
     kinematics = system.motions.kinematics(pose, time)
-    mass_matrix, load = _newton_euler(system, state, time, size, pose, impulse, derivative, kinematics)
+    mass_matrix, load = _newton_euler(system, state, end, derivative, kinematics)
     return Step(
         time=time,
         derivative=derivative,
-        extrapolation=extrapolation_weights(size, state.past_step),
+        extrapolation=extrapolation_weights(end.size, state.past_step),
         pose=system.motions.poses(pose, time),
         points=None if mesh is None else mesh.geometry,
         mass_matrix=mass_matrix,
         load=load,
         controlled=system.motions.controlled,
         controlled_twist=system.controlled_twist(time),
-        impulse=flat(impulse),
-        load_scale=_load_scale(system, state, impulse, derivative),
+        impulse=flat(end.impulse),
+        load_scale=_load_scale(system, state, end.impulse, derivative),
         turning=np.zeros_like(load),
         kinematics=kinematics,
-        links=system.joints.links(pose, time) if system.has_fluid else NO_LINKS,
+        links=system.solved_joints.links(pose, time),
     )
 
 
@@ -52,16 +60,10 @@ class _Moment(NamedTuple):
 
 
 def _newton_euler(
-    system: System,
-    state: State,
-    time: float,
-    size: float,
-    pose: Pose,
-    impulse: Wrench,
-    derivative: FloatArray,
-    kinematics: Kinematics,
+    system: System, state: State, end: StepEnd, derivative: FloatArray, kinematics: Kinematics
 ) -> tuple[FloatArray, FloatArray]:
     """Mass matrix (N, d+k, d+k) and load (N, d+k) of the motions, with all bodies that they carry."""
+    time, size, pose, impulse = end
     past = [_Moment(time - size, state.motions.pose, state.motions.twist)]
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
@@ -69,13 +71,12 @@ def _newton_euler(
     applied = applied_wrench(system, state, kinematics)
     pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
-    if system.has_fluid:
-        pushed = system.joints.with_springs(pushed, pose, time)
+    pushed = system.solved_joints.with_springs(pushed, pose, time)
     motions, wrench = system.motions, wrench_sum(pushed, weights(system, kinematics))
     inertia = motions.inertia(time)
     mass_matrix, load = newton_euler(motions.mass, inertia, pose, poses, twists, derivative, wrench)
     if motions.driven:
-        load[:, system.dimension :] -= _relative_momentum_rate(motions, inertia, time, pose, past, derivative)
+        load[:, system.dimension :] -= _relative_momentum_rate(motions, end, past, derivative)
     return mass_matrix, load
 
 
@@ -91,15 +92,11 @@ def _latest_push(system: System, state: State) -> Wrench:
 
 
 def _relative_momentum_rate(
-    motions: Motions,
-    inertia: FloatArray,
-    time: float,
-    pose: Pose,
-    past: Sequence[_Moment],
-    derivative: FloatArray,
+    motions: Motions, end: StepEnd, past: Sequence[_Moment], derivative: FloatArray
 ) -> FloatArray:
     """Rate d/dt of R h and of R (I - I_new) Rᵀ ω: angular momentum (N, k) by relative motion [force·length]."""
-    rate = derivative[0] * turned(pose.orientation, motions.spin(time))
+    inertia = motions.inertia(end.time)
+    rate = derivative[0] * turned(end.pose.orientation, motions.spin(end.time))
     for weight, (then, there, twist) in zip(derivative[1:], past, strict=False):
         change = lab_inertia(motions.inertia(then) - inertia, there.orientation)
         extra = np.einsum("nij,nj->ni", change, twist.angular_velocity)

@@ -17,6 +17,7 @@ from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotati
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.state import MotionState
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 
@@ -125,8 +126,7 @@ class CarriedBodies:
 
     def dry_dynamics(
         self,
-        pose: Pose,
-        twist: Twist,
+        now: MotionState,
         load: Wrench,
         arms: FloatArray,
         start: float,
@@ -135,8 +135,9 @@ class CarriedBodies:
         """Dynamics that know the force of the load; its torque about the centres is `carry`'s."""
         force = self.sums(load.force)
         if self.driven:
-            return DrivenDynamics(pose, twist, self, force, start, controlled_twist)
-        return DryDynamics(pose, twist, self.mass, self.inertia(start), force, self.controlled, controlled_twist)
+            return DrivenDynamics(now.pose, now.twist, self, force, start, controlled_twist)
+        own = self.mass, self.inertia(start), force, self.controlled
+        return DryDynamics(now.pose, now.twist, *own, controlled_twist)
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> ComponentDynamics:
         return ComponentDynamics(motions, self, start, load)

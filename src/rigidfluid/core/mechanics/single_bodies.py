@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.dynamics import DryDynamics, Turning
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia
 from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, EachItsOwn
+from rigidfluid.core.model.state import MotionState
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 
@@ -67,8 +68,7 @@ class SingleBodies:
 
     def dry_dynamics(
         self,
-        pose: Pose,
-        twist: Twist,
+        now: MotionState,
         load: Wrench,
         arms: FloatArray,
         start: float,
@@ -76,7 +76,7 @@ class SingleBodies:
     ) -> DryDynamics:
         turning = Turning(load.torque, arms) if load.torque.any() else None
         own = self.mass, self._inertia, load.force, self.controlled
-        return DryDynamics(pose, twist, *own, controlled_twist, turning)
+        return DryDynamics(now.pose, now.twist, *own, controlled_twist, turning)
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> MotionDynamics:
         return motions

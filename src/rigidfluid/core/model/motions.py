@@ -7,6 +7,7 @@ from typing import Protocol
 
 from rigidfluid.core.model.dynamics import BodyDynamics, MotionDynamics, PushedDynamics
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.state import MotionState
 from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
 
 
@@ -61,15 +62,15 @@ class Motions(Protocol):
 
     def dry_dynamics(
         self,
-        pose: Pose,
-        twist: Twist,
+        now: MotionState,
         load: Wrench,
         arms: FloatArray,
         start: float,
         controlled_twist: Callable[[float], FloatArray],
     ) -> PushedDynamics:
-        """Dynamics of the motions without a fluid, with a constant ``load`` on the bodies, whose farthest points are
-        ``arms`` (n,) away [length]; ``controlled_twist`` (N, d+k) from a time since the ``start``."""
+        """Dynamics of the motions from ``now`` on without a fluid, with a constant ``load`` on the bodies, whose
+        farthest points are ``arms`` (n,) away [length]; ``controlled_twist`` (N, d+k) from a time since the
+        ``start``."""
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> BodyDynamics:
         """Dynamics of the bodies on these ``motions`` from ``start`` on [time]; ``load``: that of `dry_dynamics`, None

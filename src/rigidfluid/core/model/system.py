@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
-from rigidfluid.core.model.joints import Joints
+from rigidfluid.core.model.joints import Joints, NoJoints
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, IntArray, Loads, Pose, Twist
 from rigidfluid.core.model.wall import Wall, WallVelocities
@@ -84,6 +84,11 @@ class System:
     def has_fluid(self) -> bool:
         """Whether there is a fluid around the bodies."""
         return self.fluid is not None
+
+    @property
+    def solved_joints(self) -> Joints:
+        """Joints that the fluid's solution holds: without a fluid none, as the bodies' path holds them."""
+        return self.joints if self.has_fluid else NoJoints(len(self.motions.mass))
 
     @property
     def backend(self) -> FluidBackend:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.mechanics.actuators import actuator_work
-from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.kinematics import given_twist
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
@@ -20,7 +21,7 @@ from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Advance, Contacts, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
 
@@ -31,74 +32,98 @@ WIDEST_OPENING = 1.5
 """A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
 
 
-def attempt(
-    system: System,
-    clock: Clock,
-    mesh_updater: MeshUpdater,
-    watch: Stopwatch,
-    scheme: Scheme,
-    state: State,
-    level: int,
-    path: BodyStep,
-    provisional: bool,
-) -> tuple[State, Step]:
+@dataclass(frozen=True)
+class Tools:
+    """Means by which the states of a ``system`` are attempted: ``scheme`` of its steps, the run's ``clock``, its
+    ``mesh_updater``, and ``watch``, which times the stages."""
+
+    system: System
+    scheme: Scheme
+    clock: Clock
+    mesh_updater: MeshUpdater
+    watch: Stopwatch
+
+
+class _Place(NamedTuple):
+    """Mesh, contacts and nearest gaps (n,) where a path ends."""
+
+    mesh: Mesh | None
+    contacts: Contacts
+    gaps: FloatArray
+
+
+def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional: bool) -> tuple[State, Step]:
     """Attempt one step of this level, the bodies to the end of ``path``: the candidate state there, and the step that
     led there.
 
     A ``provisional`` candidate shows where another path leads, and is not to be accepted. Raises StepRejected where
     bodies overlap, a cell is tangled, the backend fails, or a part gives what is no number.
     """
-    size = clock.size(level)
-    time = clock.time(state.tick + clock.ticks(level))
-    pose = path.pose
-    refuse_lost_pose(system.surfaces, pose)
-    with watch("move mesh"):
-        mesh = mesh_updater.deform(state, pose)
-    with watch("detect"):
-        contacts, gaps = detect_contacts_and_gaps(system, pose, mesh)
-        nearest = int(np.argmin(gaps))
-        refuse_overlap(system, nearest, float(gaps[nearest]))
-    with watch("advance"), system.backend.ranks.raise_on_all():
-        step = step_to(system, state, time, size, path.motions.pose, _pushed(path, size), mesh)
-        step = replace(scheme.prepare(step, state, path), provisional=provisional)
+    system, clock = tools.system, tools.clock
+    refuse_lost_pose(system.surfaces, path.pose)
+    place = _placed(tools, state, path.pose)
+    end = StepEnd(
+        clock.time(state.tick + clock.ticks(level)),
+        clock.size(level),
+        path.motions.pose,
+        _pushed(path, clock.size(level)),
+    )
+    with tools.watch("advance"), system.backend.ranks.raise_on_all():
+        step = tools.scheme.prepare(step_to(system, state, end, place.mesh), state, path)
+        step = replace(step, provisional=provisional)
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))
-    twist = step.kinematics.component_twist(advance.twist)
-    ledger = _ledger_at_start(system, state, advance, step, time - size)
-    power = _power(system, advance, step, path.motions.pose)
-    if system.quasi_steady:
-        power = replace(power, dissipation_midway=_dissipation_midway(state, ledger.power, advance, twist, power))
-    candidate = State(
+    candidate = replace(
+        state,
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
         level=level,
-        pose=pose,
-        twist=twist,
-        past=Past(state.motions.pose, state.motions.twist, size, _applied(system, state, step)),
-        mesh=mesh,
-        reference=state.reference,
+        pose=path.pose,
+        twist=step.kinematics.component_twist(advance.twist),
+        past=Past(state.motions.pose, state.motions.twist, end.size, _applied(system, state, step)),
+        mesh=place.mesh,
         fluid=advance.fluid,
         coupling=None,
-        contacts=contacts,
-        gaps=gaps,
+        contacts=place.contacts,
+        gaps=place.gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
-        contact_wrench=_mean(path.impulse, size),
-        motions=_motions(path, step, advance, size),
+        contact_wrench=_mean(path.impulse, end.size),
+        motions=_motions(path, step, advance, end.size),
         link=_link_load(system, path, step, advance),
-        ledger=ledger.after(
-            size,
-            power,
-            _work(system, state, path, actuator_work(system, state, step.kinematics, pose, twist, size)),
-            advance.kinetic_energy + bodies_energy(system, pose, twist),
-            stored_energy(system, contacts, path.motions.pose, time),
-        ),
-        impact=state.impact,
-        remesh_failed=state.remesh_failed,
-        prescription=state.prescription,
-        applied=state.applied,
-        jumped=state.jumped,
+        estimate=None,
     )
-    return candidate, step
+    return replace(candidate, ledger=_ledger_after(system, state, candidate, path, (step, advance))), step
+
+
+def _placed(tools: Tools, state: State, pose: Pose) -> _Place:
+    """Mesh, contacts and gaps at a ``pose``; raises StepRejected where bodies overlap."""
+    with tools.watch("move mesh"):
+        mesh = tools.mesh_updater.deform(state, pose)
+    with tools.watch("detect"):
+        contacts, gaps = detect_contacts_and_gaps(tools.system, pose, mesh)
+        nearest = int(np.argmin(gaps))
+        refuse_overlap(tools.system, nearest, float(gaps[nearest]))
+    return _Place(mesh, contacts, gaps)
+
+
+def _ledger_after(
+    system: System, state: State, candidate: State, path: BodyStep, solved: tuple[Step, Advance]
+) -> Ledger:
+    """Ledger of the candidate, by the path and the solution that led there."""
+    step, advance = solved
+    size = candidate.past_step or 0.0
+    ledger = _ledger_at_start(system, state, advance, step, step.time - size)
+    power = _power(system, advance, step, path.motions.pose)
+    if system.quasi_steady:
+        midway = _dissipation_midway(state, ledger.power, advance, candidate.twist, power)
+        power = replace(power, dissipation_midway=midway)
+    return ledger.after(
+        size,
+        power,
+        _work(system, state, path, actuator_work(system, state, candidate, step.kinematics)),
+        advance.kinetic_energy + bodies_energy(system, candidate.pose, candidate.twist),
+        stored_energy(system, candidate.contacts, path.motions.pose, step.time),
+    )
 
 
 def _pushed(path: BodyStep, size: float) -> Wrench:
@@ -151,9 +176,8 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
     dissipated by fluid and dampers."""
     given, where = given_twist(step)
     control = -float(power(advance.hydrodynamic_wrench, given)[where].sum())
-    if system.has_fluid:
-        control += float(advance.link_force @ step.links.rate)
-        control += system.joints.spring_power(motions, step.time)
+    control += float(advance.link_force @ step.links.rate)
+    control += system.solved_joints.spring_power(motions, step.time)
     return Power(
         boundary=advance.boundary_power,
         control=control,
@@ -192,7 +216,7 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
     if system.quasi_steady:
         return replace(ledger, power=None)
     motions, held = state.motions.pose, system.controlled_twist(time)
-    links = system.joints.links(motions, time) if system.has_fluid else step.links
+    links = system.solved_joints.links(motions, time)
     before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
     return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 

@@ -22,7 +22,7 @@ from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
 from rigidfluid.core.run.process import give_back_memory
-from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, attempt
+from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, Tools, attempt
 from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.stuck import stuck
@@ -126,10 +126,10 @@ class Stepper:
     def _tried(self, state: State, level: int, path: BodyStep) -> tuple[State, bool]:
         """The state one step of this level later, and whether path and fluid agree there; nothing is changed."""
         scheme, size = self.scheme, self._clock.size(level)
+        tools = Tools(self.system, scheme, self._clock, self._mesh_updater, self._watch)
         for number in range(MOST_ATTEMPTS):
             provisional = number == 0 and scheme.is_unsteady(state, path, size)
-            tools = self.system, self._clock, self._mesh_updater, self._watch
-            candidate, step = attempt(*tools, scheme, state, level, path, provisional)
+            candidate, step = attempt(tools, state, level, path, provisional)
             if level < self._clock.levels and scheme.missed_contacts(state, candidate):
                 raise _too_fast()
             if number == 0 and scheme.repeats_start(state, path):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.mechanics.fluid_step import step_to
+from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -38,7 +38,7 @@ def struck(system: System, state: State, time_step: float) -> tuple[State, float
     fluid; and the fluid's kinetic energy. None where the backend leaves that to the first step."""
     assert state.mesh is not None
     size = VANISHING * time_step
-    step = step_to(system, state, size, size, state.motions.pose, nothing(state.motions.pose), state.mesh)
+    step = step_to(system, state, StepEnd(size, size, state.motions.pose, nothing(state.motions.pose)), state.mesh)
     after = system.backend.struck(state.mesh, state.pose, state.twist, step)
     if after is None:
         return None
