@@ -18,10 +18,10 @@ BELOW = {
     "scene": "model",
     "output": "model",
     "mesh": "mechanics model",
-    "contact": "joints mechanics model",
+    "contact": "mechanics model",
     "coupling": "contact mechanics model",
     "setup": "contact joints mechanics scene model",
-    "run": "setup mesh coupling contact output joints mechanics scene model",
+    "run": "setup mesh coupling contact output mechanics scene model",
 }
 
 PARTS = {
