@@ -7,7 +7,6 @@ from copy import copy
 from typing import NamedTuple, Self
 
 import numpy as np
-from numba import njit
 from scipy import sparse
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
@@ -106,9 +105,11 @@ class DryDynamics(OwnMotions):
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:
         """Change momenta by F + W and T for ``time``."""
+        from rigidfluid.core.mechanics.momenta import add_kick
+
         state = self._velocity, self._momentum
         torque = wrench.torque if self._turning is None else wrench.torque + self._turning.torque
-        _kick(*state, wrench.force, torque, self._weight, self._mass, self._free[:, 0], time)
+        add_kick(*state, wrench.force, torque, self._weight, self._mass, self._free[:, 0], time)
 
     def begin(self, ahead: float) -> None:
         """No-op: these motions have no prescribed velocity jump."""
@@ -153,15 +154,3 @@ def block_diagonal(linear: FloatArray, angular: FloatArray) -> sparse.csr_matrix
         values.append(block.ravel())
     places = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_matrix((np.concatenate(values), places), shape=(count * (d + k),) * 2)
-
-
-@njit(cache=True)
-def _kick(velocity, momentum, force, torque, weight, mass, free, time):  # type: ignore[no-untyped-def]
-    """Kick in place, as fresh arrays of many bodies would cost more than the sums."""
-    for body in range(len(velocity)):
-        if free[body]:
-            share = time / mass[body]
-            for k in range(velocity.shape[1]):
-                velocity[body, k] += share * (force[body, k] + weight[body, k])
-            for k in range(momentum.shape[1]):
-                momentum[body, k] += time * torque[body, k]
