@@ -9,7 +9,6 @@ from typing import NamedTuple, Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
 from rigidfluid.core.model.kinematics import Kinematics
@@ -122,6 +121,8 @@ class DryDynamics(OwnMotions):
 
     def drift(self, time: float) -> None:
         """Move straight on and turn freely; move prescribed bodies with their twist in mid-time."""
+        from rigidfluid.core.mechanics.free_rotation import rotate_freely
+
         if self._driven:
             self._drive(self._time + 0.5 * time)
         orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)

@@ -7,7 +7,7 @@ from numba import njit
 
 @njit(cache=True)
 def add_kick(velocity, momentum, force, torque, weight, mass, free, time):  # type: ignore[no-untyped-def]
-    """Add a kick to velocities and angular momenta in place, as fresh arrays of many bodies would cost more than the sums."""
+    """Add a kick to momenta in place, as fresh arrays of many bodies would cost more than the sums."""
     for body in range(len(velocity)):
         if free[body]:
             share = time / mass[body]
