@@ -32,7 +32,20 @@ def _sections() -> Iterator[str]:
     schema = Scene.model_json_schema()
     for key, place in schema["properties"].items():
         listed = place.get("type") == "array"
-        yield from _section(f"[[{key}]]" if listed else f"[{key}]", key, _target(place), schema["$defs"])
+        title = f"[[{key}]]" if listed else f"[{key}]"
+        if "oneOf" in place.get("items", {}):
+            yield from _sections_by_type(title, key, place, schema["$defs"])
+        else:
+            yield from _section(title, key, _target(place), schema["$defs"])
+
+
+def _sections_by_type(title: str, path: str, place: Schema, definitions: dict[str, Schema]) -> Iterator[str]:
+    """A list of tables whose keys depend on their type."""
+    yield f"## `{title}`\n\n{place['description']}\n"
+    for one in place["items"]["oneOf"]:
+        name = _target(one)
+        kind = _type(definitions[name]["properties"]["type"]).partition(",")[0].strip("`")
+        yield from _section(f"{title} type = {kind}", path, name, definitions)
 
 
 def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -> Iterator[str]:

@@ -28,9 +28,18 @@ from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.conditions import (
+    BoundaryCondition,
+    NoSlip,
+    Periodic,
+    PrescribedPressure,
+    PrescribedVelocity,
+    Slip,
+)
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import (
     Body,
     Component,
@@ -47,11 +56,9 @@ from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
-    BoundaryCondition,
     Contacts,
     Fields,
     FloatArray,
-    FluidProblem,
     FluidState,
     IntArray,
     Loads,
@@ -140,10 +147,12 @@ __all__ = [
     "Mesh",
     "MeshError",
     "Motion",
+    "NoSlip",
     "OnAxis",
     "OutputError",
     "Part",
     "PartOptions",
+    "Periodic",
     "Piece",
     "PlacedPair",
     "Plane",
@@ -153,6 +162,8 @@ __all__ = [
     "Polyhedron",
     "PolyhedronOptions",
     "Pose",
+    "PrescribedPressure",
+    "PrescribedVelocity",
     "Registry",
     "Response",
     "RigidfluidError",
@@ -163,6 +174,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "Slip",
     "SolverCost",
     "Sphere",
     "SphereOptions",

@@ -8,7 +8,9 @@ import numpy as np
 
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.topology import boundary_facets, orient
-from rigidfluid.core.model.types import BoundaryCondition, CurvedEdges, FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedPressure, PrescribedVelocity
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import CurvedEdges, FloatArray, Mesh, Pose
 from rigidfluid.testing.fluid.boxes import nobody
 from rigidfluid.testing.fluid.flow import Bodies, Flow
 
@@ -47,10 +49,10 @@ def flow_in_bend(layers: int) -> Flow:
     """Steady Stokes flow by a pressure on the first of the bend's ends, none on the other."""
     ends = np.array([0.0, 1.0]), np.array([np.sin(ANGLE), -np.cos(ANGLE)])
     faces = (
-        BoundaryCondition(0, "inner", "wall", None),
-        BoundaryCondition(1, "outer", "wall", None),
-        BoundaryCondition(2, "start", "pressure", ends[0], lambda _, at: np.full(len(at), DROP)),
-        BoundaryCondition(3, "end", "pressure", ends[1]),
+        NoSlip(0, "inner", None),
+        NoSlip(1, "outer", None),
+        PrescribedPressure(2, "start", ends[0], lambda _, at: np.full(len(at), DROP)),
+        PrescribedPressure(3, "end", ends[1]),
     )
     return Flow.start(_backend(0, faces), bend(layers), nobody(2)).after(None)
 
@@ -88,9 +90,9 @@ def error_in_bend(flow: Flow) -> float:
 
 def flow_from_within(layers: int, outside: str) -> Flow:
     """Steady Stokes flow out of the inner circle, u = x/|x|²; ``outside`` no "pressure", or the "velocity"."""
-    within = BoundaryCondition(0, "inner", "velocity", None, from_within)
-    value = from_within if outside == "velocity" else None
-    faces = within, BoundaryCondition(1, "outer", outside, None, value)  # type: ignore[arg-type]
+    within = PrescribedVelocity(0, "inner", None, from_within)
+    given, free = PrescribedVelocity(1, "outer", None, from_within), PrescribedPressure(1, "outer", None)
+    faces = within, given if outside == "velocity" else free
     return Flow.start(_backend(0, faces), bend(layers, None), nobody(2)).after(None)
 
 
@@ -106,7 +108,7 @@ def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
     def turning(_time: float, at: FloatArray) -> FloatArray:
         return outer * np.column_stack([-at[:, 1], at[:, 0]])
 
-    wall = BoundaryCondition(1, "outer", "wall", None, turning)
+    wall = NoSlip(1, "outer", None, turning)
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
     start = Flow.start(_backend(1, (wall,)), bend(layers, None), pose, Bodies.uniform(pose))
     return start.after(None, twist=np.array([[0.0, 0.0, inner]]))

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.model.types import BoundaryCondition, FluidProblem, Pose
+from rigidfluid.core.model.conditions import Periodic, no_pressure
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box
 from rigidfluid.testing.fluid.flow import Bodies, Flow
 
@@ -16,8 +18,8 @@ def array_of_balls(dimension: int, layers: int) -> float:
     faces = []
     for side in range(2 * dimension):
         lower, normal = side % 2 == 0, (1 - 2 * (side % 2)) * np.eye(dimension)[side // 2]
-        drop = (lambda _, at: np.ones(len(at))) if side == 0 else None
-        faces.append(BoundaryCondition(1 + side, str(side), "periodic", normal, drop, 2 + side if lower else None))
+        drop = (lambda _, at: np.ones(len(at))) if side == 0 else no_pressure
+        faces.append(Periodic(1 + side, str(side), normal, 2 + side if lower else None, drop))
     posed = FluidProblem(dimension, 1, 1.0, 1.0, False, tuple(faces))
     pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
     start = Flow.start(

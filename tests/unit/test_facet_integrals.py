@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.types import BoundaryCondition, FloatArray, Mesh
+from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedPressure, Slip
+from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.taylor_hood.facet_integrals import area_vectors, into_fluid, normals_at_nodes
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces
@@ -58,12 +59,9 @@ def test_a_corner_of_slip_faces_holds_both_normals_and_an_open_corner_lets_fluid
     """A square turned by 30°: slip below and at the right, pressure at the left, a wall above."""
     turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
     mesh = box(2, 2)
-    types = {"left": "pressure", "right": "slip", "bottom": "slip", "top": "wall"}
+    kinds = {"left": PrescribedPressure, "right": Slip, "bottom": Slip, "top": NoSlip}
     normals = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]) @ turn.T
-    faces = [
-        BoundaryCondition(i, name, kind, normals[i])  # type: ignore[arg-type]
-        for i, (name, kind) in enumerate(types.items())
-    ]
+    faces = [kind(i, name, normals[i]) for i, (name, kind) in enumerate(kinds.items())]
     turned = Mesh(mesh.points @ turn.T, mesh.cells, mesh.facets, mesh.markers)
     surfaces = Surfaces(Numbering.from_mesh(mesh), turned, faces, ())
     frames, at = surfaces.frames, {tuple(point): number for number, point in enumerate(mesh.points)}
@@ -79,9 +77,7 @@ def test_a_corner_of_slip_faces_holds_both_normals_and_an_open_corner_lets_fluid
 
 def test_faces_across_axes_need_no_axes_of_their_own() -> None:
     mesh = box(2, 2)
-    faces = [
-        BoundaryCondition(i, str(i), "slip", n) for i, n in enumerate(np.array([[1, 0], [-1, 0], [0, 1], [0, -1.0]]))
-    ]
+    faces = [Slip(i, str(i), n) for i, n in enumerate(np.array([[1, 0], [-1, 0], [0, 1], [0, -1.0]]))]
     assert not len(Surfaces(Numbering.from_mesh(mesh), mesh, faces, ()).frames.nodes)
 
 
@@ -90,8 +86,8 @@ def test_no_free_velocity_takes_fluid_through_a_curved_slip_face(dimension: int)
     """Σ û ∫ φ n · (column of P) = 0 for each free unknown, also at vertices of curved triangles."""
     mesh = ball_in_a_box(dimension, 2)
     numbering, d = Numbering.from_mesh(mesh), dimension
-    faces = [BoundaryCondition(0, "ball", "slip", None)]
-    faces += [BoundaryCondition(1 + i, str(i), "pressure", np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
+    faces: list[BoundaryCondition] = [Slip(0, "ball", None)]
+    faces += [PrescribedPressure(1 + i, str(i), np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
     surfaces = Surfaces(numbering, mesh, faces, ())
     free = np.flatnonzero(surfaces.velocity_free)
     rows, which, values = surfaces.frames.spread(free)
@@ -106,7 +102,7 @@ def test_no_free_velocity_takes_fluid_through_a_curved_slip_face(dimension: int)
 def test_energy_that_a_quadratic_flow_carries_through_a_face_is_exact(dimension: int) -> None:
     """u = (1 + y², x, 0) through the faces x = 0 and x = 1 of the unit box."""
     mesh, d = box(dimension, 2), dimension
-    faces = [BoundaryCondition(i, str(i), "pressure", np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
+    faces = [PrescribedPressure(i, str(i), np.eye(d)[i // 2] * (1 - 2 * (i % 2))) for i in range(2 * d)]
     numbering = Numbering.from_mesh(mesh)
     surfaces = Surfaces(numbering, mesh, faces, ())
     points = numbering.node_points(mesh.geometry)

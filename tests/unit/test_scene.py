@@ -18,6 +18,7 @@ import rigidfluid
 from rigidfluid import load_scene
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.checks import check
+from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.boundary import conditions
@@ -132,9 +133,9 @@ BAD = {
     "velocity missing": ({"boundary": [{"on": "left", "type": "velocity"}]}, "boundary.0.velocity", "value", "Add"),
     "pressure of a wall": (
         {"boundary": [{"on": "left", "type": "wall", "pressure": 0.0}]},
-        "boundary.0.pressure",
+        "boundary.0.pressure: pressure is valid only with type = 'pressure', not 'wall'",
         "type = 'pressure'",
-        "Keep one",
+        "Leave it out, or set type = 'pressure'.",
     ),
     "inflow without outlet": (
         {"boundary": [{"on": "left", "type": "velocity", "velocity": [1.0, 0.0]}]},
@@ -482,11 +483,11 @@ def test_later_boundaries_override_earlier_ones() -> None:
     ]
     scene = scene_from_dict(changed({"boundary": boundary}))
     left, right, bottom, top = conditions(scene, build_system(scene).domain)
-    assert [c.type for c in (left, right, bottom, top)] == ["velocity", "pressure", "slip", "wall"]
+    assert [type(c) for c in (left, right, bottom, top)] == [PrescribedVelocity, PrescribedPressure, Slip, NoSlip]
     assert [c.surface for c in (left, right, bottom, top)] == [1, 2, 3, 4]
     points = np.array([[0.0, 0.0], [0.0, 1.5], [0.0, 3.0]])
-    np.testing.assert_allclose(left.value(0.0, points), [[0, 0], [0.225, 0], [0.3, 0]])
-    np.testing.assert_array_equal(right.value(0.0, points), [2, 2, 2])
+    np.testing.assert_allclose(left.velocity(0.0, points), [[0, 0], [0.225, 0], [0.3, 0]])
+    np.testing.assert_array_equal(right.pressure(0.0, points), [2, 2, 2])
     assert [wall.name for wall in build_system(scene).walls] == ["top"]
 
 

@@ -10,7 +10,7 @@ from rigidfluid.checks.finding import figure
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.boundary import boundary_table
+from rigidfluid.core.setup.boundary_tables import placed_tables
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ def domain_row(scene: Scene, domain: Domain) -> DomainRow:
     """Description of a scene's domain."""
     lower, upper = (tuple(corner.tolist()) for corner in domain.extent)
     surfaces = tuple(
-        SurfaceRow(piece.name, _shape(piece.shape, domain), piece.area, _condition(scene, piece.name))
-        for piece in domain.pieces
+        SurfaceRow(place.piece.name, _shape(place.piece.shape, domain), place.piece.area, table.type)
+        for table, place in placed_tables(scene, domain)
     )
     return DomainRow(
         domain.name, getattr(domain.options, "file", None), domain.volume, lower, upper, surfaces, domain.remarks
@@ -57,8 +57,3 @@ def _shape(shape: Surface, domain: Domain) -> str:
     if shape.least_radius is not None and np.isfinite(shape.least_radius):
         return f"curved, radii from {figure(shape.least_radius)}"
     return "facets" if domain.facets is not None else "not flat"
-
-
-def _condition(scene: Scene, name: str) -> str:
-    table = boundary_table(scene, name)
-    return "wall" if table is None else table.type

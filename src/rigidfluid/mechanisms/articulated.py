@@ -10,7 +10,8 @@ from pydantic import Field
 
 from rigidfluid.core.model.interfaces import Component, PartOptions
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import Positive, StrokeTable, Vector
+from rigidfluid.core.scene.scene import Positive, StrokeTable
+from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, check_length, tables_by_name
 from rigidfluid.core.setup.placing import initial_pose
 from rigidfluid.core.setup.strokes import build_stroke

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, ClassVar, final
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
     Fields,
     FloatArray,
-    FluidProblem,
     FluidState,
     Mesh,
     Pose,

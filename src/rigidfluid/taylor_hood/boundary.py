@@ -11,14 +11,14 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> FloatArray:
-    """-∫ p n·v over the pressure faces (n out of the fluid) that this process holds, (nodes, d); on a periodic face p
-    is the excess of the pressure there."""
+    """-∫ p n·v over the faces with a pressure (n out of the fluid) that this process holds, (nodes, d); on a periodic
+    face p is the excess of the pressure there."""
     load = np.zeros_like(node_points)
     with surfaces.ranks.raise_on_all():
         for face in surfaces.faces:
-            if face.condition.type in ("pressure", "periodic") and face.condition.value is not None:
+            if not face.condition.holds_across:
                 nodes = face.facet_nodes
-                pressure = face.condition.value(time, node_points[nodes.ravel()]).reshape(nodes.shape)
+                pressure = face.condition.pressure(time, node_points[nodes.ravel()]).reshape(nodes.shape)
                 np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
     return load
 
@@ -40,7 +40,7 @@ def face_power(
     """
     held = surfaces.dirichlet_nodes
     power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))
-    passed = [face for face in surfaces.faces if face.condition.type in ("pressure", "velocity")]
+    passed = [face for face in surfaces.faces if face.condition.passes]
     if inert_density > 0.0 and passed:
         relative = velocity - mesh_velocity()
         for face in passed:
@@ -57,7 +57,7 @@ def face_leak(
 ) -> float:
     """Kinetic energy that convection carries out through curved slip faces, per unit time: between their nodes u·n is
     not zero. It gets less with finer cells there."""
-    crossed = [face for face in surfaces.faces if face.condition.type == "slip" and face.condition.normal is None]
+    crossed = [face for face in surfaces.faces if face.condition.slips and face.condition.normal is None]
     leak = 0.0
     if inert_density > 0.0 and crossed:
         relative = velocity - mesh_velocity()

@@ -27,8 +27,8 @@ def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray)
         Coordinates of the nodes [length].
     """
     d = node_points.shape[1]
-    faces = [face for face in surfaces.faces if face.condition.type == "wall"]
-    if all(face.condition.value is None for face in faces):
+    faces = [face for face in surfaces.faces if face.condition.is_wall]
+    if all(face.condition.at_rest for face in faces):
         return np.zeros(d)
     normals, outflow, fastest = np.zeros((d, d)), np.zeros(d), 0.0
     with surfaces.ranks.raise_on_all():
@@ -36,8 +36,8 @@ def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray)
             area = face.area_vectors(node_points).reshape(-1, d)
             size = np.maximum(np.linalg.norm(area, axis=1, keepdims=True), np.finfo(float).tiny)
             normals += (area / size).T @ area
-            if face.condition.value is not None:
-                velocity = face.condition.value(time, node_points[face.facet_nodes.ravel()])
+            if not face.condition.at_rest:
+                velocity = face.condition.velocity(time, node_points[face.facet_nodes.ravel()])
                 outflow += (area / size).T @ np.sum(area * velocity, axis=1)
                 fastest = max(fastest, float(np.abs(velocity).max(initial=0.0)))
     whole = surfaces.ranks.sum(np.concatenate([normals.ravel(), outflow]))

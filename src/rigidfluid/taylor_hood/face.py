@@ -7,8 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
+from rigidfluid.core.model.conditions import BoundaryCondition
 from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.taylor_hood.facet_integrals import (
     area_at_points,
     area_vectors,
@@ -35,7 +36,7 @@ class Face:
     ) -> Face:
         """Face of these ``facets``; unless it is flat or a wall they are turned so that their normals point into the
         fluid."""
-        if condition.normal is None and condition.type != "wall":
+        if condition.normal is None and not condition.is_wall:
             facets = into_fluid(facets, mesh.cells, mesh.points)
         return cls(condition, facets, numbering.facet_nodes(facets), nodes)
 

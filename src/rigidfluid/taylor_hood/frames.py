@@ -92,7 +92,8 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
         Nodes ascending. Each of several faces that meet holds its own directions; nearly equal normals count as one.
     """
     d = node_points.shape[1]
-    slip, pressure = ([face for face in faces if face.condition.type == kind] for kind in ("slip", "pressure"))
+    slip = [face for face in faces if face.condition.slips]
+    pressure = [face for face in faces if face.condition.holds_part and not face.condition.slips]
     oblique = [face.nodes for face in [*slip, *pressure] if face.axis is None]
     nodes = np.unique(np.concatenate([*oblique, np.empty(0, np.int64)]))
     nodes = nodes[~held[nodes]]

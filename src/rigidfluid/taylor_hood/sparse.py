@@ -10,7 +10,8 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.grad_div import grad_div_coefficient

@@ -9,7 +9,8 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.types import BoolArray, BoundaryCondition, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.conditions import BoundaryCondition
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
 from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood.face import Face
 from rigidfluid.taylor_hood.frames import local_frames
@@ -69,7 +70,7 @@ class Surfaces:
             np.flatnonzero(~self.velocity_free.any(axis=1)), np.concatenate([*self.body_nodes, np.empty(0, np.int64)])
         )
         self.velocity_free[self.images] = False
-        self.enclosed = not any(condition.type == "pressure" for condition in conditions)
+        self.enclosed = not any(condition.is_open for condition in conditions)
 
     def prescribed(
         self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray, controlled: BoolArray
@@ -80,14 +81,10 @@ class Surfaces:
         """
         velocity = np.zeros_like(node_points)
         with self.ranks.raise_on_all():
-            for face in self.faces:
-                if face.condition.type == "velocity" and face.condition.value is not None:
-                    velocity[face.nodes] = face.condition.value(time, node_points[face.nodes])
-            walls = [face for face in self.faces if face.condition.type == "wall"]
-            # where two meet, the one at rest holds the fluid
-            for face in sorted(walls, key=lambda wall: wall.condition.value is None):
-                value = face.condition.value
-                velocity[face.nodes] = 0.0 if value is None else value(time, node_points[face.nodes])
+            held = [face for face in self.faces if face.condition.holds_all]
+            # where several meet, walls hold the fluid, and those at rest before others
+            for face in sorted(held, key=lambda face: (face.condition.is_wall, face.condition.at_rest)):
+                velocity[face.nodes] = face.condition.velocity(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(time, velocity, node_points)
         self.move_with_bodies(velocity, node_points, position, twist, controlled)
@@ -123,9 +120,9 @@ class Surfaces:
         """Excess of the pressure at vertices (vertices, d) of periodic faces over that at their images, (vertices,)."""
         jump = np.zeros(len(points))
         for face in self.faces:
-            if face.condition.type == "periodic" and face.condition.value is not None:
+            if face.condition.image is not None:
                 vertices = face.nodes[face.nodes < len(points)]
-                jump[vertices] += face.condition.value(time, points[vertices])
+                jump[vertices] += face.condition.pressure(time, points[vertices])
         return jump
 
     def held_part(self, velocity: FloatArray) -> FloatArray:
@@ -149,7 +146,7 @@ class Surfaces:
 
         Quadratic elements see a prescribed flux up to their error, near the walls' corners above all.
         """
-        held = [face for face in self.faces if face.condition.type == "velocity"]
+        held = [face for face in self.faces if face.condition.passes]
         if not held:
             return
         each = self.ranks.sum(np.array([face.in_and_out(node_points, velocity) for face in held]))
@@ -218,8 +215,7 @@ def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
 
 def _free_components(face: Face, dimension: int) -> BoolArray:
     """Components of the velocity that are free on a whole face (d,); nodes with axes of their own have others."""
-    kind, axis = face.condition.type, face.axis
-    if kind not in ("slip", "pressure"):
-        return np.full(dimension, kind == "periodic")
-    across: BoolArray = np.arange(dimension) == axis
-    return ~across if kind == "slip" or axis is None else across
+    condition = face.condition
+    if face.axis is None:
+        return np.full(dimension, not condition.holds_all)
+    return np.where(np.arange(dimension) == face.axis, not condition.holds_across, not condition.holds_along)

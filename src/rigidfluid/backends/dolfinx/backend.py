@@ -8,8 +8,9 @@ from scipy.sparse import csc_array
 
 from rigidfluid.backends.dolfinx.options import DolfinxOptions
 from rigidfluid.core.model.extension import Extension
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import BoolArray, FluidProblem, Mesh
+from rigidfluid.core.model.types import BoolArray, Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering

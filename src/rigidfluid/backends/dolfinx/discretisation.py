@@ -14,7 +14,8 @@ from rigidfluid.backends.dolfinx.krylov import Krylov, LaggedLU
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray, FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
 from rigidfluid.taylor_hood.grad_div import grad_div_coefficient

@@ -38,7 +38,7 @@ def schur_data(
     numbering = space.numbering
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
-        if face.condition.type == "pressure":
+        if face.condition.is_open:
             is_open[face.nodes[face.nodes < numbering.vertices]] = True
     return SchurData(inertia, viscosity, grad_div, forms, is_open[space.owned_vertices], surfaces.enclosed)
 

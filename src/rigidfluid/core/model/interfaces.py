@@ -19,6 +19,7 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.surface import Surface
@@ -28,7 +29,6 @@ from rigidfluid.core.model.types import (
     Contacts,
     Fields,
     FloatArray,
-    FluidProblem,
     FluidState,
     Loads,
     Mesh,

@@ -7,9 +7,8 @@ Surfaces are numbered through: bodies 0 … n-1, then the pieces of the domain's
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -190,25 +189,6 @@ class Mesh:
 
 
 @dataclass(frozen=True, slots=True)
-class BoundaryCondition:
-    """Condition on one piece of the domain's boundary.
-
-    ``velocity``: ``value(time, points)`` (N, d) prescribed; ``wall``: zero velocity, or ``value(time, points)`` (N, d)
-    along it; ``slip``: no flow through, no traction along; ``pressure``: ``value(time, points)`` (N,) the normal stress
-    is -p, no flow along the piece; ``periodic``: velocity and traction are those on the surface of number ``image``,
-    but for the pressure, which is higher by ``value(time, points)`` (N,); that surface has neither image nor value.
-    ``normal`` (d,) points into the fluid; None where the piece is not flat.
-    """
-
-    surface: int
-    name: str
-    type: Literal["wall", "velocity", "slip", "pressure", "periodic"]
-    normal: FloatArray | None
-    value: Callable[[float, FloatArray], FloatArray] | None = None
-    image: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Links:
     """Constraints and dampers of N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ
     force acts on them.
@@ -226,40 +206,6 @@ class Links:
 
 NO_LINKS = Links(np.zeros((0, 0, 0)), np.zeros(0), np.zeros(0))
 """Nothing that holds motions."""
-
-
-@dataclass(frozen=True, slots=True)
-class FluidProblem:
-    """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
-
-    With ``inertia`` False the left side is left out (Stokes). Without a ``pressure`` condition the pressure has zero
-    mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):
-    the motion that carries each body, its own if not given. ``initial``: the flow at the start, at rest but
-    for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
-    """
-
-    dimension: int
-    bodies: int
-    density: float
-    dynamic_viscosity: float
-    inertia: bool
-    conditions: tuple[BoundaryCondition, ...]
-    source: Callable[[float, FloatArray], FloatArray] | None = None
-    carrier: tuple[int, ...] = ()
-    initial: Literal["rest", "steady"] | Callable[[float, FloatArray], FloatArray] = "rest"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "carrier", self.carrier or tuple(range(self.bodies)))
-
-    @property
-    def motions(self) -> int:
-        """Number of motions that carry the bodies."""
-        return max(self.carrier, default=-1) + 1
-
-    @property
-    def inert_density(self) -> float:
-        """The density in the left side: 0 in Stokes flow."""
-        return self.density if self.inertia else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,7 @@ from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, shortened
+from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import FluidTable, Scene
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
@@ -462,7 +463,7 @@ def _earlier(scene: Scene, out: Path | None, backend: FluidBackend) -> Checkpoin
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
     checkpoint = checkpoint_for(backend, out)
-    stored, given = json.loads(checkpoint.scene), scene.to_dict()
+    stored, given = tables_now(json.loads(checkpoint.scene)), scene.to_dict()
     stored["time"]["end"] = given["time"]["end"]
     if _is_of_another(backend, stored["fluid"]["backend"]):
         stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.model.conditions import BoundaryCondition
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.types import Mesh
 
 VANISHING = 1e-3
 """Duration of a sudden start's impulse, over `time.step`: so short that viscosity does nothing."""
@@ -20,17 +21,16 @@ VANISHING = 1e-3
 def faces_start_at_once(problem: FluidProblem, mesh: Mesh) -> bool:
     """Whether faces give the fluid a velocity at time 0; without inertia pressures do so too."""
     with mesh.ranks.raise_on_all():
-        given = _given(problem, mesh)
-        found = any(condition.value(0.0, points).any() for condition, points in given if condition.value)
+        found = any(_drives_at_once(condition, problem.inertia, mesh) for condition in problem.conditions)
     return bool(mesh.ranks.greatest(found))
 
 
-def _given(problem: FluidProblem, mesh: Mesh) -> Iterator[tuple[BoundaryCondition, FloatArray]]:
-    """The conditions that could, with vertices and centres of their facets."""
-    for condition in problem.conditions:
-        if condition.type in ("velocity", "wall") or not problem.inertia:
-            corners = mesh.points[mesh.facets[mesh.markers == condition.surface]]
-            yield condition, np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
+def _drives_at_once(condition: BoundaryCondition, inertia: bool, mesh: Mesh) -> bool:
+    """Whether a condition is not zero at time 0, at vertices and centres of its facets."""
+    corners = mesh.points[mesh.facets[mesh.markers == condition.surface]]
+    points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
+    driven = condition.velocity(0.0, points).any()
+    return bool(driven or (not inertia and condition.pressure(0.0, points).any()))
 
 
 def struck(system: System, state: State, time_step: float) -> tuple[State, float] | None:

@@ -10,23 +10,23 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, WithJsonSchema, field_validator
 
+from rigidfluid.core.scene.vectors import (
+    DIMENSION,
+    Angular,
+    Formula,
+    Formulas,
+    NotNegative,
+    NotNegativeAngular,
+    Vector,
+)
 from rigidfluid.errors import SceneError
 
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 """Pattern of names: no control characters, which would break the tables and plots that names stand in."""
 
 Positive = Annotated[float, Field(gt=0)]
-Vector = tuple[float, ...]
-# In 2D an angular velocity is one number, which stands for a vector of one component.
-_LISTED = BeforeValidator(
-    lambda value: tuple(value) if isinstance(value, list | tuple) else (value,),
-    json_schema_input_type=float | tuple[float, ...],
-)
-Angular = Annotated[Vector, _LISTED]
-NotNegative = tuple[Annotated[float, Field(ge=0)], ...]
-NotNegativeAngular = Annotated[NotNegative, _LISTED]
 Freedom = Literal["x", "y", "z", "rotation", "rx", "ry", "rz"]
 # How bodies and mechanisms start, in their keys alike.
 InitialPosition = Annotated[Vector, Field(description="Initial position of the centre of mass [length]")]
@@ -44,12 +44,6 @@ AUTO = "auto"
 """Stands in a file for a number that is computed when the scene is loaded."""
 SizeBody = Annotated[
     float, Field(gt=0), WithJsonSchema({"anyOf": [{"exclusiveMinimum": 0, "type": "number"}, {"const": AUTO}]})
-]
-# A component that is a number, or an expression of place and time.
-Formula = float | str
-Condition = Annotated[
-    Literal["wall", "velocity", "pressure", "slip", "symmetry", "periodic"],
-    AfterValidator(lambda value: "slip" if value == "symmetry" else value),
 ]
 
 
@@ -92,10 +86,10 @@ class FluidTable(_OpenTable):
         default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
-    force: tuple[Formula, ...] | None = Field(
+    force: Formulas | None = Field(
         default=None, description="Expressions of a force on the fluid alone; none if not given [force/volume]"
     )
-    initial: Literal["rest", "steady"] | tuple[Formula, ...] = Field(
+    initial: Literal["rest", "steady"] | Formulas = Field(
         default="rest",
         description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
         "their velocities, or expressions of its velocity [length/time]",
@@ -148,53 +142,85 @@ class StrokeTable(_Table):
     repeat: bool = Field(default=True, description="Whether it repeats; else the last value is held")
 
 
-class BoundaryTable(_Table):
-    """Condition on surfaces of the domain; a later entry overrides an earlier one, unnamed surfaces are walls.
-
-    Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
-    `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
-    """
+class _BoundaryTable(_Table):
+    """A condition on a surface of the domain, or on all of them."""
 
     on: str = Field(description="Name of a surface of the domain, or `all`")
-    type: Condition = Field(
-        description="`wall` (no slip; the only type that repels bodies), `velocity`, `pressure`, `slip` or `symmetry`, "
-        "`periodic` (on two opposite surfaces); "
-        "on `slip` no fluid passes, on `pressure` none moves along the surface"
-    )
-    velocity: tuple[Formula, ...] | None = Field(
+    type: str
+
+
+class VaryingTable(_BoundaryTable):
+    """A condition with values that may change in time."""
+
+    over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
         default=None,
-        description="Velocity on a `velocity` surface, its peak; of a `wall` along itself, in numbers [length/time]",
+        description="Factor of the velocity or pressure in rows [time, factor], linear between them, from 0 to "
+        "`time.end`; or a table with a `file` of such rows",
     )
-    flux: Formula | None = Field(
+    ramp: Positive | None = Field(
+        default=None, description="Time in which the velocity or pressure rises smoothly from zero [time]"
+    )
+
+
+class WallTable(_BoundaryTable):
+    """No slip; it repels bodies, as no other type does. It may move along itself."""
+
+    type: Literal["wall"] = Field(description="The condition")
+    velocity: Vector | None = Field(
         default=None,
-        description="Instead of `velocity`, what flows in through a `velocity` surface, out if negative: a number or "
-        "an expression of t alone [length^d/time]",
-    )
-    profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
-        default="uniform",
-        description="How a `velocity` is spread over its surface; `parabolic` is zero on its edges; `poiseuille` is "
-        "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
-        "other",
+        description="Velocity of a wall along itself, in numbers; expressions need type = 'velocity' [length/time]",
     )
     angular_velocity: Angular | None = Field(
-        default=None, description="Angular velocity of a `wall` that turns in itself; a number in 2D [rad/time]"
+        default=None, description="Angular velocity of a wall that turns in itself; a number in 2D [rad/time]"
     )
     centre: Vector | None = Field(
         default=None, description="Point that such a wall turns about; the origin if not given [length]"
     )
-    pressure: Formula | None = Field(default=None, description="Pressure on a `pressure` surface [force/length^(d-1)]")
+
+
+class VelocityTable(VaryingTable):
+    """A velocity that is given, by itself or by its `flux`."""
+
+    type: Literal["velocity"] = Field(description="The condition")
+    velocity: Formulas | None = Field(default=None, description="Velocity, at the peak of the `profile` [length/time]")
+    flux: Formula | None = Field(
+        default=None,
+        description="Instead of `velocity`, what flows in through the surface, out if negative: a number or an "
+        "expression of t alone [length^d/time]",
+    )
+    profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
+        default="uniform",
+        description="How the velocity is spread over the surface; `parabolic` is zero on its edges; `poiseuille` is "
+        "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
+        "other",
+    )
+
+
+class PressureTable(VaryingTable):
+    """An open end with a pressure that is given; along the surface the fluid does not move."""
+
+    type: Literal["pressure"] = Field(description="The condition")
+    pressure: Formula = Field(description="Pressure [force/length^(d-1)]")
+
+
+class SlipTable(_BoundaryTable):
+    """No fluid passes, and it goes along the surface without traction."""
+
+    type: Annotated[Literal["slip", "symmetry"], AfterValidator(lambda value: "slip")] = Field(
+        description="The condition; `symmetry` is another name of it"
+    )
+
+
+class PeriodicTable(_BoundaryTable):
+    """On two opposite surfaces: what flows out through one comes in through the other."""
+
+    type: Literal["periodic"] = Field(description="The condition")
     pressure_drop: float | None = Field(
-        default=None,
-        description="What the pressure is higher on a `periodic` surface than on the opposite one [force/length^(d-1)]",
+        default=None, description="What the pressure is higher here than on the opposite surface [force/length^(d-1)]"
     )
-    over_time: tuple[tuple[float, float], ...] | TimeFileTable | None = Field(
-        default=None,
-        description="Factor of velocity or pressure in rows [time, factor], linear between them, from 0 to `time.end`; "
-        "or a table with a `file` of such rows",
-    )
-    ramp: Positive | None = Field(
-        default=None, description="Time in which velocity or pressure rises smoothly from zero [time]"
-    )
+
+
+BoundaryTable = WallTable | VelocityTable | PressureTable | SlipTable | PeriodicTable
 
 
 class PrescribedTable(_Table):
@@ -440,7 +466,14 @@ class Scene(_Table):
     scene: SceneTable
     fluid: FluidTable
     domain: DomainTable
-    boundary: tuple[BoundaryTable, ...] = ()
+    boundary: tuple[Annotated[BoundaryTable, Field(discriminator="type")], ...] = Field(
+        default=(),
+        description="Condition on surfaces of the domain; a later entry overrides an earlier one, unnamed surfaces are "
+        "walls.\n\n"
+        "Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions "
+        "`sin`,\n`cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and "
+        "`where(condition, then, otherwise)`.",
+    )
     body: tuple[BodyTable, ...] = ()
     mechanism: tuple[MechanismTable, ...] = ()
     joint: tuple[JointTable, ...] = ()
@@ -449,6 +482,14 @@ class Scene(_Table):
     mesh: MeshTable | None = Field(default=None, description="The mesh; needed by backends with a mesh")
     time: TimeTable
     output: OutputTable
+
+    @field_validator("scene")
+    @classmethod
+    def _tell_dimension(cls, table: SceneTable, info: ValidationInfo) -> SceneTable:
+        """Vectors of the tables below need it."""
+        if info.context is not None:
+            info.context[DIMENSION] = table.dimension
+        return table
 
     @field_validator("body")
     @classmethod

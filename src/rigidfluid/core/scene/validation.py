@@ -5,12 +5,14 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeVar, get_args, get_origin
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, TypeVar, get_args, get_origin
 
 from pydantic import AliasChoices, AliasPath, BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from rigidfluid.core.scene.vectors import WRONG_LENGTH
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -26,17 +28,23 @@ Location = tuple[int | str, ...]
 def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     """Validate a table, as TOML gives it, into an instance of ``model``; ``at`` is its place in the scene (``body.0``).
 
-    Raises SceneError at the first refused value; unknown keys come first, as they often explain what is missing.
+    Raises SceneError at the first refused value.
     """
     text = _json(data, at)
     try:
-        table = model.model_validate_json(text)
+        table = model.model_validate_json(text, context={})
     except ValidationError as error:
-        complaints = sorted(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
+        complaints = sorted(error.errors(), key=_urgency)
         raise _scene_error(model, complaints, at) from None
     for field, number in _numbers(json.loads(text), at):
         refuse_out_of_proportion(field, number)
     return table
+
+
+def _urgency(complaint: ErrorDetails) -> int:
+    """Unknown keys often explain what is missing, and lengths of vectors why no other type of value fits."""
+    first = ("extra_forbidden", WRONG_LENGTH)
+    return first.index(complaint["type"]) if complaint["type"] in first else len(first)
 
 
 def fields_by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
@@ -120,32 +128,51 @@ def refuse_out_of_proportion(field: str, number: float) -> None:
 
 def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
     """The error of the first complaint."""
-    complaint, location = complaints[0], _keys(model, complaints[0])
-    field = ".".join([*filter(None, [at]), *map(str, location)])
+    complaint = complaints[0]
     if complaint["type"] == "extra_forbidden":
-        return unknown_key(field, fields_by_key(_model_at(model, location[:-1])))
+        return _needless_key(_place(model, complaint["loc"][:-1], at), str(complaint["loc"][-1]))
+    place = _place(model, complaint["loc"], at)
+    if complaint["type"] == WRONG_LENGTH:
+        return SceneError(place.field, *(complaint["ctx"][part] for part in ("found", "allowed", "remedy")))
+    if complaint["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        return _unknown_type(place, complaint)
     if complaint["type"] == "missing" and isinstance(complaint["input"], Mapping):
-        return _missing_key(model, complaint, field)
+        return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
-        return _short_list(model, complaints, at)
-    return SceneError(field or "scene", value_text(complaint["input"]), _allowed(complaint), _remedy(model, location))
+        return _short_list(_place(model, complaint["loc"][:-1], at), complaints)
+    return SceneError(place.field or "scene", value_text(complaint["input"]), _allowed(complaint), _remedy(place))
 
 
-def _keys(model: type[BaseModel], complaint: ErrorDetails) -> Location:
-    """Location of a complaint in the scene, without the types of a key that pydantic has tried and names in between."""
-    keys: list[int | str] = []
-    table: type[BaseModel] | None = model
-    any_key = False
-    *inner, last = complaint["loc"] or ("",)
-    for part in (*inner, *([] if complaint["type"] == "extra_forbidden" else [last])):
+@dataclass(frozen=True)
+class _Place:
+    """A place in a scene.
+
+    ``field``: its dotted key; ``key``: the last one in it; ``table``: that which has this key. ``within``: the table
+    that stands there, if it is one; it is chosen by its ``type`` from ``types``, where these are not empty.
+    """
+
+    field: str
+    key: str
+    table: type[BaseModel]
+    within: type[BaseModel] | None
+    types: Mapping[str, type[BaseModel]]
+    type: str
+
+
+def _place(model: type[BaseModel], location: Location, at: str) -> _Place:
+    """The place that pydantic gives by keys and numbers, and in between the types of a value that it has tried."""
+    place, any_key = _Place(at, "", model, model, {}, ""), False
+    for part in location:
+        inside = f"{place.field}.{part}" if place.field else str(part)
         if isinstance(part, int) or any_key:
-            keys.append(part)
-            any_key = False
-        elif table is not None and part in (fields := fields_by_key(table)):
-            keys.append(part)
-            annotation = fields[part].annotation
-            table, any_key = _table_in(annotation), _has_any_key(annotation)
-    return (*keys, last) if complaint["type"] == "extra_forbidden" else tuple(keys)
+            place, any_key = replace(place, field=inside, key=place.key if isinstance(part, int) else part), False
+        elif place.within is None and part in place.types:
+            place = replace(place, within=place.types[part], type=part)
+        elif place.within is not None and part in (fields := fields_by_key(place.within)):
+            annotation, types = fields[part].annotation, _types(fields[part].annotation, fields[part].discriminator)
+            place = _Place(inside, part, place.within, None if types else _table_in(annotation), types, "")
+            any_key = _has_any_key(annotation)
+    return place
 
 
 def _has_any_key(annotation: Any) -> bool:
@@ -154,25 +181,58 @@ def _has_any_key(annotation: Any) -> bool:
     return any(inspect.isclass(kind) and issubclass(kind, Mapping) for kind in kinds)
 
 
-def _short_list(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
+def _needless_key(place: _Place, key: str) -> SceneError:
+    """Error for a key that the table at a place does not have; tables of other types may have it."""
+    assert place.within is not None
+    field = f"{place.field}.{key}" if place.field else key
+    others = [name for name, table in place.types.items() if key in fields_by_key(table)]
+    if not others:
+        return unknown_key(field, fields_by_key(place.within))
+    statement = f"{key} is valid only with type = {' or '.join(map(repr, others))}, not {place.type!r}"
+    remedy = f"set type = {others[0]!r}" if len(others) == 1 else "change the type"
+    return SceneError(field, statement, None, f"Leave it out, or {remedy}.")
+
+
+def _unknown_type(place: _Place, complaint: ErrorDetails) -> SceneError:
+    """Error for a table without a type, or of one that there is not."""
+    table, key = complaint["input"], complaint["ctx"]["discriminator"].strip("'")
+    if key not in table:
+        keys = {known for kind in place.types.values() for known in fields_by_key(kind)}
+        return _misspelt_key(place.field, table, key, keys) or SceneError(
+            f"{place.field}.{key}", "nothing", _listed(place.types), f"Add the key {key!r}."
+        )
+    remedy = suggestion(str(table[key]), place.types) or "Name one of them."
+    return SceneError(f"{place.field}.{key}", value_text(table[key]), _listed(place.types), remedy)
+
+
+def _listed(words: Iterable[str]) -> str:
+    return ", ".join(map(repr, words))
+
+
+def _short_list(place: _Place, complaints: Sequence[ErrorDetails]) -> SceneError:
     """Error for a list with too few entries: pydantic complains of each place that is empty."""
-    place, keys = complaints[0]["loc"][:-1], _keys(model, complaints[0])[:-1]
-    field = ".".join([*filter(None, [at]), *map(str, keys)])
-    empty = sum(complaint["type"] == "missing" and complaint["loc"][:-1] == place for complaint in complaints)
-    given = complaints[0]["input"]
-    return SceneError(field, value_text(given), f"{len(given) + empty} entries", _remedy(model, keys))
+    first = complaints[0]
+    empty = sum(each["type"] == "missing" and each["loc"][:-1] == first["loc"][:-1] for each in complaints)
+    allowed = f"{len(first['input']) + empty} entries"
+    return SceneError(place.field, value_text(first["input"]), allowed, _remedy(place))
 
 
-def _missing_key(model: type[BaseModel], complaint: ErrorDetails, field: str) -> SceneError:
-    table, key = complaint["input"], str(complaint["loc"][-1])
-    fields = fields_by_key(_model_at(model, complaint["loc"][:-1]))
-    misspelt = [other for other in table if other not in fields and suggestion(other, [key])]
-    if misspelt:
-        return unknown_key(field.removesuffix(key) + misspelt[0], fields)
+def _missing_key(place: _Place, table: Mapping[str, Any], key: str) -> SceneError:
+    fields = fields_by_key(place.table)
+    misspelt = _misspelt_key(place.field.rpartition(".")[0], table, key, fields)
+    if misspelt is not None:
+        return misspelt
     meaning = fields[key].description
     if meaning is None:
-        return SceneError(field, "nothing", "a table", f"Add the table [{field}].")
-    return SceneError(field, "nothing", meaning, f"Add the key {key!r}.")
+        return SceneError(place.field, "nothing", "a table", f"Add the table [{place.field}].")
+    return SceneError(place.field, "nothing", meaning, f"Add the key {key!r}.")
+
+
+def _misspelt_key(field: str, table: Mapping[str, Any], key: str, known: Iterable[str]) -> SceneError | None:
+    """Error for a key of a ``table`` at ``field`` that is nearly the one that is missing, if there is such a key."""
+    known = set(known)
+    wrong = [other for other in table if other not in known and suggestion(other, [key])]
+    return unknown_key(f"{field}.{wrong[0]}" if field else wrong[0], known) if wrong else None
 
 
 def _allowed(complaint: ErrorDetails) -> str:
@@ -180,19 +240,21 @@ def _allowed(complaint: ErrorDetails) -> str:
     return f"a value {text}" if text.startswith(("greater", "less")) else text
 
 
-def _remedy(model: type[BaseModel], location: Location) -> str:
-    names = [part for part in location if isinstance(part, str)]
-    field = fields_by_key(_model_at(model, names[:-1])).get(names[-1]) if names else None
+def _remedy(place: _Place) -> str:
+    field = fields_by_key(place.table).get(place.key)
     meaning = None if field is None else field.description
     return f"Correct it; it means: {meaning}." if meaning else "Correct the value."
 
 
-def _model_at(model: type[BaseModel], location: Iterable[int | str]) -> type[BaseModel]:
-    """The model of the table at this place of the scene."""
-    for part in location:
-        if isinstance(part, str):
-            model = _table_in(fields_by_key(model)[part].annotation) or model
-    return model
+def _types(annotation: Any, key: object = None) -> Mapping[str, type[BaseModel]]:
+    """The tables of a union that a ``key`` of theirs tells apart, by what it says; empty of other annotations."""
+    inner = get_args(annotation)
+    if isinstance(key, str):
+        return {value: table for table in inner for value in get_args(table.model_fields[key].annotation)}
+    if get_origin(annotation) is Annotated:
+        keys = [mark.discriminator for mark in inner[1:] if isinstance(mark, FieldInfo)]
+        return _types(inner[0], next(filter(None, keys), None))
+    return next(filter(None, map(_types, inner)), {})
 
 
 def _table_in(annotation: Any) -> type[BaseModel] | None:

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
+from functools import singledispatch
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.setup.boundary import boundary_table, table_key
+from rigidfluid.core.scene.scene import BoundaryTable, VelocityTable, WallTable
+from rigidfluid.core.setup.boundary import conditions, oblique_parts
 from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
-from rigidfluid.core.setup.boundary_values import (
-    BoundaryPressure,
-    BoundaryVelocity,
-    prescribed_pressure,
-    prescribed_velocity,
-    pressure_drop,
-    wall_velocity,
-)
-from rigidfluid.core.setup.time_factor import check_rows
+from rigidfluid.core.setup.boundary_tables import Place, placed_tables, tables_of_walls
+from rigidfluid.core.setup.boundary_values import boundary_value, wall_velocity
+from rigidfluid.core.setup.time_factor import check_rows, rows_over_time
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import FluidBackend
-    from rigidfluid.core.model.piece import Piece
-    from rigidfluid.core.scene.scene import BoundaryTable, Scene
+    from rigidfluid.core.scene.scene import Scene
 
 ACROSS = 1e-12
 """Greatest velocity of a sliding flat wall across itself, over its speed, that counts as rounding [1]."""
@@ -41,14 +36,14 @@ def check_boundary(scene: Scene, domain: Domain) -> None:
     """Refuse, with SceneError, unknown names, probes outside the domain, and conditions that contradict themselves or a
     surface's shape."""
     for number, table in enumerate(scene.boundary):
-        _check_table(domain, table, f"boundary.{number}")
-        if isinstance(table.over_time, tuple):
-            check_rows(table.over_time, scene.time.end, f"boundary.{number}.over_time")
-    for piece in domain.pieces:
-        held = boundary_table(scene, piece.name)
-        if held is not None:
-            _check_sliding(domain, piece, held, table_key(scene, held))
-            _check_values(scene, domain, piece, held, table_key(scene, held))
+        _check_on(domain, table, f"boundary.{number}")
+        _check_table(table, f"boundary.{number}")
+    for at, rows in rows_over_time(scene).items():
+        check_rows(rows, scene.time.end, at)
+    for wall, place in tables_of_walls(scene, domain):
+        _check_sliding(domain, wall, place)
+    for table, place in placed_tables(scene, domain):
+        _check_values(scene, domain, table, place)
     _check_names(scene, domain)
     outside = ~domain.contains(np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension))
     if outside.any():
@@ -63,8 +58,7 @@ def check_inflow(scene: Scene, domain: Domain) -> None:
     Fluxes are integrated over surfaces whose shape is known, at many times; expressions may be off by what a mesh makes
     of them, which the backend balances.
     """
-    tables = [boundary_table(scene, name) for name in domain.names]
-    if any(table is not None and table.type == "pressure" for table in tables):
+    if any(condition.is_open for condition in conditions(scene, domain)):
         return
     inflows = sampled_inflows(scene, domain)
     times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
@@ -89,87 +83,66 @@ def check_inflow(scene: Scene, domain: Domain) -> None:
 
 def check_oblique(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
     """Raise SceneError where a ``backend`` is asked for slip or pressure on a surface that it cannot take them on."""
-    for piece in domain.pieces:
-        table, plane = boundary_table(scene, piece.name), piece.shape.plane
-        if table is None or table.type not in ("slip", "pressure") or backend.oblique_faces:
-            continue
-        if plane is None or plane.axis is None:
-            found = f"{table.type!r} on {piece.name!r}, which does not lie across an axis"
-            allowed = f"'wall' or 'velocity' there with backend {backend.name!r}"
-            raise SceneError(f"{table_key(scene, table)}.type", found, allowed, "Use backend = 'scikit-fem'.")
+    if backend.oblique_faces:
+        return
+    for table, place in oblique_parts(scene, domain):
+        found = f"{table.type!r} on {place.piece.name!r}, which does not lie across an axis"
+        allowed = f"'wall' or 'velocity' there with backend {backend.name!r}"
+        raise SceneError(f"{place.at}.type", found, allowed, "Use backend = 'scikit-fem'.")
 
 
-def _check_table(domain: Domain, table: BoundaryTable, at: str) -> None:
+def _check_on(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
     if table.on not in allowed:
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
-    if table.pressure_drop is not None and table.type != "periodic":
-        statement = f"pressure_drop is valid only with type = 'periodic', not {table.type!r}"
-        raise SceneError(f"{at}.pressure_drop", statement, None, "Leave it out.")
-    for key, types in (("velocity", ("velocity", "wall")), ("pressure", ("pressure",))):
-        given = getattr(table, key) is not None
-        if given and table.type not in types:
-            statement = f"{key} is valid only with type = {key!r}, not {table.type!r}"
-            raise SceneError(f"{at}.{key}", statement, None, "Keep one.")
-        if table.type == key and not given and table.flux is None:
-            raise SceneError(f"{at}.{key}", "nothing", f"a value with type = {key!r}", f"Add {key!r}.")
-    if table.flux is not None and (table.type != "velocity" or table.velocity is not None):
-        statement = f"flux is valid only with type = 'velocity', not {table.type!r}"
-        if table.velocity is not None:
-            statement = "flux takes the place of velocity, and both are given"
-        raise SceneError(f"{at}.flux", statement, None, "Keep one.")
-    if table.profile != "uniform" and table.type != "velocity":
-        statement = f"a profile is valid only with type = 'velocity', not {table.type!r}"
-        raise SceneError(f"{at}.profile", statement, None, "Leave it out.")
-    for key in ("over_time", "ramp"):
-        if getattr(table, key) is not None and table.type not in ("velocity", "pressure"):
-            statement = f"{key} is valid only with type = 'velocity' or 'pressure', not {table.type!r}"
-            raise SceneError(f"{at}.{key}", statement, None, "Leave it out.")
-    if table.angular_velocity is not None and table.type != "wall":
-        statement = f"angular_velocity is valid only with type = 'wall', not {table.type!r}"
-        remedy = "Give the velocity as expressions of x, y, z instead."
-        raise SceneError(f"{at}.angular_velocity", statement, None, remedy)
+
+
+@singledispatch
+def _check_table(table: BoundaryTable, at: str) -> None:
+    """Refuse keys of a table that its type has and that do not go together; of most types they all do."""
+
+
+@_check_table.register(VelocityTable)
+def _check_velocity_table(table: VelocityTable, at: str) -> None:
+    if table.velocity is None and table.flux is None:
+        raise SceneError(f"{at}.velocity", "nothing", "a value with type = 'velocity'", "Add 'velocity' or 'flux'.")
+    if table.velocity is not None and table.flux is not None:
+        raise SceneError(f"{at}.flux", "flux takes the place of velocity, and both are given", None, "Keep one.")
+
+
+@_check_table.register(WallTable)
+def _check_wall_table(table: WallTable, at: str) -> None:
     if table.centre is not None and table.angular_velocity is None:
         raise SceneError(f"{at}.centre", "a centre is read only with an angular_velocity", None, "Leave it out.")
-    if table.type == "wall" and any(isinstance(component, str) for component in table.velocity or ()):
-        remedy = "Give numbers, or set type = 'velocity'."
-        raise SceneError(
-            f"{at}.velocity", list(table.velocity or ()), "numbers on a 'wall', which slides evenly", remedy
-        )
 
 
-def _check_sliding(domain: Domain, piece: Piece, table: BoundaryTable, at: str) -> None:
+def _check_sliding(domain: Domain, table: WallTable, place: Place) -> None:
     """Refuse a wall whose velocity leads out of itself somewhere."""
-    velocity = wall_velocity(table, domain.dimension) if table.type == "wall" else None
+    velocity = wall_velocity(table, domain.dimension)
     if velocity is None:
         return
-    points = points_of(piece.shape, domain)
-    moving, normal = velocity(points), piece.shape.normal(points)
+    shape = place.piece.shape
+    points = points_of(shape, domain)
+    moving, normal = velocity(points), shape.normal(points)
     across = np.sum(moving * normal, axis=1)
     worst = int(np.argmax(np.abs(across)))
-    allowed = ACROSS if piece.shape.plane is not None else ACROSS_CURVED
+    allowed = ACROSS if shape.plane is not None else ACROSS_CURVED
     if abs(across[worst]) > allowed * float(np.linalg.norm(moving, axis=1).max()):
         key = "velocity" if table.angular_velocity is None else "angular_velocity"
         remedy = "Set type = 'velocity', or let it move along itself"
-        if piece.shape.plane is not None and table.angular_velocity is None:
+        if shape.plane is not None and table.angular_velocity is None:
             along = (moving[worst] - across[worst] * normal[worst]).tolist()
             remedy = f"Keep what is along it, {along}, or set type = 'velocity'"
-        found = f"{list(getattr(table, key))}, of which {across[worst]:.6g} across the wall {piece.name!r}"
-        raise SceneError(f"{at}.{key}", found, "a velocity along the wall", f"{remedy}.")
+        found = f"{list(getattr(table, key))}, of which {across[worst]:.6g} across the wall {place.piece.name!r}"
+        raise SceneError(f"{place.at}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
-def _check_values(scene: Scene, domain: Domain, piece: Piece, table: BoundaryTable, at: str) -> None:
+def _check_values(scene: Scene, domain: Domain, table: BoundaryTable, place: Place) -> None:
     """Refuse expressions and profiles that cannot be, and values that are not finite where they are sampled."""
-    value: BoundaryVelocity | BoundaryPressure
-    if table.type == "velocity":
-        value = prescribed_velocity(piece, table, at)
-    elif table.type == "pressure":
-        value = prescribed_pressure(piece, table, scene.dimension, at)
-    elif table.pressure_drop is not None:
-        value = pressure_drop(table, scene.dimension, at)
-    else:
+    value = boundary_value(table, place)
+    if value is None:
         return
-    points, _ = quadrature(piece, domain)
+    points, _ = quadrature(place.piece, domain)
     for time in sample_times(scene, steady=value.is_steady):
         value(time, points)
 

@@ -11,9 +11,11 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary import boundary_table, table_key
+from rigidfluid.core.scene.scene import VelocityTable
+from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
 from rigidfluid.core.setup.profiles import section
+from rigidfluid.core.setup.time_factor import rows_over_time
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
@@ -49,13 +51,11 @@ class SampledInflow:
 
 def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
     """Velocities that the scene prescribes on surfaces that are not walls."""
-    inflows = []
-    for piece in domain.pieces:
-        table = boundary_table(scene, piece.name)
-        if table is not None and table.type == "velocity":
-            velocity = prescribed_velocity(piece, table, table_key(scene, table))
-            inflows.append(SampledInflow(piece, velocity, *quadrature(piece, domain)))
-    return inflows
+    return [
+        SampledInflow(place.piece, prescribed_velocity(table, place), *quadrature(place.piece, domain))
+        for table, place in placed_tables(scene, domain)
+        if isinstance(table, VelocityTable)
+    ]
 
 
 def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
@@ -63,7 +63,7 @@ def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
 
     A long table contributes every n-th row and the row with the greatest value.
     """
-    tables = [table.over_time for table in scene.boundary if isinstance(table.over_time, tuple) and table.over_time]
+    tables = [rows for rows in rows_over_time(scene).values() if rows]
     rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
     times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), [time for time, _ in rows]])
     return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])

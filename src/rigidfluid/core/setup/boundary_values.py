@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING
+from functools import partial, singledispatch
 
 import numpy as np
 
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.scene.scene import BoundaryTable, PeriodicTable, PressureTable, VelocityTable, WallTable
+from rigidfluid.core.setup.boundary_tables import Place
 from rigidfluid.core.setup.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.profiles import Rectangle, couette, poiseuille, section
 from rigidfluid.core.setup.time_factor import UNCHANGED, TimeFactor
 from rigidfluid.errors import SceneError
-
-if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import BoundaryTable
 
 Profile = Callable[[FloatArray], FloatArray]
 
@@ -85,11 +83,19 @@ class BoundaryPressure:
         return self.factor == UNCHANGED and "t" not in self.pressure.names
 
 
-def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> BoundaryVelocity:
-    """Velocity that a table with a velocity or flux prescribes on a piece; ``at`` is the table's key, for messages.
+@singledispatch
+def boundary_value(table: BoundaryTable, place: Place) -> BoundaryVelocity | BoundaryPressure | None:
+    """What a table prescribes at a place by expressions or numbers; None where there is nothing of the kind.
 
     Raises SceneError for an invalid expression, or a shape that the profile or a flux does not fit.
     """
+    return None
+
+
+@boundary_value.register(VelocityTable)
+def prescribed_velocity(table: VelocityTable, place: Place) -> BoundaryVelocity:
+    """Velocity of a table with a velocity or flux; see `boundary_value`."""
+    piece, at = place.piece, place.at
     profile = _profile(piece, table.profile, f"{at}.profile")
     if table.flux is not None:
         return BoundaryVelocity(_peak_of_flux(piece, profile, table.flux, f"{at}.flux"), profile, _factor(table))
@@ -98,21 +104,22 @@ def prescribed_velocity(piece: Piece, table: BoundaryTable, at: str) -> Boundary
     return BoundaryVelocity(velocity, profile, _factor(table))
 
 
-def prescribed_pressure(piece: Piece, table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
-    """The pressure that a ``table`` at ``at`` prescribes on a piece; see `prescribed_velocity`."""
-    assert table.pressure is not None
-    pressure = Expression(table.pressure, f"{at}.pressure", dimension, f" on {piece.name!r}")
+@boundary_value.register(PressureTable)
+def prescribed_pressure(table: PressureTable, place: Place) -> BoundaryPressure:
+    """Pressure of an open end."""
+    pressure = Expression(table.pressure, f"{place.at}.pressure", place.dimension, f" on {place.piece.name!r}")
     return BoundaryPressure(pressure, _factor(table))
 
 
-def pressure_drop(table: BoundaryTable, dimension: int, at: str) -> BoundaryPressure:
-    """Pressure on the periodic surface of a ``table`` less the pressure on the opposite surface
-    [force/length^(d-1)]."""
-    assert table.pressure_drop is not None
-    return BoundaryPressure(Expression(table.pressure_drop, f"{at}.pressure_drop", dimension))
+@boundary_value.register(PeriodicTable)
+def pressure_drop(table: PeriodicTable, place: Place) -> BoundaryPressure | None:
+    """Pressure on a periodic surface less the pressure on the opposite one [force/length^(d-1)]; None if not given."""
+    if table.pressure_drop is None:
+        return None
+    return BoundaryPressure(Expression(table.pressure_drop, f"{place.at}.pressure_drop", place.dimension))
 
 
-def wall_velocity(table: BoundaryTable, dimension: int) -> WallVelocity | None:
+def wall_velocity(table: WallTable, dimension: int) -> WallVelocity | None:
     """Velocity of a wall's points by its ``table``; None for a wall at rest."""
     if table.velocity is None and table.angular_velocity is None:
         return None
@@ -138,7 +145,7 @@ def parabolic(coordinates: Callable[[FloatArray], FloatArray], points: FloatArra
     return np.asarray(np.prod(4 * s * (1 - s), axis=1))
 
 
-def _factor(table: BoundaryTable) -> TimeFactor:
+def _factor(table: VelocityTable | PressureTable) -> TimeFactor:
     assert table.over_time is None or isinstance(table.over_time, tuple), "files are read when the scene is loaded"
     return TimeFactor(table.over_time, table.ramp)
 

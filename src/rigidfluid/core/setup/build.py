@@ -16,21 +16,14 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
+from rigidfluid.core.model.conditions import BoundaryCondition
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.joints import Joints
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import (
-    BoolArray,
-    BoundaryCondition,
-    Film,
-    FloatArray,
-    FluidProblem,
-    IntArray,
-    Loads,
-    Twist,
-)
+from rigidfluid.core.model.types import BoolArray, Film, FloatArray, IntArray, Loads, Twist
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.body_force import body_force

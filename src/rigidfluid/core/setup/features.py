@@ -11,9 +11,9 @@ import numpy as np
 from rigidfluid.core.contact.restitution import Restitution, without_restitution
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.fluid_problem import FluidProblem
     from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
-    from rigidfluid.core.model.types import FluidProblem
     from rigidfluid.core.scene.scene import MeshTable
 
 
@@ -43,7 +43,7 @@ def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
 def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     model = "navier-stokes" if problem.inertia else "stokes"
     yield Feature("inertia of the fluid", problem.inertia, f"model {model!r}")
-    outlets = [condition.name for condition in problem.conditions if condition.type == "pressure"]
+    outlets = [condition.name for condition in problem.conditions if condition.is_open]
     why = f"pressure is given on {', '.join(outlets)}" if outlets else "no face gives a pressure"
     yield Feature("pressure fixed by a constraint", not outlets, why)
     given = "not given" if problem.source is None else "given"

@@ -11,7 +11,7 @@ from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Loads
-from rigidfluid.core.setup.boundary import boundary_table
+from rigidfluid.core.setup.boundary_tables import tables_of_walls
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -125,8 +125,7 @@ def _check_names(scene: Scene, domain: Domain, table: LawTable) -> None:
 
 
 def _walls(scene: Scene, domain: Domain) -> list[str]:
-    tables = ((name, boundary_table(scene, name)) for name in domain.names)
-    return [name for name, table in tables if table is None or table.type == "wall"]
+    return [place.piece.name for _, place in tables_of_walls(scene, domain)]
 
 
 def _unknown(domain: Domain, field: str, name: str, known: Sequence[str]) -> SceneError:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
@@ -59,7 +60,7 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
 
 def _checked(data: Mapping[str, Any]) -> Scene:
-    scene = read_drives(read_time_tables(read_table(Scene, data)))
+    scene = read_drives(read_time_tables(read_table(Scene, tables_now(data))))
     check_tables(scene)
     parts = known_parts(scene)
     check_boundary(parts.scene, parts.domain)

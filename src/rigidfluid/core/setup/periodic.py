@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.setup.boundary import boundary_table, table_key
+from rigidfluid.core.scene.scene import PeriodicTable
+from rigidfluid.core.setup.boundary import oblique_parts
+from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -24,14 +26,12 @@ def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
 
     Raises SceneError for a surface without an opposite one that is periodic too, or with a higher pressure on both.
     """
-    tables = [boundary_table(scene, name) for name in domain.names]
-    chosen = [i for i, table in enumerate(tables) if table is not None and table.type == "periodic"]
+    placed = enumerate(placed_tables(scene, domain))
+    chosen = {i: (table, place.at) for i, (table, place) in placed if isinstance(table, PeriodicTable)}
     pairs = []
-    for i in chosen:
-        table = tables[i]
-        assert table is not None
-        at, name = table_key(scene, table), domain.names[i]
-        others = [j for j in range(len(tables)) if _is_opposite(domain, domain.pieces[i], domain.pieces[j])]
+    for i, (table, at) in chosen.items():
+        name = domain.names[i]
+        others = [j for j in range(len(domain.names)) if _is_opposite(domain, domain.pieces[i], domain.pieces[j])]
         if not others:
             statement = f"only a flat surface with an equal one opposite can be periodic, and {name!r} has none"
             raise SceneError(f"{at}.type", statement, None, "Choose another type.")
@@ -39,8 +39,7 @@ def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
             remedy = f"Set type = 'periodic' on {domain.names[others[0]]!r} too."
             statement = f"{name!r} is periodic and the surface opposite to it is not"
             raise SceneError(f"{at}.type", statement, None, remedy)
-        other = tables[others[0]]
-        assert other is not None
+        other, _ = chosen[others[0]]
         if table.pressure_drop is not None and other.pressure_drop is not None:
             statement = f"only one of {name!r} and {domain.names[others[0]]!r} can have the drop of pressure"
             raise SceneError(f"{at}.pressure_drop", statement, None, "Keep one.")
@@ -54,9 +53,8 @@ def check_periodic(scene: Scene, backend: type[FluidBackend], domain: Domain) ->
     them."""
     if not domain.periodic:
         return
-    table = boundary_table(scene, domain.names[domain.periodic[0][0]])
-    assert table is not None
-    at = f"{table_key(scene, table)}.type"
+    _, first = list(placed_tables(scene, domain))[domain.periodic[0][0]]
+    at = f"{first.at}.type"
     if not backend.periodic_faces:
         found = f"'periodic' with backend {backend.name!r}"
         raise SceneError(at, found, "a backend that takes periodic surfaces", "Use backend = 'scikit-fem'.")
@@ -65,11 +63,9 @@ def check_periodic(scene: Scene, backend: type[FluidBackend], domain: Domain) ->
     if domain.facets is not None:
         found = f"'periodic' in a domain of type {domain.name!r}, which is made of facets"
         raise SceneError(at, found, "a domain with a CAD shape, as 'box'", "Choose another type.")
-    for piece in domain.pieces:
-        other, plane = boundary_table(scene, piece.name), piece.shape.plane
-        if other is not None and other.type in ("slip", "pressure") and (plane is None or plane.axis is None):
-            found = f"'periodic' beside {other.type!r} on {piece.name!r}, which does not lie across an axis"
-            raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
+    for other, place in oblique_parts(scene, domain):
+        found = f"'periodic' beside {other.type!r} on {place.piece.name!r}, which does not lie across an axis"
+        raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
 
 
 def _is_opposite(domain: Domain, piece: Piece, other: Piece) -> bool:

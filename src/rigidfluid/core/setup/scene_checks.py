@@ -1,9 +1,7 @@
-"""Refuses scenes whose keys are valid one by one but not together: lengths of vectors, doubled names,
-contradictions."""
+"""Refuses scenes whose keys are valid one by one but not together: doubled names, contradictions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -21,15 +19,12 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.scene.scene import BodyTable, Scene
 
-    Vectors = Iterator[tuple[str, tuple[float | str, ...] | None, int]]
-
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
 
 
 def check_tables(scene: Scene) -> None:
     """Refuse, with SceneError, tables that contradict themselves or each other."""
-    _check_vectors(scene)
     if not (scene.body or scene.mechanism):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
     for number, mechanism in enumerate(scene.mechanism):
@@ -63,52 +58,6 @@ def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> No
     check_cells(scene.mesh, domain)
     check_oblique(scene, backend, domain)
     check_inflow(scene, domain)
-
-
-def _check_vectors(scene: Scene) -> None:
-    for field, vector, length in _vectors(scene):
-        if vector is not None and len(vector) != length:
-            numbers = "1 number" if length == 1 else f"{length} numbers"
-            remedy = f"The scene has {scene.dimension} dimensions."
-            raise SceneError(field, f"{list(vector)}, {len(vector)} of them", numbers, remedy)
-
-
-def _vectors(scene: Scene) -> Vectors:
-    """Every vector of the scene with its field and the length it must have."""
-    d = scene.dimension
-    k = 1 if d == 2 else 3
-    yield "fluid.gravity", scene.fluid.gravity, d
-    yield "fluid.force", scene.fluid.force, d
-    yield "fluid.initial", None if isinstance(scene.fluid.initial, str) else scene.fluid.initial, d
-    for i, boundary in enumerate(scene.boundary):
-        yield f"boundary.{i}.velocity", boundary.velocity, d
-        yield f"boundary.{i}.angular_velocity", boundary.angular_velocity, k
-        yield f"boundary.{i}.centre", boundary.centre, d
-    for i, body in enumerate(scene.body):
-        yield f"body.{i}.position", body.position, d
-        yield f"body.{i}.velocity", body.velocity, d
-        yield f"body.{i}.angular_velocity", body.angular_velocity, k
-        if body.prescribed:
-            yield f"body.{i}.prescribed.velocity", body.prescribed.velocity, d
-            yield f"body.{i}.prescribed.angular_velocity", body.prescribed.angular_velocity, k
-            yield f"body.{i}.prescribed.amplitude", body.prescribed.amplitude, d
-        if body.spring:
-            yield f"body.{i}.spring.stiffness", body.spring.stiffness, d
-            yield f"body.{i}.spring.damping", body.spring.damping, d
-            yield f"body.{i}.spring.angular_stiffness", body.spring.angular_stiffness, k
-            yield f"body.{i}.spring.angular_damping", body.spring.angular_damping, k
-            yield f"body.{i}.spring.rest", body.spring.rest, d
-    for i, mechanism in enumerate(scene.mechanism):
-        yield f"mechanism.{i}.position", mechanism.position, d
-        yield f"mechanism.{i}.velocity", mechanism.velocity, d
-        yield f"mechanism.{i}.angular_velocity", mechanism.angular_velocity, k
-    for i, joint in enumerate(scene.joint):
-        yield f"joint.{i}.at", joint.at, d
-    for i, box in enumerate(scene.mesh.refine if scene.mesh else ()):
-        yield f"mesh.refine.{i}.lower", box.lower, d
-        yield f"mesh.refine.{i}.upper", box.upper, d
-    for i, probe in enumerate(scene.output.probes):
-        yield f"output.probes.{i}", probe, d
 
 
 def _check_control(body: BodyTable, at: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -10,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import Scene, TimeFileTable
+from rigidfluid.core.scene.scene import Scene, TimeFileTable, VaryingTable
 from rigidfluid.core.scene.validation import refuse_out_of_proportion
 from rigidfluid.errors import SceneError
 
@@ -64,13 +65,25 @@ def check_rows(rows: Rows, end: float, at: str) -> None:
 
 def read_time_tables(scene: Scene) -> Scene:
     """A scene with the rows of all files of tables over time in their place, so that a checkpoint needs no file."""
-    tables = [
-        table.model_copy(update={"over_time": read_rows(table.over_time.file, f"boundary.{number}.over_time.file")})
-        if isinstance(table.over_time, TimeFileTable)
-        else table
-        for number, table in enumerate(scene.boundary)
-    ]
+    tables = list(scene.boundary)
+    for number, given in _given_over_time(scene):
+        if isinstance(given, TimeFileTable):
+            rows = read_rows(given.file, f"boundary.{number}.over_time.file")
+            tables[number] = tables[number].model_copy(update={"over_time": rows})
     return scene.model_copy(update={"boundary": tuple(tables)})
+
+
+def rows_over_time(scene: Scene) -> dict[str, Rows]:
+    """The tables over time of a scene, by their keys."""
+    given = _given_over_time(scene)
+    return {f"boundary.{number}.over_time": rows for number, rows in given if isinstance(rows, tuple)}
+
+
+def _given_over_time(scene: Scene) -> Iterator[tuple[int, Rows | TimeFileTable | None]]:
+    """What conditions that may change in time say of it, by their numbers."""
+    for number, table in enumerate(scene.boundary):
+        if isinstance(table, VaryingTable):
+            yield number, table.over_time
 
 
 def read_rows(file: str, at: str) -> Rows:

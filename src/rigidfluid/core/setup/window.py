@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.types import BoundaryCondition, Pose
+from rigidfluid.core.model.conditions import BoundaryCondition, PrescribedPressure
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
-from rigidfluid.core.setup.boundary import boundary_table
-from rigidfluid.core.setup.boundary_values import BoundaryPressure
-from rigidfluid.core.setup.expressions import Expression
+from rigidfluid.core.setup.boundary import conditions
+from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -54,11 +52,9 @@ def open_wake_end(conditions: Sequence[BoundaryCondition], window: Window | None
     the wake leaves through the end at zero pressure."""
     if window is None:
         return tuple(conditions)
-    behind, none = window.ends[0], BoundaryPressure(Expression(0.0, "domain.window", window.domain.dimension))
-    return tuple(
-        replace(held, type="pressure", value=none) if n == behind and held.type == "wall" else held
-        for n, held in enumerate(conditions)
-    )
+    held = conditions[window.ends[0]]
+    open_end = PrescribedPressure(held.surface, held.name, held.normal)
+    return tuple(open_end if each is held and held.is_wall else each for each in conditions)
 
 
 def _followed_body(scene: Scene, table: WindowTable) -> int:
@@ -112,27 +108,18 @@ def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> Non
 
 def _check_conditions(scene: Scene, window: Window) -> None:
     """Conditions at the ends must hold as well wherever the window is."""
-    names = [window.domain.names[end] for end in window.ends]
-    tables = [boundary_table(scene, name) for name in names]
-    types = ["wall" if table is None else table.type for table in tables]
-    for name, kind in zip(names, types, strict=True):
-        if kind not in ("wall", "velocity", "pressure"):
-            found = f"{kind!r} on {name!r}, an end of the window"
+    held, tables = conditions(scene, window.domain), list(placed_tables(scene, window.domain))
+    behind, ahead = (held[end] for end in window.ends)
+    for end in window.ends:
+        if not held[end].holds_along:
+            found = f"{tables[end][0].type!r} on {held[end].name!r}, an end of the window"
             raise SceneError("boundary", found, "'wall', 'velocity' or 'pressure' there", "Change it.")
-    if types == ["pressure", "pressure"] or types == ["wall", "pressure"]:
-        found = f"'pressure' on {names[1]!r}, ahead of a window that is open behind"
+    if ahead.is_open and (behind.is_open or behind.is_wall):
+        found = f"'pressure' on {ahead.name!r}, ahead of a window that is open behind"
         allowed = "a 'wall' there, or the 'velocity' of the flow far away"
         raise SceneError("boundary", found, allowed, "The flow between two open ends depends on the whole length.")
-    if "wall" in types and (sliding := _sliding(scene, window.domain, names)):
-        found = f"a velocity on {sliding!r}, along a window with a wall at its end"
+    sides = [side for number, side in enumerate(held) if number not in window.ends]
+    sliding = [side.name for side in sides if side.holds_all and not side.at_rest]
+    if sliding and (behind.is_wall or ahead.is_wall):
+        found = f"a velocity on {sliding[0]!r}, along a window with a wall at its end"
         raise SceneError("boundary", found, "sides at rest, as the fluid far away is", "Give the ends a 'velocity'.")
-
-
-def _sliding(scene: Scene, domain: Domain, ends: Sequence[str]) -> str | None:
-    """A side that moves the fluid far away from all bodies, if any."""
-    for name in domain.names:
-        table = boundary_table(scene, name)
-        given = () if table is None else (table.velocity, table.flux, table.angular_velocity)
-        if name not in ends and any(value is not None for value in given):
-            return name
-    return None

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output.writer import earlier_run, writing
+from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.errors import OutputError, RigidfluidError
@@ -63,7 +64,7 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
         results = read_results(folder)
     except RigidfluidError:
         return None
-    same = results.summary["status"] == "complete" and results.summary["scene"] == scene.to_dict()
+    same = results.summary["status"] == "complete" and tables_now(results.summary["scene"]) == scene.to_dict()
     return results if same else None
 
 
@@ -75,7 +76,7 @@ def _can_resume(scene: Scene, folder: Path) -> bool:
         return False
     tables = {folder / f"{name}.csv": length for name, length in checkpoint.lengths.items()}
     whole = all(table.is_file() and table.stat().st_size >= length for table, length in tables.items())
-    return whole and bool(json.loads(checkpoint.scene) == scene.to_dict())
+    return whole and bool(tables_now(json.loads(checkpoint.scene)) == scene.to_dict())
 
 
 def _time_reached(folder: Path) -> float:

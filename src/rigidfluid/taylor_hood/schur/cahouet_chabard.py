@@ -71,7 +71,7 @@ def _pressures(constraint: Constraint) -> tuple[IntArray, int]:
 def _open_vertices(constraint: Constraint) -> IntArray:
     """Vertices (v,) at which a pressure is prescribed."""
     vertices = constraint.surfaces.numbering.vertices
-    on = [face.nodes for face in constraint.surfaces.faces if face.condition.type == "pressure"]
+    on = [face.nodes for face in constraint.surfaces.faces if face.condition.is_open]
     nodes = np.concatenate([np.empty(0, np.int64), *on])
     return nodes[nodes < vertices]
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
 import pytest
 
+from rigidfluid.core.model.conditions import PrescribedVelocity
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, quadrature, renumbered, samples, swayed, swayed_across
@@ -69,8 +71,8 @@ class AccuracyContract(FluidContract):
             velocity[:, 0] = np.prod(np.where(points[:, :1] < 0.5, parabola, sine), axis=1)
             return velocity
 
-        sides = {"x0": "velocity", "x1": "velocity"}
-        posed, mesh = problem(dimension, sides, dict.fromkeys(sides, through)), box(dimension, 3)
+        given = partial(PrescribedVelocity, value=through)
+        posed, mesh = problem(dimension, {"x0": given, "x1": given}), box(dimension, 3)
         flow, other = (self.empty(posed, whole).after(None) for whole in (mesh, renumbered(mesh)))
         points = samples(dimension)
         (velocity, pressure), (velocity_there, pressure_there) = flow.probe(points), other.probe(points)

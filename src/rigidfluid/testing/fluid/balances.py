@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.rigid import cross, moment
+from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, Slip
+from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.core.model.types import FloatArray, FluidProblem, Pose
+from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import (
     ball_moments,
@@ -21,7 +24,7 @@ from rigidfluid.testing.fluid.boxes import (
     samples,
     stirred,
 )
-from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Value, enclosed, problem
+from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, Kind, LinearFlow, enclosed, problem
 from rigidfluid.testing.fluid.flow import Bodies, components
 
 DROP, BACK = 2.0, 0.4
@@ -57,10 +60,10 @@ class BalancesContract(FluidContract):
     @pytest.mark.parametrize("inertia", [False, True], ids=["stokes", "navier-stokes"])
     def test_flow_along_a_wall_that_slides(self, dimension: int, inertia: bool) -> None:
         """Couette's: u = U y between a wall at rest and one that slides at U, whose power μ U² is dissipated."""
-        types = dict.fromkeys(("z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
         sliding = np.eye(dimension)[0] * DROP
-        values = {"x0": _constant(BACK), "x1": _constant(BACK), "y1": lambda _, x: np.tile(sliding, (len(x), 1))}
-        flow = self.empty(problem(dimension, types, values, inertia=inertia), box(dimension, 3)).after(None).after(0.1)
+        kinds = {"x0": _under(BACK), "x1": _under(BACK), "z0": Slip, "z1": Slip}
+        kinds["y1"] = partial(NoSlip, value=lambda _, x: np.tile(sliding, (len(x), 1)))
+        flow = self.empty(problem(dimension, kinds, inertia=inertia), box(dimension, 3)).after(None).after(0.1)
         points = samples(dimension)
         velocity, pressure = flow.probe(points)
         self.assert_close(velocity, points[:, 1:2] * sliding)
@@ -71,8 +74,7 @@ class BalancesContract(FluidContract):
     def test_rest_stays_rest(self, dimension: int) -> None:
         """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
         bodies = Bodies(np.ones(2), Bodies.uniform(balls_pose(dimension)).inertia, np.array([True, False]))
-        faces = {"x0": "pressure", "x1": "pressure"}
-        flow = self.with_balls(problem(dimension, faces, dict.fromkeys(faces, _constant(BACK)), bodies=2), bodies)
+        flow = self.with_balls(problem(dimension, dict.fromkeys(("x0", "x1"), _under(BACK)), bodies=2), bodies)
         sway = np.full(dimension, 0.01)  # with 0.02 it could fold cells next to the balls
         for length in (0.1, 0.1, 0.05):
             flow = flow.after(length, points=stirred(flow.reference.points, np.sin(9 * (flow.time + length)) * sway))
@@ -239,15 +241,14 @@ def _lid(_time: float, points: FloatArray) -> FloatArray:
 
 def _channel(dimension: int, inertia: bool, wall: str = "") -> FluidProblem:
     """Flow in a box from left to right, driven by pressures; the other faces are slip planes but for a ``wall``."""
-    types = dict.fromkeys(("y0", "y1", "z0", "z1"), "slip") | {"x0": "pressure", "x1": "pressure"}
+    sides: dict[str, Kind] = dict.fromkeys(("y0", "y1", "z0", "z1"), Slip)
     if wall:
-        types[wall] = "wall"
-    values = {"x0": _constant(DROP + BACK), "x1": _constant(BACK)}
-    return problem(dimension, types, values, 0 if wall else 2, inertia)
+        sides[wall] = NoSlip
+    return problem(dimension, sides | {"x0": _under(DROP + BACK), "x1": _under(BACK)}, 0 if wall else 2, inertia)
 
 
-def _constant(pressure: float) -> Value:
-    return lambda _time, points: np.full(len(points), pressure)
+def _under(pressure: float) -> Kind:
+    return partial(PrescribedPressure, value=lambda _time, points: np.full(len(points), pressure))
 
 
 def _off_centre(dimension: int) -> Pose:

@@ -11,10 +11,11 @@ import pytest
 
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.mesh.topology import boundary_facets, orient
+from rigidfluid.core.model.conditions import Value
 from rigidfluid.core.model.types import CurvedEdges, FloatArray, Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box
-from rigidfluid.testing.fluid.exact import VISCOSITY, Value, enclosed
+from rigidfluid.testing.fluid.exact import VISCOSITY, enclosed
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components
 
 RADIUS, CENTRE = 0.2, 0.5

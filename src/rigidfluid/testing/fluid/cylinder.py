@@ -11,7 +11,9 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.exact import inward_normal
@@ -33,10 +35,10 @@ class CylinderContract(FluidContract):
     def test_flow_past_a_cylinder(self) -> None:
         """Steady steps, each advected by the one before, from Stokes flow to Re 20."""
         conditions = (
-            BoundaryCondition(1, "x0", "velocity", inward_normal(0, 2), _inflow),
-            BoundaryCondition(2, "x1", "pressure", inward_normal(1, 2), _nothing),
-            BoundaryCondition(3, "y0", "wall", inward_normal(2, 2)),
-            BoundaryCondition(4, "y1", "wall", inward_normal(3, 2)),
+            PrescribedVelocity(1, "x0", inward_normal(0, 2), _inflow),
+            PrescribedPressure(2, "x1", inward_normal(1, 2)),
+            NoSlip(3, "y0", inward_normal(2, 2)),
+            NoSlip(4, "y1", inward_normal(3, 2)),
         )
         backend = self.make_backend(FluidProblem(2, 1, 1.0, 1e-3, True, conditions))
         flow = Flow.start(backend, self.make_mesh(_mesh()), POSE)
@@ -58,7 +60,3 @@ def _mesh() -> Mesh:
 def _inflow(time: float, points: FloatArray) -> FloatArray:
     s = points[:, 1] / 0.41
     return np.outer(4.0 * s * (1.0 - s), [0.3, 0.0])
-
-
-def _nothing(time: float, points: FloatArray) -> FloatArray:
-    return np.zeros(len(points))

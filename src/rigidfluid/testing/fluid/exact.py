@@ -4,36 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoundaryCondition, FloatArray, FluidProblem
+from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedVelocity, Value
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import FloatArray
 
 DENSITY, VISCOSITY = 1.3, 0.7
 
 FACES = ("x0", "x1", "y0", "y1", "z0", "z1")
 """Names of the unit box's faces: the axis across a face, and its coordinate there."""
 
-Value = Callable[[float, FloatArray], FloatArray]
+Kind = Callable[[int, str, FloatArray], BoundaryCondition]
+"""A class of conditions, alone or with values: ``partial(PrescribedVelocity, value=velocity)``."""
 
 
 def problem(
     dimension: int,
-    types: Mapping[str, str] | None = None,
-    values: Mapping[str, Value] | None = None,
+    kinds: Mapping[str, Kind] | None = None,
     bodies: int = 0,
     inertia: bool = True,
     source: Value | None = None,
 ) -> FluidProblem:
-    """A box whose `FACES` are walls but for the ``types`` of some, with the ``values`` prescribed there."""
+    """A box whose `FACES` are walls but for those with other ``kinds`` of conditions."""
     conditions = tuple(
-        BoundaryCondition(
-            bodies + face,
-            name,
-            (types or {}).get(name, "wall"),  # type: ignore[arg-type]
-            inward_normal(face, dimension),
-            (values or {}).get(name),
-        )
+        (kinds or {}).get(name, NoSlip)(bodies + face, name, inward_normal(face, dimension))
         for face, name in enumerate(FACES[: 2 * dimension])
     )
     return FluidProblem(dimension, bodies, DENSITY, VISCOSITY, inertia, conditions, source)
@@ -44,7 +41,8 @@ def enclosed(
 ) -> FluidProblem:
     """Problem in a box with the velocity prescribed on all faces."""
     every = FACES[: 2 * dimension]
-    return problem(dimension, dict.fromkeys(every, "velocity"), dict.fromkeys(every, velocity), bodies, inertia, source)
+    given = partial(PrescribedVelocity, value=velocity)
+    return problem(dimension, dict.fromkeys(every, given), bodies, inertia, source)
 
 
 def inward_normal(face: int, dimension: int) -> FloatArray:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
+from rigidfluid.core.model.conditions import NoSlip
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose, carried
@@ -41,7 +43,7 @@ class GalileanContract(FluidContract):
             return np.tile(translation, (len(points), 1))
 
         walls = FACES[: 2 * dimension]
-        posed = problem(dimension, dict.fromkeys(walls, "wall"), dict.fromkeys(walls, uniform), 2)
+        posed = problem(dimension, dict.fromkeys(walls, partial(NoSlip, value=uniform)), 2)
         posed = replace(posed, dynamic_viscosity=VISCOSITY, initial=uniform)
         start = balls_pose(dimension)
         twist = np.zeros((2, size(start)))

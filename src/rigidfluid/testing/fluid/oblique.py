@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.types import FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, samples, swayed_across
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box
-from rigidfluid.testing.fluid.exact import FACES, VISCOSITY, Value, problem
+from rigidfluid.testing.fluid.exact import FACES, VISCOSITY, Kind, problem
 from rigidfluid.testing.fluid.flow import Flow, figures
 
 DRIFT = 0.7
@@ -22,12 +25,12 @@ DRIFT = 0.7
 class ObliqueContract(FluidContract):
     """Slip and pressure on faces in any direction; for backends that take ``oblique_faces``."""
 
-    @pytest.mark.parametrize("side", ["wall", "slip"])
-    def test_a_channel_that_is_turned_is_the_same_channel(self, dimension: int, side: str) -> None:
+    @pytest.mark.parametrize("side", [NoSlip, Slip])
+    def test_a_channel_that_is_turned_is_the_same_channel(self, dimension: int, side: Kind) -> None:
         """A pressure drives fluid from rest, while the mesh moves; walls or slip above and below, slip on the sides."""
-        types = {"x0": "pressure", "x1": "pressure", "y0": side, "y1": "wall", "z0": "slip", "z1": "slip"}
-        values = {"x0": lambda time, at: np.full(len(at), 1.0 + time)}
-        posed, mesh, turn = problem(dimension, types, values), box(dimension, 3), _turn(dimension)
+        kinds = {"x1": PrescribedPressure, "y0": side, "z0": Slip, "z1": Slip}
+        kinds["x0"] = partial(PrescribedPressure, value=lambda time, at: np.full(len(at), 1.0 + time))
+        posed, mesh, turn = problem(dimension, kinds), box(dimension, 3), _turn(dimension)
         straight, oblique = self.empty(posed, mesh), self._turned(posed, mesh)
         points = samples(dimension)
         for _ in range(3):
@@ -42,8 +45,9 @@ class ObliqueContract(FluidContract):
 
     def test_the_flow_between_oblique_walls_is_exact(self, dimension: int) -> None:
         """u = G y(1 - y)/2μ along the channel and p linear, by pressures on its oblique ends."""
-        types = {"x0": "pressure", "x1": "pressure", "z0": "slip", "z1": "slip"}
-        posed = problem(dimension, types, {"x0": lambda _, at: np.full(len(at), 2.0)}, inertia=False)
+        kinds: dict[str, Kind] = {"x1": PrescribedPressure, "z0": Slip, "z1": Slip}
+        kinds["x0"] = partial(PrescribedPressure, value=lambda _, at: np.full(len(at), 2.0))
+        posed = problem(dimension, kinds, inertia=False)
         flow, turn = self._turned(posed, box(dimension, 3)).after(None), _turn(dimension)
         points = samples(dimension)
         velocity, pressure = flow.probe(points @ turn.T)
@@ -54,10 +58,10 @@ class ObliqueContract(FluidContract):
 
     def test_uniform_flow_slips_along_oblique_faces(self, dimension: int) -> None:
         """Nothing holds it, and it stays as it is."""
-        sides = dict.fromkeys(FACES[2 : 2 * dimension], "slip")
         drift = DRIFT * _turn(dimension)[:, 0]
-        values: dict[str, Value] = {"x0": lambda _, at: np.tile(drift, (len(at), 1))}
-        posed = problem(dimension, {"x0": "velocity", "x1": "pressure", **sides}, values)
+        kinds: dict[str, Kind] = dict.fromkeys(FACES[2 : 2 * dimension], Slip)
+        kinds["x0"] = partial(PrescribedVelocity, value=lambda _, at: np.tile(drift, (len(at), 1)))
+        posed = problem(dimension, kinds | {"x1": PrescribedPressure})
         flow = self._turned(posed, box(dimension, 3)).after(None)
         for length in (0.1, 0.1):
             flow = flow.after(length)
@@ -67,9 +71,9 @@ class ObliqueContract(FluidContract):
 
     def test_fluid_under_even_pressure_rests_along_a_curved_face(self, dimension: int) -> None:
         """The same pressure on all of the box pushes nothing past a ball with slip."""
-        every = dict.fromkeys(FACES[: 2 * dimension], "pressure")
-        even = dict.fromkeys(every, lambda _, at: np.full(len(at), 3.0))
-        flow = self._past_a_ball(problem(dimension, every, even), layers=2).after(None).after(0.1)
+        even = partial(PrescribedPressure, value=lambda _, at: np.full(len(at), 3.0))
+        every = problem(dimension, dict.fromkeys(FACES[: 2 * dimension], even))
+        flow = self._past_a_ball(every, layers=2).after(None).after(0.1)
         velocity, pressure = flow.probe(_outside(dimension))
         self.assert_close(velocity, 0.0)
         self.assert_close(pressure, 3.0, scale=10.0)
@@ -78,9 +82,9 @@ class ObliqueContract(FluidContract):
     def test_what_flows_past_a_curved_face_is_dissipated(self, inertia: bool, allowed: float) -> None:
         """In 2D as much flows out as in, and power in is dissipation; but for what convection carries across a curved
         face between its nodes, of order 4."""
-        types = {"x0": "velocity", "x1": "pressure", "y0": "slip", "y1": "slip"}
-        inflow: dict[str, Value] = {"x0": lambda _, at: np.tile([DRIFT, 0.0], (len(at), 1))}
-        flow = self._past_a_ball(problem(2, types, inflow, inertia=inertia), layers=4)
+        kinds: dict[str, Kind] = {"x1": PrescribedPressure, "y0": Slip, "y1": Slip}
+        kinds["x0"] = partial(PrescribedVelocity, value=lambda _, at: np.tile([DRIFT, 0.0], (len(at), 1)))
+        flow = self._past_a_ball(problem(2, kinds, inertia=inertia), layers=4)
         for _ in range(12 if inertia else 1):
             flow = flow.after(None)
         root, weight = np.polynomial.legendre.leggauss(3)
@@ -105,7 +109,7 @@ class ObliqueContract(FluidContract):
         self._skip_without_oblique_faces()
         if not self.backend.curved_cells:
             pytest.skip(f"{self.backend.name} takes straight cells alone")
-        ball = replace(posed.conditions[0], surface=0, name="ball", type="slip", normal=None, value=None)
+        ball = Slip(0, "ball", None)
         box_faces = tuple(replace(c, surface=c.surface + 1) for c in posed.conditions)
         mesh = ball_in_a_box(posed.dimension, layers)
         return self.empty(replace(posed, conditions=(ball, *box_faces)), mesh)

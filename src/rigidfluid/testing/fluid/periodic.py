@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mesh.topology import boundary_facets
-from rigidfluid.core.model.types import FloatArray, FluidProblem, Mesh, Pose
+from rigidfluid.core.model.conditions import Periodic, Slip, Value, no_pressure
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, samples
 from rigidfluid.testing.fluid.curved import CENTRE, ball_in_a_box
-from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, Value, problem
+from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, figures
 
 DROP = 2.0
@@ -41,12 +43,9 @@ class PeriodicContract(FluidContract):
             force[:, 1] = 8.0 * np.sin(2.0 * np.pi * at[:, 0])
             return force
 
-        posed = self._periodic(problem(dimension, source=stirring), (0,))
-        twice = tuple(
-            replace(c, value=lambda _, at: np.full(len(at), 2.0 * DROP)) if c.image is not None else c
-            for c in posed.conditions
-        )
-        one, two = self.empty(posed, box(dimension, 3)), self.empty(replace(posed, conditions=twice), _twice(dimension))
+        forced = problem(dimension, source=stirring)
+        posed, twice = (self._periodic(forced, (0,), drop) for drop in (DROP, 2.0 * DROP))
+        one, two = self.empty(posed, box(dimension, 3)), self.empty(twice, _twice(dimension))
         shift = np.eye(dimension)[0]
         for _ in range(3):
             one, two = one.after(0.1), two.after(0.1)
@@ -72,7 +71,7 @@ class PeriodicContract(FluidContract):
         """The momentum of a steady flow: drag = drop · area, with slip on the sides."""
         if not self.backend.curved_cells:
             pytest.skip(f"{self.backend.name} takes straight cells alone")
-        sides = dict.fromkeys(("y0", "y1", "z0", "z1")[: 2 * dimension - 2], "slip")
+        sides = dict.fromkeys(("y0", "y1", "z0", "z1")[: 2 * dimension - 2], Slip)
         posed = self._periodic(problem(dimension, sides, bodies=1, inertia=False), (0,))
         pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
         mesh = self.make_mesh(ball_in_a_box(dimension, 2))
@@ -88,9 +87,9 @@ class PeriodicContract(FluidContract):
         conditions = list(posed.conditions)
         for axis in axes:
             first, second = conditions[2 * axis], conditions[2 * axis + 1]
-            jump: Value | None = (lambda _, at: np.full(len(at), drop)) if axis == 0 else None
-            conditions[2 * axis] = replace(first, type="periodic", image=second.surface, value=jump)
-            conditions[2 * axis + 1] = replace(second, type="periodic", image=None, value=None)
+            jump: Value = (lambda _, at: np.full(len(at), drop)) if axis == 0 else no_pressure
+            conditions[2 * axis] = Periodic(first.surface, first.name, first.normal, second.surface, jump)
+            conditions[2 * axis + 1] = Periodic(second.surface, second.name, second.normal)
         return replace(posed, conditions=tuple(conditions))
 
 

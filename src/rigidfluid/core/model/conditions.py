@@ -1,0 +1,219 @@
+"""Conditions on the domain's boundary: one class each, which says what it holds and by which values.
+
+A class of another kind is one more subclass; no backend asks which class it has.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray
+
+Value = Callable[[float, FloatArray], FloatArray]
+"""Velocities (N, d) or pressures (N,) at a time and points (N, d)."""
+
+
+def no_pressure(time: float, points: FloatArray) -> FloatArray:
+    """Zero (N,) at ``points`` (N, d)."""
+    return np.zeros(len(points))
+
+
+@dataclass(frozen=True)
+class BoundaryCondition(ABC):
+    """Condition on one piece of the domain's boundary.
+
+    Either the velocity or the traction is given across the piece, and either of both along it. Where the whole
+    velocity is held, it is `velocity`; a part that is held alone is zero. Traction along the piece is zero where it is
+    given, and across it that of `pressure`, -p.
+
+    Parameters
+    ----------
+    surface : int
+        Number of the piece among all surfaces: bodies first, then the pieces of the boundary.
+    name : str
+        Name of the piece.
+    normal : (d,) array or None
+        Unit normal into the fluid; None where the piece is not flat.
+    """
+
+    surface: int
+    name: str
+    normal: FloatArray | None
+
+    @property
+    @abstractmethod
+    def holds_across(self) -> bool:
+        """Whether the velocity across the piece is given, else the traction."""
+
+    @property
+    @abstractmethod
+    def holds_along(self) -> bool:
+        """Whether the velocity along the piece is given, else the traction."""
+
+    @property
+    @abstractmethod
+    def passes(self) -> bool:
+        """Whether fluid goes in or out here, and its kinetic energy with it."""
+
+    def velocity(self, time: float, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) at ``points`` (N, d) of the piece, where all of it is held [length/time]."""
+        return np.zeros_like(points)
+
+    def pressure(self, time: float, points: FloatArray) -> FloatArray:
+        """Pressure (N,) at ``points`` (N, d) of the piece; of a periodic one its excess [force/length^(d-1)]."""
+        return no_pressure(time, points)
+
+    @property
+    def image(self) -> int | None:
+        """Number of the surface that is the same as this one; None, unless it is the first of a periodic pair."""
+        return None
+
+    @property
+    def holds_all(self) -> bool:
+        """Whether the whole velocity is given."""
+        return self.holds_across and self.holds_along
+
+    @property
+    def holds_part(self) -> bool:
+        """Whether the velocity is given either across or along the piece, and not both."""
+        return self.holds_across != self.holds_along
+
+    @property
+    def slips(self) -> bool:
+        """Whether fluid goes along it without traction, and not across."""
+        return self.holds_across and not self.holds_along
+
+    @property
+    def is_open(self) -> bool:
+        """Whether fluid goes in or out by itself; else nothing fixes the constant in the pressure."""
+        return self.passes and not self.holds_across
+
+    @property
+    def is_wall(self) -> bool:
+        """Whether it is part of the container, which holds the fluid and lets none pass."""
+        return self.holds_all and not self.passes
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it is a wall whose velocity is zero at all times: where two walls meet, that one holds the fluid."""
+        return False
+
+
+@dataclass(frozen=True)
+class NoSlip(BoundaryCondition):
+    """A wall: the fluid there has the wall's velocity.
+
+    Parameters
+    ----------
+    surface, name, normal
+        See `BoundaryCondition`.
+    value : callable, optional
+        Velocity (N, d) of the wall along itself, of a time and points (N, d) [length/time]; at rest if not given.
+    """
+
+    value: Value | None = None
+
+    holds_across = True
+    holds_along = True
+    passes = False
+
+    def velocity(self, time: float, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) of the wall at ``points`` (N, d) [length/time]."""
+        return np.zeros_like(points) if self.value is None else self.value(time, points)
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether no velocity is given."""
+        return self.value is None
+
+
+@dataclass(frozen=True)
+class PrescribedVelocity(BoundaryCondition):
+    """A velocity that is given, with which fluid may pass.
+
+    Parameters
+    ----------
+    surface, name, normal
+        See `BoundaryCondition`.
+    value : callable
+        Velocity (N, d), of a time and points (N, d) [length/time].
+    """
+
+    value: Value
+
+    holds_across = True
+    holds_along = True
+    passes = True
+
+    def velocity(self, time: float, points: FloatArray) -> FloatArray:
+        """Velocity (N, d) at ``points`` (N, d) [length/time]."""
+        return self.value(time, points)
+
+
+@dataclass(frozen=True)
+class PrescribedPressure(BoundaryCondition):
+    """An end through which fluid passes straight, with a normal stress -p that is given.
+
+    Parameters
+    ----------
+    surface, name, normal
+        See `BoundaryCondition`.
+    value : callable, optional
+        Pressure (N,), of a time and points (N, d) [force/length^(d-1)]; zero if not given.
+    """
+
+    value: Value = no_pressure
+
+    holds_across = False
+    holds_along = True
+    passes = True
+
+    def pressure(self, time: float, points: FloatArray) -> FloatArray:
+        """Pressure (N,) at ``points`` (N, d) [force/length^(d-1)]."""
+        return self.value(time, points)
+
+
+@dataclass(frozen=True)
+class Slip(BoundaryCondition):
+    """A surface that fluid goes along without traction and does not pass; a plane of symmetry.
+
+    Parameters
+    ----------
+    surface, name, normal
+        See `BoundaryCondition`.
+    """
+
+    holds_across = True
+    holds_along = False
+    passes = False
+
+
+@dataclass(frozen=True)
+class Periodic(BoundaryCondition):
+    """One of two opposite surfaces with the same velocity and traction, but for a drop of pressure between them.
+
+    Parameters
+    ----------
+    surface, name, normal
+        See `BoundaryCondition`.
+    image : int, optional
+        Number of the other surface; not given on that one.
+    drop : callable, optional
+        What the pressure (N,) is higher here than there, of a time and points (N, d) [force/length^(d-1)]; zero if not
+        given, as it is on the other one.
+    """
+
+    image: int | None = None
+    drop: Value = no_pressure
+
+    holds_across = False
+    holds_along = False
+    passes = False
+
+    def pressure(self, time: float, points: FloatArray) -> FloatArray:
+        """Excess of the pressure (N,) at ``points`` (N, d) [force/length^(d-1)]."""
+        return self.drop(time, points)
