@@ -41,7 +41,7 @@ def _sections() -> Iterator[str]:
 
 def _sections_by_type(title: str, path: str, place: Schema, definitions: dict[str, Schema]) -> Iterator[str]:
     """A list of tables whose keys depend on their type."""
-    yield f"## `{title}`\n\n{place['description']}\n"
+    yield f"## `{title}`\n\n{place['description']}.\n"
     for one in place["items"]["oneOf"]:
         name = _target(one)
         kind = _type(definitions[name]["properties"]["type"]).partition(",")[0].strip("`")

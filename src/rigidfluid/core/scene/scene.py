@@ -179,7 +179,11 @@ class WallTable(_BoundaryTable):
 
 
 class VelocityTable(VaryingTable):
-    """A velocity that is given, by itself or by its `flux`."""
+    """A velocity that is given, by itself or by its `flux`.
+
+    Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
+    `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
+    """
 
     type: Literal["velocity"] = Field(description="The condition")
     velocity: Formulas | None = Field(default=None, description="Velocity, at the peak of the `profile` [length/time]")
@@ -197,10 +201,10 @@ class VelocityTable(VaryingTable):
 
 
 class PressureTable(VaryingTable):
-    """An open end with a pressure that is given; along the surface the fluid does not move."""
+    """An open end with a pressure that is given, a number or an expression; fluid passes it straight."""
 
     type: Literal["pressure"] = Field(description="The condition")
-    pressure: Formula = Field(description="Pressure [force/length^(d-1)]")
+    pressure: Formula = Field(description="Pressure on the surface [force/length^(d-1)]")
 
 
 class SlipTable(_BoundaryTable):
@@ -468,11 +472,8 @@ class Scene(_Table):
     domain: DomainTable
     boundary: tuple[Annotated[BoundaryTable, Field(discriminator="type")], ...] = Field(
         default=(),
-        description="Condition on surfaces of the domain; a later entry overrides an earlier one, unnamed surfaces are "
-        "walls.\n\n"
-        "Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions "
-        "`sin`,\n`cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and "
-        "`where(condition, then, otherwise)`.",
+        description="Conditions on surfaces of the domain; a later entry overrides an earlier one, unnamed surfaces "
+        "are walls",
     )
     body: tuple[BodyTable, ...] = ()
     mechanism: tuple[MechanismTable, ...] = ()

@@ -6,7 +6,7 @@ import inspect
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, TypeVar, get_args, get_origin
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin
 
 from pydantic import AliasChoices, AliasPath, BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -135,7 +135,7 @@ def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at:
     if complaint["type"] == WRONG_LENGTH:
         return SceneError(place.field, *(complaint["ctx"][part] for part in ("found", "allowed", "remedy")))
     if complaint["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        return _unknown_type(place, complaint)
+        return _unknown_type(place, complaint["input"])
     if complaint["type"] == "missing" and isinstance(complaint["input"], Mapping):
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
@@ -143,34 +143,44 @@ def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at:
     return SceneError(place.field or "scene", value_text(complaint["input"]), _allowed(complaint), _remedy(place))
 
 
+class _Types(NamedTuple):
+    """The ``tables`` of a union, by what their ``key`` says; none of a value that is no such union."""
+
+    key: str
+    tables: Mapping[str, type[BaseModel]]
+
+
+_UNTYPED = _Types("", {})
+
+
 @dataclass(frozen=True)
 class _Place:
     """A place in a scene.
 
     ``field``: its dotted key; ``key``: the last one in it; ``table``: that which has this key. ``within``: the table
-    that stands there, if it is one; it is chosen by its ``type`` from ``types``, where these are not empty.
+    that stands there, if it is one; of several ``types`` it is that of this ``type``.
     """
 
     field: str
     key: str
     table: type[BaseModel]
     within: type[BaseModel] | None
-    types: Mapping[str, type[BaseModel]]
-    type: str
+    types: _Types = _UNTYPED
+    type: str = ""
 
 
 def _place(model: type[BaseModel], location: Location, at: str) -> _Place:
     """The place that pydantic gives by keys and numbers, and in between the types of a value that it has tried."""
-    place, any_key = _Place(at, "", model, model, {}, ""), False
+    place, any_key = _Place(at, "", model, model), False
     for part in location:
         inside = f"{place.field}.{part}" if place.field else str(part)
         if isinstance(part, int) or any_key:
             place, any_key = replace(place, field=inside, key=place.key if isinstance(part, int) else part), False
-        elif place.within is None and part in place.types:
-            place = replace(place, within=place.types[part], type=part)
+        elif place.within is None and part in place.types.tables:
+            place = replace(place, within=place.types.tables[part], type=part)
         elif place.within is not None and part in (fields := fields_by_key(place.within)):
             annotation, types = fields[part].annotation, _types(fields[part].annotation, fields[part].discriminator)
-            place = _Place(inside, part, place.within, None if types else _table_in(annotation), types, "")
+            place = _Place(inside, part, place.within, None if types.tables else _table_in(annotation), types)
             any_key = _has_any_key(annotation)
     return place
 
@@ -185,28 +195,25 @@ def _needless_key(place: _Place, key: str) -> SceneError:
     """Error for a key that the table at a place does not have; tables of other types may have it."""
     assert place.within is not None
     field = f"{place.field}.{key}" if place.field else key
-    others = [name for name, table in place.types.items() if key in fields_by_key(table)]
+    others = [name for name, table in place.types.tables.items() if key in fields_by_key(table)]
     if not others:
         return unknown_key(field, fields_by_key(place.within))
-    statement = f"{key} is valid only with type = {' or '.join(map(repr, others))}, not {place.type!r}"
-    remedy = f"set type = {others[0]!r}" if len(others) == 1 else "change the type"
+    named = place.types.key
+    statement = f"{key} is valid only with {named} = {' or '.join(map(repr, others))}, not {place.type!r}"
+    remedy = f"set {named} = {others[0]!r}" if len(others) == 1 else f"change the {named}"
     return SceneError(field, statement, None, f"Leave it out, or {remedy}.")
 
 
-def _unknown_type(place: _Place, complaint: ErrorDetails) -> SceneError:
+def _unknown_type(place: _Place, table: Mapping[str, Any]) -> SceneError:
     """Error for a table without a type, or of one that there is not."""
-    table, key = complaint["input"], complaint["ctx"]["discriminator"].strip("'")
-    if key not in table:
-        keys = {known for kind in place.types.values() for known in fields_by_key(kind)}
-        return _misspelt_key(place.field, table, key, keys) or SceneError(
-            f"{place.field}.{key}", "nothing", _listed(place.types), f"Add the key {key!r}."
-        )
-    remedy = suggestion(str(table[key]), place.types) or "Name one of them."
-    return SceneError(f"{place.field}.{key}", value_text(table[key]), _listed(place.types), remedy)
-
-
-def _listed(words: Iterable[str]) -> str:
-    return ", ".join(map(repr, words))
+    key, tables = place.types
+    field, allowed = f"{place.field}.{key}", ", ".join(map(repr, tables))
+    if key in table:
+        remedy = suggestion(str(table[key]), tables) or "Name one of them."
+        return SceneError(field, value_text(table[key]), allowed, remedy)
+    known = {other for each in tables.values() for other in fields_by_key(each)}
+    misspelt = _misspelt_key(place.field, table, key, known)
+    return misspelt or SceneError(field, "nothing", allowed, f"Add the key {key!r}.")
 
 
 def _short_list(place: _Place, complaints: Sequence[ErrorDetails]) -> SceneError:
@@ -246,15 +253,16 @@ def _remedy(place: _Place) -> str:
     return f"Correct it; it means: {meaning}." if meaning else "Correct the value."
 
 
-def _types(annotation: Any, key: object = None) -> Mapping[str, type[BaseModel]]:
-    """The tables of a union that a ``key`` of theirs tells apart, by what it says; empty of other annotations."""
+def _types(annotation: Any, key: object = None) -> _Types:
+    """The tables of a union that a ``key`` of theirs tells apart, or of one within the annotation."""
     inner = get_args(annotation)
     if isinstance(key, str):
-        return {value: table for table in inner for value in get_args(table.model_fields[key].annotation)}
+        tables = [table for table in map(_table_in, inner) if table is not None]
+        return _Types(key, {said: table for table in tables for said in get_args(table.model_fields[key].annotation)})
     if get_origin(annotation) is Annotated:
         keys = [mark.discriminator for mark in inner[1:] if isinstance(mark, FieldInfo)]
         return _types(inner[0], next(filter(None, keys), None))
-    return next(filter(None, map(_types, inner)), {})
+    return next((found for found in map(_types, inner) if found.tables), _UNTYPED)
 
 
 def _table_in(annotation: Any) -> type[BaseModel] | None:
