@@ -57,7 +57,7 @@ def test_a_class_must_say_what_it_holds() -> None:
 @pytest.mark.parametrize(
     ("kind", "answers"),
     [
-        (NoSlip, "holds_all is_wall at_rest"),
+        (NoSlip, "holds_all is_wall rests"),
         (partial(NoSlip, value=uniform), "holds_all is_wall"),
         (partial(PrescribedVelocity, value=uniform), "holds_all"),
         (PrescribedPressure, "holds_part is_open"),
@@ -68,7 +68,7 @@ def test_a_class_must_say_what_it_holds() -> None:
 )
 def test_what_backends_ask_follows_from_what_a_class_holds(kind: type[BoundaryCondition], answers: str) -> None:
     condition = kind(0, "left", None)
-    questions = ("holds_all", "holds_part", "slips", "is_open", "is_wall", "at_rest")
+    questions = ("holds_all", "holds_part", "slips", "is_open", "is_wall", "rests")
     assert [name for name in questions if getattr(condition, name)] == [name for name in questions if name in answers]
     points = np.zeros((3, 2))
     assert condition.velocity(0.0, points).shape == (3, 2)

@@ -145,7 +145,10 @@ def test_a_body_that_comes_to_a_periodic_surface_ends_the_run_by_name() -> None:
         ([ENDS[0]], r"'left' is periodic and the surface opposite to it is not. Set type = 'periodic' on 'right' too"),
         ([ENDS[0], ENDS[1] | {"pressure_drop": 1.0}], r"boundary.0.pressure_drop: only one of 'left' and 'right'"),
         ([{"on": "top", "type": "slip", "pressure_drop": 1.0}], r"is valid only with type = 'periodic', not 'slip'"),
-        ([ENDS[0] | {"velocity": [1.0, 0.0]}, ENDS[1]], r"0.velocity: velocity is valid only with type = 'velocity'"),
+        (
+            [ENDS[0] | {"velocity": [1.0, 0.0]}, ENDS[1]],
+            r"0.velocity: velocity is valid only with type = 'wall' or 'velocity', not 'periodic'",
+        ),
     ],
 )
 def test_what_periodic_surfaces_cannot_be_is_refused_by_name(boundary: list[dict[str, Any]], message: str) -> None:

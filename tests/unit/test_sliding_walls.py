@@ -120,5 +120,5 @@ def test_lammps_has_no_walls_that_slide() -> None:
 
 
 def test_a_profile_is_no_matter_of_walls() -> None:
-    with pytest.raises(SceneError, match=r"0.profile: a profile is valid only with type = 'velocity', not 'wall'"):
+    with pytest.raises(SceneError, match=r"0.profile: profile is valid only with type = 'velocity', not 'wall'"):
         scene([BELT | {"profile": "parabolic"}])

@@ -28,7 +28,7 @@ def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray)
     """
     d = node_points.shape[1]
     faces = [face for face in surfaces.faces if face.condition.is_wall]
-    if all(face.condition.at_rest for face in faces):
+    if all(face.condition.rests for face in faces):
         return np.zeros(d)
     normals, outflow, fastest = np.zeros((d, d)), np.zeros(d), 0.0
     with surfaces.ranks.raise_on_all():
@@ -36,7 +36,7 @@ def container_velocity(surfaces: Surfaces, time: float, node_points: FloatArray)
             area = face.area_vectors(node_points).reshape(-1, d)
             size = np.maximum(np.linalg.norm(area, axis=1, keepdims=True), np.finfo(float).tiny)
             normals += (area / size).T @ area
-            if not face.condition.at_rest:
+            if not face.condition.rests:
                 velocity = face.condition.velocity(time, node_points[face.facet_nodes.ravel()])
                 outflow += (area / size).T @ np.sum(area * velocity, axis=1)
                 fastest = max(fastest, float(np.abs(velocity).max(initial=0.0)))

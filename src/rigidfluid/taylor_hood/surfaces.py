@@ -83,7 +83,7 @@ class Surfaces:
         with self.ranks.raise_on_all():
             held = [face for face in self.faces if face.condition.holds_all]
             # where several meet, walls hold the fluid, and those at rest before others
-            for face in sorted(held, key=lambda face: (face.condition.is_wall, face.condition.at_rest)):
+            for face in sorted(held, key=lambda face: (face.condition.is_wall, face.condition.rests)):
                 velocity[face.nodes] = face.condition.velocity(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(time, velocity, node_points)

@@ -26,9 +26,9 @@ def no_pressure(time: float, points: FloatArray) -> FloatArray:
 class BoundaryCondition(ABC):
     """Condition on one piece of the domain's boundary.
 
-    Either the velocity or the traction is given across the piece, and either of both along it. Where the whole
-    velocity is held, it is `velocity`; a part that is held alone is zero. Traction along the piece is zero where it is
-    given, and across it that of `pressure`, -p.
+    Either the velocity or the traction is given across the piece, and either of both along it. A velocity that is held
+    as a whole is `velocity`; a part that is held alone is zero. A traction along the piece is zero; across it, it is -p
+    of `pressure`.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class BoundaryCondition(ABC):
         return self.holds_all and not self.passes
 
     @property
-    def at_rest(self) -> bool:
+    def rests(self) -> bool:
         """Whether it is a wall whose velocity is zero at all times: where two walls meet, that one holds the fluid."""
         return False
 
@@ -126,7 +126,7 @@ class NoSlip(BoundaryCondition):
         return np.zeros_like(points) if self.value is None else self.value(time, points)
 
     @property
-    def at_rest(self) -> bool:
+    def rests(self) -> bool:
         """Whether no velocity is given."""
         return self.value is None
 
@@ -203,7 +203,7 @@ class Periodic(BoundaryCondition):
     image : int, optional
         Number of the other surface; not given on that one.
     drop : callable, optional
-        What the pressure (N,) is higher here than there, of a time and points (N, d) [force/length^(d-1)]; zero if not
+        Excess of the pressure (N,) here over that there, of a time and points (N, d) [force/length^(d-1)]; zero if not
         given, as it is on the other one.
     """
 

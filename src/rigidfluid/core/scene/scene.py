@@ -220,7 +220,7 @@ class PeriodicTable(_BoundaryTable):
 
     type: Literal["periodic"] = Field(description="The condition")
     pressure_drop: float | None = Field(
-        default=None, description="What the pressure is higher here than on the opposite surface [force/length^(d-1)]"
+        default=None, description="Excess of the pressure here over that on the opposite surface [force/length^(d-1)]"
     )
 
 

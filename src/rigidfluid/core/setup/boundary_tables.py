@@ -34,7 +34,7 @@ class Place:
 
     @property
     def surface_name_normal(self) -> tuple[int, str, FloatArray | None]:
-        """What every condition has: the number and name of its surface, and the normal."""
+        """The first three fields of every condition."""
         return self.surface, self.piece.name, self.normal
 
     @property

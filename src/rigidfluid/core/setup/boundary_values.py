@@ -85,7 +85,7 @@ class BoundaryPressure:
 
 @singledispatch
 def boundary_value(table: BoundaryTable, place: Place) -> BoundaryVelocity | BoundaryPressure | None:
-    """What a table prescribes at a place by expressions or numbers; None where there is nothing of the kind.
+    """Velocity, pressure or drop of pressure that a table prescribes at a place; None of other tables.
 
     Raises SceneError for an invalid expression, or a shape that the profile or a flux does not fit.
     """

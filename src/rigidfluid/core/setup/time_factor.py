@@ -80,7 +80,7 @@ def rows_over_time(scene: Scene) -> dict[str, Rows]:
 
 
 def _given_over_time(scene: Scene) -> Iterator[tuple[int, Rows | TimeFileTable | None]]:
-    """What conditions that may change in time say of it, by their numbers."""
+    """Numbers of the conditions that may change in time, and what is given of it."""
     for number, table in enumerate(scene.boundary):
         if isinstance(table, VaryingTable):
             yield number, table.over_time

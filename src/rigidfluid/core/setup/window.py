@@ -119,7 +119,7 @@ def _check_conditions(scene: Scene, window: Window) -> None:
         allowed = "a 'wall' there, or the 'velocity' of the flow far away"
         raise SceneError("boundary", found, allowed, "The flow between two open ends depends on the whole length.")
     sides = [side for number, side in enumerate(held) if number not in window.ends]
-    sliding = [side.name for side in sides if side.holds_all and not side.at_rest]
+    sliding = [side.name for side in sides if side.holds_all and not side.rests]
     if sliding and (behind.is_wall or ahead.is_wall):
         found = f"a velocity on {sliding[0]!r}, along a window with a wall at its end"
         raise SceneError("boundary", found, "sides at rest, as the fluid far away is", "Give the ends a 'velocity'.")
