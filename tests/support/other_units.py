@@ -54,6 +54,9 @@ def in_units(scene: Table, units: Units) -> Table:
         return found | {"scale": units.length * given.get("scale", 1.0)} if "scale" in keys else found
 
     def value(key: str, given: Any, field: Table, definitions: Table, at: str, law: str) -> Any:
+        if "discriminator" in (each := field.get("items", {})):
+            by_type = {kind: definitions[_name(target)] for kind, target in each["discriminator"]["mapping"].items()}
+            return [table(one, by_type[one["type"]], definitions, key) for one in given]
         name = _target(field)
         if name and isinstance(given, dict):
             return table(given, definitions[name], definitions, f"{at}.{key}".strip("."))
@@ -80,5 +83,10 @@ def _target(field: Table) -> str:
     """Name of the model that a field, or an entry of its list, is a table of; empty for a plain value."""
     for one in (field, field.get("items", {}), *field.get("anyOf", ())):
         if "$ref" in one:
-            return str(one["$ref"]).rpartition("/")[2]
+            return _name(one["$ref"])
     return ""
+
+
+def _name(reference: str) -> str:
+    """Name of the model that a schema refers to."""
+    return reference.rpartition("/")[2]

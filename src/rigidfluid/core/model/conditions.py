@@ -105,15 +105,8 @@ class BoundaryCondition(ABC):
 
 @dataclass(frozen=True)
 class NoSlip(BoundaryCondition):
-    """A wall: the fluid there has the wall's velocity.
-
-    Parameters
-    ----------
-    surface, name, normal
-        See `BoundaryCondition`.
-    value : callable, optional
-        Velocity (N, d) of the wall along itself, of a time and points (N, d) [length/time]; at rest if not given.
-    """
+    """A wall: the fluid there has the wall's velocity, ``value(time, points)`` (N, d) along itself [length/time]; it
+    rests if None is given."""
 
     value: Value | None = None
 
@@ -133,15 +126,7 @@ class NoSlip(BoundaryCondition):
 
 @dataclass(frozen=True)
 class PrescribedVelocity(BoundaryCondition):
-    """A velocity that is given, with which fluid may pass.
-
-    Parameters
-    ----------
-    surface, name, normal
-        See `BoundaryCondition`.
-    value : callable
-        Velocity (N, d), of a time and points (N, d) [length/time].
-    """
+    """A velocity that is given, ``value(time, points)`` (N, d) [length/time]; fluid may pass with it."""
 
     value: Value
 
@@ -156,15 +141,7 @@ class PrescribedVelocity(BoundaryCondition):
 
 @dataclass(frozen=True)
 class PrescribedPressure(BoundaryCondition):
-    """An end through which fluid passes straight, with a normal stress -p that is given.
-
-    Parameters
-    ----------
-    surface, name, normal
-        See `BoundaryCondition`.
-    value : callable, optional
-        Pressure (N,), of a time and points (N, d) [force/length^(d-1)]; zero if not given.
-    """
+    """An end that fluid passes straight, under a pressure ``value(time, points)`` (N,) [force/length^(d-1)]."""
 
     value: Value = no_pressure
 
@@ -179,13 +156,7 @@ class PrescribedPressure(BoundaryCondition):
 
 @dataclass(frozen=True)
 class Slip(BoundaryCondition):
-    """A surface that fluid goes along without traction and does not pass; a plane of symmetry.
-
-    Parameters
-    ----------
-    surface, name, normal
-        See `BoundaryCondition`.
-    """
+    """A surface that fluid goes along without traction and does not pass, as a plane of symmetry."""
 
     holds_across = True
     holds_along = False
@@ -194,17 +165,10 @@ class Slip(BoundaryCondition):
 
 @dataclass(frozen=True)
 class Periodic(BoundaryCondition):
-    """One of two opposite surfaces with the same velocity and traction, but for a drop of pressure between them.
+    """One of two opposite surfaces with the same velocity and traction.
 
-    Parameters
-    ----------
-    surface, name, normal
-        See `BoundaryCondition`.
-    image : int, optional
-        Number of the other surface; not given on that one.
-    drop : callable, optional
-        Excess of the pressure (N,) here over that there, of a time and points (N, d) [force/length^(d-1)]; zero if not
-        given, as it is on the other one.
+    The first of them names the other, by its number ``image``; the pressure may be higher on it, by ``drop(time,
+    points)`` (N,) [force/length^(d-1)]. The other has neither.
     """
 
     image: int | None = None
