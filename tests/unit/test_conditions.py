@@ -82,7 +82,7 @@ def test_at_a_corner_walls_hold_the_fluid_and_those_at_rest_before_others() -> N
     right, bottom = NoSlip(1, "right", np.array([-1.0, 0.0])), NoSlip(2, "bottom", np.array([0.0, 1.0]))
     mesh = box(2, 2)
     numbering = Numbering.from_mesh(mesh)
-    surfaces = Surfaces(numbering, mesh, [left, right, bottom, top], 0)
+    surfaces = Surfaces(numbering, mesh, [left, right, bottom, top], ())
     nothing = np.empty((0, 3))
     surfaces.enclosed = False  # nothing is scaled
     points = numbering.node_points(mesh.geometry)
