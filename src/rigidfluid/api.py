@@ -28,6 +28,7 @@ from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets
@@ -42,6 +43,7 @@ from rigidfluid.core.model.interfaces import (
     PartOptions,
 )
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
@@ -65,10 +67,13 @@ from rigidfluid.core.model.types import (
     Wrench,
 )
 from rigidfluid.core.model.wall import Wall, require_plane
-from rigidfluid.core.scene.scene import Scene, StrokeTable
+from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, check_length, tables_by_name
+from rigidfluid.core.nested.placing import initial_pose
+from rigidfluid.core.nested.strokes import build_stroke
+from rigidfluid.core.scene.scene import Positive, Scene, StrokeTable, Vector
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.obstacles import Obstacles
 from rigidfluid.errors import (
     MeshError,
     OutputError,
@@ -79,6 +84,14 @@ from rigidfluid.errors import (
     StepRejected,
 )
 from rigidfluid.hookspecs import hookimpl
+from rigidfluid.mechanisms.components import ComponentTable, build_components
+from rigidfluid.mechanisms.strokes import (
+    MovingComponents,
+    RigidDisplacement,
+    Rotation,
+    StrokedMechanism,
+    Translation,
+)
 from rigidfluid.registry import (
     BODY,
     DETECTOR,
@@ -89,6 +102,7 @@ from rigidfluid.registry import (
     MECHANISM,
     Registry,
     missing_packages,
+    suggestion,
 )
 
 if TYPE_CHECKING:
@@ -111,6 +125,7 @@ __all__ = [
     "Box",
     "BoxOptions",
     "Component",
+    "ComponentTable",
     "Constraint",
     "Contacts",
     "Coordinate",
@@ -140,6 +155,9 @@ __all__ = [
     "Mesh",
     "MeshError",
     "Motion",
+    "MovingComponents",
+    "NestedBodyTable",
+    "Obstacles",
     "OnAxis",
     "OutputError",
     "Part",
@@ -153,9 +171,12 @@ __all__ = [
     "Polyhedron",
     "PolyhedronOptions",
     "Pose",
+    "Positive",
     "Registry",
     "Response",
+    "RigidDisplacement",
     "RigidfluidError",
+    "Rotation",
     "RotationDamper",
     "SameAxis",
     "SameOrientation",
@@ -170,20 +191,31 @@ __all__ = [
     "Step",
     "StepError",
     "StepRejected",
+    "Stroke",
     "StrokeTable",
+    "StrokedMechanism",
     "Surface",
+    "Translation",
     "Twist",
+    "Vector",
     "Wall",
     "Wrench",
     "axes_along",
+    "build_components",
+    "build_shape",
     "build_stroke",
+    "check_length",
     "hookimpl",
+    "in_unit",
+    "initial_pose",
     "load_scene",
     "missing_packages",
     "require_plane",
     "rotation_matrices",
     "run",
     "scene_from_dict",
+    "suggestion",
+    "tables_by_name",
 ]
 
 

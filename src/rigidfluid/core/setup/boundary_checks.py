@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.nested.rows import check_rows
 from rigidfluid.core.setup.boundary import boundary_table, table_key
 from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
 from rigidfluid.core.setup.boundary_values import (
@@ -17,7 +18,6 @@ from rigidfluid.core.setup.boundary_values import (
     pressure_drop,
     wall_velocity,
 )
-from rigidfluid.core.setup.time_factor import check_rows
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
-from rigidfluid.core.setup.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
 from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.core.setup.periodic import periodic_pairs
