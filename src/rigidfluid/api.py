@@ -29,6 +29,9 @@ from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.mesh.flow import AtRest, Flow
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets
@@ -100,6 +103,7 @@ from rigidfluid.registry import (
     FORCE_LAW,
     JOINT,
     MECHANISM,
+    SIZE_FIELD,
     Registry,
     missing_packages,
     suggestion,
@@ -117,8 +121,10 @@ __all__ = [
     "FORCE_LAW",
     "JOINT",
     "MECHANISM",
+    "SIZE_FIELD",
     "Advance",
     "Angle",
+    "AtRest",
     "Body",
     "BoolArray",
     "BoundaryCondition",
@@ -142,7 +148,9 @@ __all__ = [
     "Facets",
     "Fields",
     "FloatArray",
+    "Flow",
     "FluidBackend",
+    "FluidDomain",
     "FluidProblem",
     "FluidState",
     "ForceLaw",
@@ -184,6 +192,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "SizeField",
     "SolverCost",
     "Sphere",
     "SphereOptions",

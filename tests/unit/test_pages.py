@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import os
 import re
 import subprocess
@@ -17,6 +18,7 @@ from falling import SCENES
 from linked_runs import body, linked_scene
 
 import rigidfluid
+from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
@@ -247,6 +249,27 @@ def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
     np.testing.assert_allclose(history.joints["displacement"], expected, atol=1e-4)
     np.testing.assert_allclose(history.bodies["wz"], 3.0)
     refuse_failed_contract(folder, contract, tmp_path / "test_sleeve.py")
+
+
+def test_the_example_of_a_size_field_runs(install: Install, tmp_path: Path) -> None:
+    """Cells next to a fast disk are finer in the second mesh, named in the scene or handed over; its contract holds."""
+    example = section(text("docs/plugins.md"), "A size field, from nothing")
+    code, contract, handed_over = blocks(example, "python")
+    assert imports_the_public_face_alone(code + contract)
+    (table,) = (tomllib.loads(block)["mesh"]["field"] for block in blocks(example, "toml"))
+    folder = install(code, name="fast", module="rigidfluid_fast")
+    scene = rigidfluid.load_scene(SCENES / "falling_disk.toml", [*COARSE, "mesh.remesh_every=0.004"]).to_dict()
+    scene["body"][0]["velocity"] = [0.0, -10.0]
+    plain, named = scene_from_dict(scene), scene_from_dict(scene | {"mesh": scene["mesh"] | {"field": table}})
+    module = importlib.import_module("rigidfluid_fast")
+    names = {"Simulation": Simulation, "scene": plain, "Fast": module.Fast, "FastOptions": module.FastOptions}
+    exec(handed_over, names)
+    simulations = Simulation(plain), Simulation(named), names["simulation"]
+    for simulation in simulations:
+        simulation.go(0.012)
+    without, *with_it = (len(simulation.state.mesh.cells) for simulation in simulations)
+    assert with_it[0] == with_it[1] > 1.2 * without
+    refuse_failed_contract(folder, contract, tmp_path / "test_fast.py")
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

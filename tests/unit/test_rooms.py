@@ -21,7 +21,7 @@ BELOW = {
     "mesh": "mechanics model",
     "contact": "mechanics model",
     "coupling": "contact mechanics model",
-    "setup": "contact joints mechanics nested scene model",
+    "setup": "contact mesh joints mechanics nested scene model",
     "run": "setup mesh coupling contact output mechanics nested scene model",
 }
 
@@ -33,6 +33,7 @@ PARTS = {
     "domains": "core.contact core.mesh core.nested core.scene registry",
     "mechanisms": "core.nested core.scene registry",
     "joints": "core.joints core.nested core.scene",
+    "size_fields": "core.mesh core.scene",
 }
 """What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
 of joints are tables in a scene."""
