@@ -134,7 +134,7 @@ def test_a_table_that_cannot_be_is_refused_by_its_key(table: dict[str, object], 
     assert caught.value.subject == field
 
 
-@pytest.mark.parametrize("result", ["-" + RIGHT, "np.nan * points[:, 0]", "points"])
+@pytest.mark.parametrize("result", ["-(" + RIGHT + ")", "np.nan * points[:, 0]", "np.inf + points[:, 0]", "points"])
 def test_lengths_that_are_none_are_refused_by_name(install: Install, result: str) -> None:
     install(BANDS.replace("RESULT", result), name="bands", module="bands")
     with pytest.raises(PluginError, match=r"mesh\.field 'band': found edge lengths of shape"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 
 import numpy as np
 
@@ -90,9 +91,7 @@ class FlowOnMesh(Flow):
 
     def __init__(self, mesh: Mesh, velocity: FloatArray, pressure: FloatArray, twist: Twist) -> None:
         super().__init__(twist)
-        self._cells, self._finder = mesh.cells, CellFinder(mesh.points, mesh.cells)
-        self._velocity, self._pressure = velocity, pressure
-        self._gradient = vertex_gradient(mesh, velocity)
+        self._mesh, self._velocity, self._pressure = mesh, velocity, pressure
 
     @property
     def speed(self) -> float:
@@ -111,9 +110,19 @@ class FlowOnMesh(Flow):
         """Slopes (m, d, d), linear between those at the vertices [1/time]."""
         return self._between(self._gradient, points)
 
+    @cached_property
+    def _gradient(self) -> FloatArray:
+        """Slopes at the vertices (N, d, d)."""
+        return vertex_gradient(self._mesh, self._velocity)
+
+    @cached_property
+    def _finder(self) -> CellFinder:
+        """Finder of cells, which most fields ask many times and some never."""
+        return CellFinder(self._mesh.points, self._mesh.cells)
+
     def _between(self, values: FloatArray, points: FloatArray) -> FloatArray:
         cell, coordinates = self._finder.find(points)
-        return np.asarray(np.einsum("nb,nb...->n...", coordinates, values[self._cells[cell]]))
+        return np.asarray(np.einsum("nb,nb...->n...", coordinates, values[self._mesh.cells[cell]]))
 
 
 def flow_on(backend: FluidBackend, fluid: FluidState, mesh: Mesh, twist: Twist) -> Flow | None:

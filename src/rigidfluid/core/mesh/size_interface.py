@@ -66,8 +66,9 @@ def with_fields_at_rest(sizes: Sizes, fields: Sequence[SizeField], around: Fluid
 def _asked_length(points: FloatArray, field: SizeField, around: FluidDomain, flow: Flow) -> FloatArray:
     """Edge lengths (m,) by a ``field``; raises PluginError for what is no length."""
     lengths = np.asarray(field.edge_length(points, around, flow))
-    if lengths.shape != (len(points),) or not (np.isfinite(lengths).all() and (lengths > 0.0).all()):
-        found = f"edge lengths of shape {lengths.shape}, {np.count_nonzero(~(lengths > 0.0))} of them not above 0"
+    right = np.isfinite(lengths) & (lengths > 0.0)
+    if lengths.shape != (len(points),) or not right.all():
+        found = f"edge lengths of shape {lengths.shape}, {np.count_nonzero(~right)} of them not positive and finite"
         allowed = f"positive and finite lengths of shape {(len(points),)}"
         remedy = "Mend the size field; SizeFieldContract in rigidfluid.testing shows more."
         raise PluginError(f"mesh.field {field.name!r}", found, allowed, remedy)
