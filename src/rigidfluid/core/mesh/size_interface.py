@@ -22,7 +22,7 @@ class SizeField(SpatialPart):
 
     A field is asked for each mesh, at many points and several times. It must depend on its arguments alone, each length
     on its own point, so that a run goes on from a checkpoint to the last bit. The mesher lets edges grow by a third
-    from one to the next, wherever a field jumps.
+    from one to the next, also at jumps of a field.
 
     Parameters
     ----------
