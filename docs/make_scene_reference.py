@@ -68,13 +68,16 @@ def _parts() -> Iterator[str]:
         if entry.origin.startswith("rigidfluid ") and schema["properties"]:
             meaning = " ".join(schema["description"].replace("``", "`").split())
             yield f"## `{_named(entry)}`\n\n{meaning}\n\n{_table(schema)}"
-            yield from _within(entry.kind.field.partition(".")[0], schema, schema.get("$defs", {}))
+            yield from _within(entry.kind.field.rpartition(".")[0], schema, schema.get("$defs", {}))
 
 
 def _named(entry: Entry) -> str:
-    table, _, key = entry.kind.field.partition(".")
-    place = {"body": "[[body]]", "joint": "[[joint]]", "contact.law": "[contact] or [[interaction]]"}
-    return f'{place.get(entry.kind.field, place.get(table, f"[{table}]"))} {key} = "{entry.name}"'
+    table, _, key = entry.kind.field.rpartition(".")
+    if entry.kind.field == "contact.law":
+        table = "[contact] or [[interaction]]"
+    else:
+        table = f"[[{table}]]" if table in ("body", "joint", "mesh.field") else f"[{table}]"
+    return f'{table} {key} = "{entry.name}"'
 
 
 def _table(schema: Schema) -> str:

@@ -28,6 +28,10 @@ from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, axes_along
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.mesh.flow import AtRest, Flow
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.conditions import (
     BoundaryCondition,
     NoSlip,
@@ -51,6 +55,7 @@ from rigidfluid.core.model.interfaces import (
     PartOptions,
 )
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.types import (
@@ -72,10 +77,14 @@ from rigidfluid.core.model.types import (
     Wrench,
 )
 from rigidfluid.core.model.wall import Wall, require_plane
-from rigidfluid.core.scene.scene import Scene, StrokeTable
+from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, check_length, tables_by_name
+from rigidfluid.core.nested.placing import initial_pose
+from rigidfluid.core.nested.strokes import build_stroke
+from rigidfluid.core.scene.scene import Positive, Scene, StrokeTable
+from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.obstacles import Obstacles
 from rigidfluid.errors import (
     MeshError,
     OutputError,
@@ -86,6 +95,14 @@ from rigidfluid.errors import (
     StepRejected,
 )
 from rigidfluid.hookspecs import hookimpl
+from rigidfluid.mechanisms.components import ComponentTable, build_components
+from rigidfluid.mechanisms.strokes import (
+    MovingComponents,
+    RigidDisplacement,
+    Rotation,
+    StrokedMechanism,
+    Translation,
+)
 from rigidfluid.registry import (
     BODY,
     DETECTOR,
@@ -94,8 +111,10 @@ from rigidfluid.registry import (
     FORCE_LAW,
     JOINT,
     MECHANISM,
+    SIZE_FIELD,
     Registry,
     missing_packages,
+    suggestion,
 )
 
 if TYPE_CHECKING:
@@ -110,14 +129,17 @@ __all__ = [
     "FORCE_LAW",
     "JOINT",
     "MECHANISM",
+    "SIZE_FIELD",
     "Advance",
     "Angle",
+    "AtRest",
     "Body",
     "BoolArray",
     "BoundaryCondition",
     "Box",
     "BoxOptions",
     "Component",
+    "ComponentTable",
     "Constraint",
     "Contacts",
     "Coordinate",
@@ -134,7 +156,9 @@ __all__ = [
     "Facets",
     "Fields",
     "FloatArray",
+    "Flow",
     "FluidBackend",
+    "FluidDomain",
     "FluidProblem",
     "FluidState",
     "ForceLaw",
@@ -147,7 +171,10 @@ __all__ = [
     "Mesh",
     "MeshError",
     "Motion",
+    "MovingComponents",
+    "NestedBodyTable",
     "NoSlip",
+    "Obstacles",
     "OnAxis",
     "OutputError",
     "Part",
@@ -162,11 +189,14 @@ __all__ = [
     "Polyhedron",
     "PolyhedronOptions",
     "Pose",
+    "Positive",
     "PrescribedPressure",
     "PrescribedVelocity",
     "Registry",
     "Response",
+    "RigidDisplacement",
     "RigidfluidError",
+    "Rotation",
     "RotationDamper",
     "SameAxis",
     "SameOrientation",
@@ -174,6 +204,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "SizeField",
     "Slip",
     "SolverCost",
     "Sphere",
@@ -182,20 +213,31 @@ __all__ = [
     "Step",
     "StepError",
     "StepRejected",
+    "Stroke",
     "StrokeTable",
+    "StrokedMechanism",
     "Surface",
+    "Translation",
     "Twist",
+    "Vector",
     "Wall",
     "Wrench",
     "axes_along",
+    "build_components",
+    "build_shape",
     "build_stroke",
+    "check_length",
     "hookimpl",
+    "in_unit",
+    "initial_pose",
     "load_scene",
     "missing_packages",
     "require_plane",
     "rotation_matrices",
     "run",
     "scene_from_dict",
+    "suggestion",
+    "tables_by_name",
 ]
 
 

@@ -17,6 +17,7 @@ import pluggy
 
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
+    from rigidfluid.core.mesh.size_interface import SizeField
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism
 
@@ -57,3 +58,8 @@ def rigidfluid_mechanisms() -> list[type[Mechanism]]:  # type: ignore[empty-body
 @hookspec
 def rigidfluid_joints() -> list[type[Joint]]:  # type: ignore[empty-body]
     """Classes of joints between two bodies."""
+
+
+@hookspec
+def rigidfluid_size_fields() -> list[type[SizeField]]:  # type: ignore[empty-body]
+    """Classes of edge lengths wanted in the fluid."""

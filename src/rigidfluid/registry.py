@@ -17,6 +17,7 @@ import pluggy
 
 from rigidfluid import hookspecs
 from rigidfluid.core.joints.joint import Joint
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
@@ -44,7 +45,8 @@ BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type
 DOMAIN = Kind("domain", "rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
 MECHANISM = Kind("mechanism", "rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
 JOINT = Kind("joint", "rigidfluid_joints", Joint, "joint.type")  # type: ignore[type-abstract]
-KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM, JOINT)
+SIZE_FIELD = Kind("size field", "rigidfluid_size_fields", SizeField, "mesh.field.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM, JOINT, SIZE_FIELD)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable
+from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.channel import Channel, ChannelOptions
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions

@@ -12,6 +12,7 @@ import pytest
 from rigidfluid import api
 
 ROOT = Path(__file__).parents[2]
+SOURCE = Path(api.__file__).parent
 PUBLIC = ("rigidfluid.api", "rigidfluid.testing", "rigidfluid.taylor_hood")
 HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}
 
@@ -37,3 +38,23 @@ def test_the_plug_ins_beside_import_from_it_alone(path: Path) -> None:
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
     homes = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
     assert {home for home in homes if home.split(".")[0] == "rigidfluid" and not home.startswith(PUBLIC)} == set()
+
+
+MADE_OF_TABLES = (
+    *("domains/box.py", "domains/channel.py", "domains/stenosis.py"),
+    *("joints/ball.py", "joints/hinge.py", "joints/one_coordinate.py", "joints/rod.py", "joints/slider.py"),
+    *("mechanisms/articulated.py", "mechanisms/three_sphere_swimmer.py"),
+)
+"""Built-in parts that a plug-in could have written: with obstacles, strokes, tables of bodies."""
+
+
+@pytest.mark.parametrize("path", MADE_OF_TABLES)
+def test_built_in_parts_use_of_the_rest_what_it_offers(path: str) -> None:
+    nodes = list(ast.walk(ast.parse((SOURCE / path).read_text(encoding="utf-8"))))
+    own = f"rigidfluid.{path.split('/')[0]}."
+    taken = [
+        node for node in nodes if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("rigidfluid.")
+    ]
+    names = {name.name for node in taken if not (node.module or "").startswith(own) for name in node.names}
+    assert names
+    assert names - set(api.__all__) == set()

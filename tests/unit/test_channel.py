@@ -18,10 +18,10 @@ from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.core.setup.boundary import surfaces_of
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable
 from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.detectors.sphere import SphereDetector

@@ -15,7 +15,7 @@ SHARED = {"backends": {"taylor_hood"}, "detectors": {"marching"}, "forces": set(
 ROOMS = [*SHARED, "taylor_hood", "marching"]
 NUMERICS = {
     *("contact.broad_phase", "contact.near_pairs", "contact.balls", "contact.repulsion"),
-    *("mesh.mesh_quality", "joints.joint_forces"),
+    *("mesh.mesh_quality", "mesh.location", "joints.joint_forces"),
 }
 """Of core's rooms above `mechanics`, what holds no state, and what two parts would otherwise write twice."""
 PUBLIC = {"api", "testing", "taylor_hood"}

@@ -3,8 +3,8 @@
 import numpy as np
 from falling import falling_disk
 
+from rigidfluid.core.mesh.location import locate
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.location import locate
 
 
 def test_points_are_found_in_a_graded_mesh():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import os
 import re
 import subprocess
@@ -16,6 +18,7 @@ from falling import SCENES
 from linked_runs import body, linked_scene
 
 import rigidfluid
+from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
@@ -151,6 +154,88 @@ def test_the_example_of_a_mechanism_runs(install: Install, tmp_path: Path) -> No
     refuse_failed_contract(folder, of_both, tmp_path / "test_dumbbell.py")
 
 
+def imports_the_public_face_alone(code: str) -> bool:
+    """Whether a module takes from the library what `rigidfluid.api` and `rigidfluid.testing` offer."""
+    homes = {node.module for node in ast.walk(ast.parse(code)) if isinstance(node, ast.ImportFrom) and node.module}
+    return {home for home in homes if home.split(".")[0] == "rigidfluid"} <= {"rigidfluid.api", "rigidfluid.testing"}
+
+
+def test_the_example_of_a_domain_with_obstacles_runs(install: Install, tmp_path: Path) -> None:
+    """A ball that falls onto a post, dry, comes to rest nowhere in it; its contract holds."""
+    page = text("docs/plugins.md")
+    install(blocks(section(page, "A domain, from nothing"), "python")[0], name="dish", module="rigidfluid_dish")
+    example = section(page, "A domain with obstacles")
+    code, contract = blocks(example, "python")
+    assert imports_the_public_face_alone(code + contract)
+    (domain,) = (tomllib.loads(block) for block in blocks(example, "toml"))
+    folder = install(code, name="posts", module="rigidfluid_posts")
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.5", "time.step=1e-3"]).to_dict()
+    scene["contact"] = {"law": "normal", "range": 0.02, "epsilon": "auto"}
+    ball = {"type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
+    history = rigidfluid.run(rigidfluid.scene_from_dict(scene | domain | {"body": [ball], "boundary": []}))
+    distance = np.hypot(history.bodies["x"] - 0.5, history.bodies["y"] - 0.1)
+    assert 0.3 < distance.min() < 0.32
+    assert history.bodies["vy"].max() > 0.0
+    refuse_failed_contract(folder, contract, tmp_path / "test_posts.py")
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"name": "rim"}, "domain.post.0.name"),
+        ({"position": [0.9, 0.1]}, "domain.post.0.position"),
+        ({"position": [2.0, 0.1]}, "domain.post.0.position"),
+        ({"radios": 0.2}, "domain.post.0.radios"),
+        ({"position": [0.5]}, "domain.post.0.position"),
+    ],
+)
+def test_the_obstacles_of_a_strangers_domain_are_checked_as_our_own(
+    install: Install, change: dict[str, object], field: str
+) -> None:
+    page = text("docs/plugins.md")
+    install(blocks(section(page, "A domain, from nothing"), "python")[0], name="dish", module="rigidfluid_dish")
+    example = section(page, "A domain with obstacles")
+    install(blocks(example, "python")[0], name="posts", module="rigidfluid_posts")
+    (domain,) = (tomllib.loads(block)["domain"] for block in blocks(example, "toml"))
+    domain["post"][0] |= change
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml").to_dict() | {"domain": domain, "boundary": []}
+    with pytest.raises(rigidfluid.errors.SceneError) as caught:
+        rigidfluid.scene_from_dict(scene)
+    assert caught.value.subject == field
+
+
+def test_the_example_of_a_mechanism_from_tables_runs(install: Install, tmp_path: Path) -> None:
+    """Its components go apart as the rows say, about the common centre of mass; its contract holds."""
+    example = section(text("docs/plugins.md"), "A mechanism from tables")
+    code, contract = blocks(example, "python")
+    assert imports_the_public_face_alone(code + contract)
+    (table,) = (tomllib.loads(block) for block in blocks(example, "toml"))
+    folder = install(code, name="breathing", module="rigidfluid_breathing")
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.4", "time.step=0.01"]).to_dict()
+    history = rigidfluid.run(
+        rigidfluid.scene_from_dict(scene | {"body": [], "contact": {}, "fluid": {"backend": "dry"}} | table)
+    )
+    left, right = (history.bodies["x"][history.bodies["body"] == f"lung.{name}"] for name in ("left", "right"))
+    assert right[0] - left[0] == pytest.approx(0.2)
+    assert right[-1] - left[-1] == pytest.approx(0.4)
+    refuse_failed_contract(folder, contract, tmp_path / "test_breathing.py")
+
+
+def test_a_file_of_rows_drives_a_strangers_mechanism(install: Install, tmp_path: Path) -> None:
+    example = section(text("docs/plugins.md"), "A mechanism from tables")
+    install(blocks(example, "python")[0], name="breathing", module="rigidfluid_breathing")
+    (table,) = (tomllib.loads(block) for block in blocks(example, "toml"))
+    rows = tmp_path / "rows.csv"
+    rows.write_text("0.0, 0.0\n0.2, 0.05\n0.4, 0.0\n")
+    table["mechanism"][0]["stroke"] = {"piecewise": {"file": str(rows)}}
+    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=0.2", "time.step=0.01"]).to_dict()
+    history = rigidfluid.run(
+        rigidfluid.scene_from_dict(scene | {"body": [], "contact": {}, "fluid": {"backend": "dry"}} | table)
+    )
+    left, right = (history.bodies["x"][history.bodies["body"] == f"lung.{name}"] for name in ("left", "right"))
+    assert right[-1] - left[-1] == pytest.approx(0.3)
+
+
 def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
     """A ball on the sleeve swings along its axis, and goes on turning about it; its contract holds."""
     page = section(text("docs/plugins.md"), "A joint, from nothing")
@@ -164,6 +249,27 @@ def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
     np.testing.assert_allclose(history.joints["displacement"], expected, atol=1e-4)
     np.testing.assert_allclose(history.bodies["wz"], 3.0)
     refuse_failed_contract(folder, contract, tmp_path / "test_sleeve.py")
+
+
+def test_the_example_of_a_size_field_runs(install: Install, tmp_path: Path) -> None:
+    """Cells next to a fast disk are finer in the second mesh, named in the scene or handed over; its contract holds."""
+    example = section(text("docs/plugins.md"), "A size field, from nothing")
+    code, contract, handed_over = blocks(example, "python")
+    assert imports_the_public_face_alone(code + contract)
+    (table,) = (tomllib.loads(block)["mesh"]["field"] for block in blocks(example, "toml"))
+    folder = install(code, name="fast", module="rigidfluid_fast")
+    scene = rigidfluid.load_scene(SCENES / "falling_disk.toml", [*COARSE, "mesh.remesh_every=0.004"]).to_dict()
+    scene["body"][0]["velocity"] = [0.0, -10.0]
+    plain, named = scene_from_dict(scene), scene_from_dict(scene | {"mesh": scene["mesh"] | {"field": table}})
+    module = importlib.import_module("rigidfluid_fast")
+    names = {"Simulation": Simulation, "scene": plain, "Fast": module.Fast, "FastOptions": module.FastOptions}
+    exec(handed_over, names)
+    simulations = Simulation(plain), Simulation(named), names["simulation"]
+    for simulation in simulations:
+        simulation.go(0.012)
+    without, *with_it = (len(simulation.state.mesh.cells) for simulation in simulations)
+    assert with_it[0] == with_it[1] > 1.2 * without
+    refuse_failed_contract(folder, contract, tmp_path / "test_fast.py")
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

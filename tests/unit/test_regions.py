@@ -7,9 +7,10 @@ from mesh_tools import ball, box, box_walls, upright
 from rigidfluid.checks import check
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.refine_surface import LONGEST
-from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, Wake, curved_walls
+from rigidfluid.core.mesh.regions import RefinedBox, RefinedCapsule, curved_walls
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.wake import Wake
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.boundary import surfaces_of
@@ -42,7 +43,7 @@ def test_distance_to_a_capsule():
 def test_a_wake_is_where_its_body_has_been_and_a_body_at_rest_has_none():
     bodies, pose = [ball(0.1), ball(0.2)], upright([1.0, 1.0], [2.0, 1.0])
     twist = Twist(np.array([[0.0, -3.0], [0.0, 0.0]]), np.zeros((2, 1)))
-    (found,) = Wake(time=0.5, size=0.02).behind(bodies, pose, twist)
+    (found,) = Wake(time=0.5, size=0.02, growth=0.2, dimension=2).behind(bodies, pose, twist)
     np.testing.assert_allclose([found.start, found.end], [[1.0, 1.0], [1.0, 2.5]])
     assert (found.radius, found.size) == (0.1, 0.02)
 

@@ -16,12 +16,13 @@ BELOW = {
     "mechanics": "model",
     "joints": "mechanics model",
     "scene": "model",
+    "nested": "mechanics scene model",
     "output": "model",
     "mesh": "mechanics model",
     "contact": "mechanics model",
     "coupling": "contact mechanics model",
-    "setup": "contact joints mechanics scene model",
-    "run": "setup mesh coupling contact output mechanics scene model",
+    "setup": "contact mesh joints mechanics nested scene model",
+    "run": "setup mesh coupling contact output mechanics nested scene model",
 }
 
 PARTS = {
@@ -29,9 +30,10 @@ PARTS = {
     "bodies": "",
     "detectors": "core.contact marching",
     "forces": "core.contact",
-    "domains": "core.mesh core.scene core.setup registry",
-    "mechanisms": "core.scene core.setup registry",
-    "joints": "core.joints core.scene core.setup",
+    "domains": "core.contact core.mesh core.nested core.scene registry",
+    "mechanisms": "core.nested core.scene registry",
+    "joints": "core.joints core.nested core.scene",
+    "size_fields": "core.mesh core.scene",
 }
 """What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
 of joints are tables in a scene."""

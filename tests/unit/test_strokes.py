@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.scene import StrokeTable
 from rigidfluid.core.scene.validation import read_table
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
 
 SQUARE = ((0.0, 0.0), (1.0, -4.0), (2.0, -4.0), (3.0, 0.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log2
 
@@ -15,6 +16,7 @@ from rigidfluid.core.mesh.cell_count import Count, expected_count
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.mmg import MESHER_MEMORY
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size_interface import SizeField, with_fields_at_rest
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, SolverCost
 from rigidfluid.core.run.mesh_keys import sizes_of
@@ -54,7 +56,7 @@ class RunSize:
 def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
     """Sizes that a run is expected to have; None where the backend cannot predict its cost."""
     sizes = sizes_of(mesh, system.domain)
-    start = _count(system, system.pose, sizes)
+    start = _count(system, system.pose, sizes, parts.size_fields)
     start_cost = system.backend.solver_cost(*start)
     if start_cost is None:
         return None
@@ -62,7 +64,7 @@ def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> 
     settled = settled_pose(system, parts.exact_detector, gap)
     meshes = _later_meshes(system, settled, gap, sizes, time.end)
     falls = bool(np.any(settled.position != system.pose.position))
-    most = max(start, _count(system, settled, sizes)) if falls else start
+    most = max(start, _count(system, settled, sizes, parts.size_fields)) if falls else start
     if meshes:
         most = Count(*(_LATER_OVER_FIRST * number for number in most))
     most_cost = system.backend.solver_cost(*most)
@@ -93,8 +95,10 @@ def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
     return min(found, default=None)
 
 
-def _count(system: System, pose: Pose, sizes: Sizes) -> Count:
-    return expected_count(fluid_domain_at(system, pose), sizes)
+def _count(system: System, pose: Pose, sizes: Sizes, fields: Sequence[SizeField]) -> Count:
+    """Expected mesh around bodies at a ``pose`` in a fluid at rest."""
+    around = fluid_domain_at(system, pose)
+    return expected_count(around, with_fields_at_rest(sizes, fields, around))
 
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:

@@ -11,10 +11,9 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import BoolArray, FloatArray
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable
+from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.domains.obstacles import AT, placed_obstacles, refuse_overlap
-from rigidfluid.errors import SceneError
+from rigidfluid.domains.obstacles import Obstacles
 
 
 class ChannelOptions(BoxOptions):
@@ -43,19 +42,12 @@ class Channel(Domain):
     def __init__(self, options: ChannelOptions, dimension: int) -> None:
         super().__init__(options, dimension)
         self._box = Box(BoxOptions(lower=options.lower, upper=options.upper), dimension)
-        self._obstacles = placed_obstacles(options.obstacle, dimension)
-        for number, name in enumerate(self._obstacles):
-            if name in (taken := ("all", *self._box.names)):
-                allowed = f"a name other than {', '.join(taken)}"
-                raise SceneError(f"{AT}.{number}.name", repr(name), allowed, "Rename it.")
-        self._refuse_outside()
-        refuse_overlap(self._obstacles, self._box.pieces)
+        self._obstacles = Obstacles(options.obstacle, self._box, "domain.obstacle")
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The faces of the box, then the obstacles in the scene's order."""
-        obstacles = (Piece(name, placed.surface, placed.area) for name, placed in self._obstacles.items())
-        return (*self._box.pieces, *obstacles)
+        return (*self._box.pieces, *self._obstacles.pieces)
 
     @property
     def extent(self) -> tuple[FloatArray, FloatArray]:
@@ -65,27 +57,12 @@ class Channel(Domain):
     @property
     def volume(self) -> float:
         """Volume of the box without the obstacles [length^d]."""
-        return self._box.volume - sum(placed.shape.volume for placed in self._obstacles.values())
+        return self._box.volume - self._obstacles.volume
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are in the box and in no obstacle, (N,)."""
-        inside = self._box.contains(points)
-        for placed in self._obstacles.values():
-            inside &= placed.signed_distance(points) > 0.0
-        return inside
+        return self._box.contains(points) & ~self._obstacles.hold(points)
 
     def cad_shape(self, unit: float) -> Any:
         """The box minus the obstacles, as a ``netgen.occ`` face or solid with lengths over ``unit``."""
-        shape = self._box.cad_shape(unit)
-        for name, placed in self._obstacles.items():
-            shape = shape - placed.cad_shape(name, unit)
-        return shape
-
-    def _refuse_outside(self) -> None:
-        """A centre beyond a face overlaps it by more than a detector need see."""
-        for number, placed in enumerate(self._obstacles.values()):
-            if not self._box.contains(placed.pose.position).all():
-                lower, upper = (corner.tolist() for corner in self.extent)
-                allowed = f"inside the box from {lower} to {upper}"
-                found = placed.pose.position[0].tolist()
-                raise SceneError(f"{AT}.{number}.position", found, allowed, "Move it.")
+        return self._obstacles.cut_from(self._box.cad_shape(unit), unit)

@@ -17,10 +17,10 @@ from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.nested.bodies import check_length
+from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.scene import Positive, StrokeTable
 from rigidfluid.core.scene.vectors import Vector
-from rigidfluid.core.setup.nested_bodies import check_length
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
 
 _ROUNDING = 1e-9

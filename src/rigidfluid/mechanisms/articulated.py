@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.model.interfaces import Component, PartOptions
+from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import Positive, StrokeTable
+from rigidfluid.core.nested.bodies import check_length
+from rigidfluid.core.nested.placing import initial_pose
+from rigidfluid.core.nested.strokes import build_stroke
+from rigidfluid.core.scene.scene import StrokeTable
 from rigidfluid.core.scene.vectors import Vector
-from rigidfluid.core.setup.nested_bodies import NestedBodyTable, build_shape, check_length, tables_by_name
-from rigidfluid.core.setup.placing import initial_pose
-from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.errors import SceneError
+from rigidfluid.mechanisms.components import ComponentTable, build_components
 from rigidfluid.mechanisms.strokes import (
-    Displacement,
     MovingComponents,
+    RigidDisplacement,
     Rotation,
     StrokedMechanism,
     Translation,
@@ -26,12 +27,6 @@ from rigidfluid.mechanisms.strokes import (
 from rigidfluid.registry import suggestion
 
 _AT = "mechanism"
-
-
-class ComponentTable(NestedBodyTable):
-    """A rigid body of a mechanism, in the mechanism's frame where all strokes are at value zero."""
-
-    density: Positive = Field(description="Density [mass/length^d]")
 
 
 class RelativeStrokeTable(StrokeTable):
@@ -69,24 +64,13 @@ class Articulated(StrokedMechanism):
 
     def __init__(self, options: ArticulatedOptions, dimension: int) -> None:
         super().__init__(options, dimension)
-        if not options.component:
-            remedy = "Add tables [[mechanism.component]]."
-            raise SceneError(f"{_AT}.component", "none", "one component or more", remedy)
-        tables = tables_by_name(options.component, f"{_AT}.component")
-        self.parts = _components(tables, dimension)
+        self.parts = build_components(options.component, f"{_AT}.component", dimension)
         self.rest = initial_pose(options.component, dimension)
+        names = [part.name for part in self.parts]
         self.strokes = [
-            _moving(table, f"{_AT}.stroke.{number}", list(tables), dimension)
-            for number, table in enumerate(options.stroke)
+            _moving(table, f"{_AT}.stroke.{number}", names, dimension) for number, table in enumerate(options.stroke)
         ]
         self.driven = bool(self.strokes)
-
-
-def _components(tables: Mapping[str, ComponentTable], dimension: int) -> list[Component]:
-    return [
-        Component(name, build_shape(table, f"{_AT}.component.{number}", dimension), table.density)
-        for number, (name, table) in enumerate(tables.items())
-    ]
 
 
 def _moving(table: RelativeStrokeTable, at: str, names: Sequence[str], dimension: int) -> MovingComponents:
@@ -98,7 +82,7 @@ def _moving(table: RelativeStrokeTable, at: str, names: Sequence[str], dimension
     return MovingComponents(moves, _displacement(table, at, dimension), build_stroke(table, at))
 
 
-def _displacement(table: RelativeStrokeTable, at: str, dimension: int) -> Displacement:
+def _displacement(table: RelativeStrokeTable, at: str, dimension: int) -> RigidDisplacement:
     if (table.along is None) == (table.about is None):
         found = "neither along nor about" if table.along is None else "both along and about"
         raise SceneError(at, found, "one of them", "Give a direction to go along, or a point to turn about.")

@@ -18,7 +18,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, Pose, Twist
 _ROUNDING = 1e-9
 
 
-class Displacement(Protocol):
+class RigidDisplacement(Protocol):
     """A rigid displacement by a value s(t)."""
 
     def moved(self, pose: Pose, value: float) -> Pose:
@@ -68,7 +68,7 @@ class MovingComponents:
     """The ``components`` (m,) that a ``displacement`` moves as its ``stroke`` says."""
 
     components: BoolArray
-    displacement: Displacement
+    displacement: RigidDisplacement
     stroke: Stroke
 
 

@@ -1,45 +1,18 @@
-"""Finds the cells that hold given points, for transfer between meshes and for probes."""
+"""Finds the curved cells that hold given points, and evaluates bases there, for transfers and probes."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.mesh.location import INSIDE, move_inside
 from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import EDGES
 
-_CANDIDATES = (3, 16, 64, 512)
-_INSIDE = -1e-10
 _ITERATIONS, _ENOUGH = 30, 1e-14
 _BEYOND = 0.2
 """So far outside a curved cell, in its coordinates, its map is trusted."""
 _NEIGHBOURS = 32
-
-
-def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
-    """The cell of each target (N,) and its barycentric coordinates there (N, d+1).
-
-    A target outside the mesh takes the cell that it is least outside of, with its coordinates moved inside.
-    The cells tried are those with the nearest centres, more of them for the targets that are not found yet.
-    """
-    corners = points[cells]
-    centres = cKDTree(corners.mean(axis=1))
-    inverse = np.linalg.inv(np.moveaxis(corners[:, 1:] - corners[:, :1], -1, -2))
-    cell = np.zeros(len(targets), dtype=np.int64)
-    coordinates = np.full((len(targets), cells.shape[1]), -np.inf)
-    missing = np.arange(len(targets))
-    for count in _CANDIDATES:
-        _, near = centres.query(targets[missing], k=min(count, len(cells)))
-        near = near.reshape(len(missing), min(count, len(cells)))
-        rest = np.einsum("nkij,nkj->nki", inverse[near], targets[missing, None] - corners[near, 0])
-        found = np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
-        best = np.argmax(found.min(axis=2), axis=1)
-        rows = np.arange(len(missing))
-        cell[missing], coordinates[missing] = near[rows, best], found[rows, best]
-        missing = missing[coordinates[missing].min(axis=1) < _INSIDE]
-        if len(missing) == 0:
-            break
-    return cell, _move_inside(coordinates)
 
 
 def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -49,7 +22,7 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
     faces between two curved cells are curved too, so that a target near one may be the neighbour's.
     """
     cell, found = guess.copy(), _invert_maps(nodes[guess], targets)
-    astray = np.flatnonzero(found.min(axis=1) < _INSIDE)
+    astray = np.flatnonzero(found.min(axis=1) < INSIDE)
     if len(astray):
         corners = targets.shape[1] + 1
         count = min(_NEIGHBOURS, len(nodes))
@@ -61,7 +34,7 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
         rows = np.arange(len(astray))
         better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
         cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
-    return cell, _move_inside(found)
+    return cell, move_inside(found)
 
 
 def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
@@ -78,11 +51,6 @@ def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
         if np.abs(rest).max(initial=0.0) < _ENOUGH:
             break
     return coordinates
-
-
-def _move_inside(coordinates: FloatArray) -> FloatArray:
-    inside = np.maximum(coordinates, 0.0)
-    return np.asarray(inside / inside.sum(axis=1, keepdims=True))
 
 
 def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) -> FloatArray:

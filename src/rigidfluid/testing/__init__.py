@@ -14,7 +14,18 @@
 
 import pytest
 
-_MODULES = ("arrangement", "body", "detector", "domain", "fluid", "fluid_backend", "force_law", "joint", "mechanism")
+_MODULES = (
+    "arrangement",
+    "body",
+    "detector",
+    "domain",
+    "fluid",
+    "fluid_backend",
+    "force_law",
+    "joint",
+    "mechanism",
+    "size_field",
+)
 pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
 
 from rigidfluid.testing.arrangement import Arrangement
@@ -25,6 +36,7 @@ from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 from rigidfluid.testing.joint import JointContract
 from rigidfluid.testing.mechanism import MechanismContract
+from rigidfluid.testing.size_field import SizeFieldContract
 
 __all__ = [
     "Arrangement",
@@ -35,4 +47,5 @@ __all__ = [
     "ForceLawContract",
     "JointContract",
     "MechanismContract",
+    "SizeFieldContract",
 ]

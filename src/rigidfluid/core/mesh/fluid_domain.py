@@ -27,6 +27,11 @@ class FluidDomain:
     domain: Domain
     walls: Sequence[Wall]
 
+    @property
+    def width(self) -> float:
+        """Longest side of the box around the domain [length]."""
+        return float(np.max(self.domain.size))
+
     def closest_points(self, surface: int, points: FloatArray) -> FloatArray:
         """The closest points (N, d) of a surface, by its number, to ``points`` (N, d) [length]."""
         if surface < len(self.bodies):

@@ -5,7 +5,7 @@ The root makes each mesh and holds it whole meanwhile; every rank moves its own 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from itertools import chain
@@ -17,17 +17,18 @@ from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_size
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.flow import flow_on
 from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.kept_cells import LAYERS
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size_interface import SizeField, with_fields, with_fields_at_rest
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose, Twist
+from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
 from rigidfluid.core.model.window import CLEARANCE
 from rigidfluid.errors import MeshError, StepRejected
 
@@ -43,9 +44,10 @@ class MeshUpdater:
 
     Without a fluid ``sizes`` is None and there is no mesh. A moved mesh is re-made when its worst cell falls below
     ``quality``, or is nearly tangled, and below half of what it was when made; and after ``oldest`` ticks, None for any
-    age. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly tangled. ``wake``
-    asks for finer cells behind moving bodies, on each mesh but the first, which ``inserter`` makes. ``watch`` times a
-    stage by its name; the carrying over of the fluid is the stage "transfer".
+    age. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly tangled. Each
+    mesh has the cells that ``fields`` ask for, by the flow on the mesh before; the first one, which ``inserter`` makes,
+    by a fluid and bodies at rest. ``watch`` times a stage by its name; the carrying over of the fluid is the stage
+    "transfer".
     """
 
     def __init__(
@@ -55,7 +57,7 @@ class MeshUpdater:
         quality: float,
         pause: int,
         oldest: int | None = None,
-        wake: Wake | None = None,
+        fields: Sequence[SizeField] = (),
         inserter: Inserter = BY_SHAPE,
         watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
     ) -> None:
@@ -64,7 +66,7 @@ class MeshUpdater:
         self._quality = quality
         self._pause = pause
         self._oldest = oldest
-        self._wake = wake
+        self._fields = tuple(fields)
         self._inserter = inserter
         self._watch = watch
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
@@ -80,7 +82,8 @@ class MeshUpdater:
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
             around = fluid_domain_at(s, s.pose)
-            mesh = self._curved(initial_mesh(around, self._sizes, self._inserter), around) if ranks.is_root else None
+            sizes = with_fields_at_rest(self._sizes, self._fields, around)
+            mesh = self._curved(initial_mesh(around, sizes, self._inserter), around) if ranks.is_root else None
         return distributed(mesh, ranks)
 
     def deform(self, state: State, pose: Pose) -> Mesh | None:
@@ -107,7 +110,7 @@ class MeshUpdater:
             return state
         assert state.mesh is not None
         try:
-            mesh = self._remade(state.mesh, state.pose, state.twist)
+            mesh = self._remade(state, state.mesh)
         except MeshError as error:
             # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
             return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
@@ -126,15 +129,15 @@ class MeshUpdater:
         """Quality of the worst cell of the mesh where it is now, curved cells included; nan without a mesh [1]."""
         return np.nan if state.reference is None else self._placed(state.reference, state.pose)[1]
 
-    def _remade(self, mesh: Mesh, pose: Pose, twist: Twist) -> Mesh:
+    def _remade(self, state: State, mesh: Mesh) -> Mesh:
         assert self._sizes is not None
-        s, ranks, present, sizes = self._system, mesh.ranks, whole(mesh), self._sizes
-        if self._wake is not None:
-            sizes = replace(sizes, regions=(*sizes.regions, *self._wake.behind(s.bodies, pose, twist)))
+        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        flow = flow_on(s.backend, state.fluid, mesh, state.twist) if self._fields else None
         with ranks.raise_on_all():
             made = None
             if present is not None:
-                around = fluid_domain_at(s, pose)
+                around = fluid_domain_at(s, state.pose)
+                sizes = self._sizes if flow is None else with_fields(self._sizes, self._fields, around, flow)
                 if around.domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
                     present = coarsen_surface(present, around, sizes)
                 made = self._curved(remesh(present, around, sizes, LAYERS), around)

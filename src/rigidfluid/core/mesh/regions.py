@@ -1,18 +1,15 @@
-"""Regions of finer cells away from the bodies' surfaces: boxes and curved walls, which stay, and the wakes of moving
-bodies."""
+"""Regions of finer cells away from the bodies' surfaces: boxes, capsules and curved walls."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import FloatArray
 
 CELLS_PER_RADIUS = 4.0
 """Number of edges as long together as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""
@@ -58,28 +55,6 @@ class RefinedCapsule:
         share = np.clip(from_start @ along / (along @ along), 0.0, 1.0)
         from_axis: FloatArray = np.linalg.norm(from_start - share[:, None] * along, axis=1)
         return np.maximum(from_axis - self.radius, 0.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Wake:
-    """Region that a body has crossed within ``time`` [time] at its present velocity; cells there have one ``size``
-    [length].
-
-    A length would need a direction, which a body at rest does not have: x - time·U shrinks to the body with U.
-    """
-
-    time: float
-    size: float
-
-    def behind(self, bodies: Sequence[Body], pose: Pose, twist: Twist) -> tuple[RefinedCapsule, ...]:
-        """The wakes of all bodies that move, each as wide as the ball around its body."""
-        ends = pose.position - self.time * twist.velocity
-        found = zip(bodies, pose.position, ends, strict=True)
-        return tuple(
-            RefinedCapsule(start, end, body.bounding_radius, self.size)
-            for body, start, end in found
-            if np.linalg.norm(end - start) > self.size
-        )
 
 
 @dataclass(frozen=True, slots=True)

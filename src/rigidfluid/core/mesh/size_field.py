@@ -3,6 +3,7 @@ elsewhere."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,8 @@ class Sizes:
     ``size``: edge length far from the bodies, ``size_body``: that on a body [length]; ``growth`` of the size with the
     distance to a body [1]; ``cells_per_gap``: number of cells across a gap, for which size_body is halved at most
     ``refinements`` times; ``order`` of the cells at bodies and curved walls: 1 straight, 2 curved; ``regions`` with a
-    size of their own, unless cells are finer there anyway.
+    size of their own, unless cells are finer there anyway; ``asked``: edge lengths (N,) at points (N, d) by size fields
+    at the moment [length], which count where they are less.
     """
 
     size: float
@@ -29,6 +31,7 @@ class Sizes:
     refinements: int = 6
     order: int = 2
     regions: tuple[Region, ...] = ()
+    asked: tuple[Callable[[FloatArray], FloatArray], ...] = ()
 
     @property
     def smallest(self) -> float:
@@ -62,7 +65,7 @@ def size_between(
 def size_away_from_gaps(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
     """Wanted edge length without regard to gaps, (N,) [length].
 
-    h = min(size, size_body + growth·d₁, size_r + growth·d_r for each region r at the distance d_r).
+    h = min(size, size_body + growth·d₁, size_r + growth·d_r, h_f) for all regions r at distances d_r and size fields f.
     """
     first, _ = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
     return _size_at(first, points, sizes)
@@ -73,6 +76,8 @@ def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
     wanted = np.minimum(sizes.size_body + sizes.growth * first, sizes.size)
     for region in sizes.regions:
         np.minimum(wanted, region.size + sizes.growth * region.distance(points), out=wanted)
+    for asked in sizes.asked:
+        np.minimum(wanted, asked(points), out=wanted)
     return wanted
 
 

@@ -7,6 +7,8 @@ import numpy as np
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.regions import RefinedBox, Region, curved_walls
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.wake import Wake
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.scene.scene import MeshTable
 
@@ -18,6 +20,13 @@ def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
     return Sizes(
         table.size, table.size_body, table.growth, table.cells_per_gap, table.refinements, table.order, regions
     )
+
+
+def wakes_of(table: MeshTable | None, dimension: int) -> tuple[SizeField, ...]:
+    """Size field of the wakes behind bodies, if the table asks for them."""
+    if table is None or table.wake is None:
+        return ()
+    return (Wake(table.wake.time, table.wake.size, table.growth, dimension),)
 
 
 def inserter_of(table: MeshTable | None) -> Inserter:

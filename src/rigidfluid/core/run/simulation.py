@@ -14,8 +14,8 @@ import numpy as np
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.mesh.regions import Wake
 from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
@@ -29,7 +29,7 @@ from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
-from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
+from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of, wakes_of
 from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
@@ -39,6 +39,7 @@ from rigidfluid.core.run.velocity_jump import halvings_after, shortened
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import FluidTable, Scene
 from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.errors import OutputError, SceneError, StepError
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -91,13 +92,20 @@ class Simulation:
         Whether to go on from the checkpoint there.
     processes : int or None
         How many processes were started to share the run; None if the backend's own ranks are those.
+    size_fields : sequence of SizeField
+        Objects that say how fine cells are, besides those that the scene names; a resumed run wants the same.
 
     Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller, and
     ``mesh_updater.needs_remesh`` another rule of re-meshing.
     """
 
     def __init__(
-        self, scene: Scene, out: Path | None = None, resume: bool = False, processes: int | None = None
+        self,
+        scene: Scene,
+        out: Path | None = None,
+        resume: bool = False,
+        processes: int | None = None,
+        size_fields: Sequence[SizeField] = (),
     ) -> None:
         self.scene = scene
         system = build_system(scene)
@@ -106,7 +114,7 @@ class Simulation:
         earlier = _earlier(scene, out, system.backend) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, system)
-        every, wake = (scene.mesh.remesh_every, scene.mesh.wake) if scene.mesh else (None, None)
+        every = scene.mesh.remesh_every if scene.mesh else None
         self.watch = Stopwatch()
         self.mesh_updater = MeshUpdater(
             system,
@@ -114,7 +122,7 @@ class Simulation:
             scene.mesh.quality if scene.mesh else 0.0,
             pause=self.clock.ticks(0),
             oldest=None if every is None else self.clock.tick_from(every),
-            wake=None if wake is None else Wake(wake.time, wake.size),
+            fields=(*wakes_of(scene.mesh, scene.dimension), *known_parts(scene).size_fields, *size_fields),
             inserter=inserter_of(scene.mesh),
             watch=self.watch,
         )

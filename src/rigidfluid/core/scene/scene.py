@@ -388,7 +388,8 @@ class InteractionTable(_OpenTable):
 class WakeTable(_Table):
     """Finer cells behind free and driven bodies, from x - time·velocity to x and as wide as the body.
 
-    They are there from the second mesh on; a fluid that flows past a fixed body wants `[[mesh.refine]]`.
+    They are there from the second mesh on; a fluid that flows past a fixed body wants `[[mesh.refine]]`, or a
+    `[[mesh.field]]` that follows its flow.
     """
 
     time: Positive = Field(description="How long a wake stays fine after its body, at the present velocity [time]")
@@ -401,6 +402,12 @@ class RefineTable(_Table):
     lower: Vector = Field(description="Corner of the box with the smallest coordinates [length]")
     upper: Vector = Field(description="Corner of the box with the largest coordinates [length]")
     size: Positive = Field(description="Edge length in the box [length]")
+
+
+class SizeFieldTable(_OpenTable):
+    """A size field, which says how fine cells are by place and flow; of several the least size counts."""
+
+    type: str = Field(description="Name of a size field")
 
 
 class MeshTable(_Table):
@@ -439,6 +446,7 @@ class MeshTable(_Table):
     )
     wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
     refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")
+    field: tuple[SizeFieldTable, ...] = Field(default=(), description="Size fields")
 
 
 class TimeTable(_Table):
@@ -527,7 +535,7 @@ class Scene(_Table):
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}
         if self.mesh is not None:
-            defaults = {name: MeshTable.model_fields[name].default for name in ("refine", "mesher_timeout")}
+            defaults = {name: MeshTable.model_fields[name].default for name in ("refine", "mesher_timeout", "field")}
             left_out["mesh"] = {name for name, value in defaults.items() if getattr(self.mesh, name) == value}
         return self.model_dump(mode="json", exclude_none=True, exclude=left_out)
 

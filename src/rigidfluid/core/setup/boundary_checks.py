@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.nested.rows import check_rows
 from rigidfluid.core.scene.scene import BoundaryTable, VelocityTable, WallTable
 from rigidfluid.core.setup.boundary import conditions, oblique_parts
 from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
 from rigidfluid.core.setup.boundary_tables import Place, placed_tables, tables_of_walls
 from rigidfluid.core.setup.boundary_values import boundary_value, wall_velocity
-from rigidfluid.core.setup.time_factor import check_rows, rows_over_time
+from rigidfluid.core.setup.time_factor import rows_over_time
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:

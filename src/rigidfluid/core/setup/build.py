@@ -24,6 +24,7 @@ from rigidfluid.core.model.joints import Joints
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import BoolArray, Film, FloatArray, IntArray, Loads, Twist
+from rigidfluid.core.nested.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.body_force import body_force
@@ -34,7 +35,6 @@ from rigidfluid.core.setup.initial_flow import initial_flow
 from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
 from rigidfluid.core.setup.joints import build_joints, joined_bodies
 from rigidfluid.core.setup.parts import Parts, known_parts
-from rigidfluid.core.setup.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.setup.prescribed import prescribed_motion
 from rigidfluid.core.setup.stacks import stack_loads
 from rigidfluid.core.setup.window import build_window, open_wake_end

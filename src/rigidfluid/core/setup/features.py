@@ -64,6 +64,8 @@ def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     if backend.needs_mesh and mesh is not None:
         yield Feature("boxes of finer cells", bool(mesh.refine), f"[[mesh.refine]] names {len(mesh.refine) or 'none'}")
         yield _wake(mesh)
+        fields = ", ".join(repr(table.type) for table in mesh.field)
+        yield Feature("cells by size fields", bool(mesh.field), f"[[mesh.field]] names {fields or 'none'}")
         age = mesh.remesh_every
         why = "mesh.remesh_every is not given" if age is None else f"mesh.remesh_every is {age:g}"
         yield Feature("re-meshing by age", age is not None, why)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.nested.strokes import read_stroke_rows
 from rigidfluid.core.scene.scene import JointTable, Scene, StrokeTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
-from rigidfluid.core.setup.strokes import read_stroke_rows
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import JOINT, Registry
 

@@ -11,9 +11,9 @@ import numpy as np
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.model.interfaces import Component, Mechanism
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.nested.placing import initial_pose, initial_twist
 from rigidfluid.core.scene.scene import BodyTable, Scene
 from rigidfluid.core.scene.validation import fields_by_key, read_table, table_of, unknown_key
-from rigidfluid.core.setup.placing import initial_pose, initial_twist
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
 

@@ -7,22 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
 from rigidfluid.core.scene.scene import InteractionTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
-from rigidfluid.core.setup.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.setup.interactions import LawTable, has_own_restitution, law_tables
 from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.core.setup.periodic import periodic_pairs
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, Registry
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, SIZE_FIELD, Registry
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import ContactTable, FluidTable, Scene
+    from rigidfluid.core.scene.scene import ContactTable, FluidTable, Scene, SizeFieldTable
 
 P = TypeVar("P", bound=Part)
 
@@ -59,6 +60,7 @@ class Parts:
     laws: tuple[Selected[ForceLaw], ...]
     detector_why: str
     exact_detector: type[Detector]
+    size_fields: tuple[SizeField, ...]
 
 
 def select_plugins(scene: Scene) -> Parts:
@@ -83,7 +85,8 @@ def select_plugins(scene: Scene) -> Parts:
     refuse_quick_mechanisms(mechanisms, scene.time)
     refuse_overlap_along(mechanisms, scene.time.end, exact)
     found = Selected(detector, _options(detector, scene.contact.options, "contact"))
-    return Parts(scene, backend, domain, bodies, mechanisms, found, chosen, why, exact)
+    fields = _size_fields(scene, registry)
+    return Parts(scene, backend, domain, bodies, mechanisms, found, chosen, why, exact, fields)
 
 
 def known_parts(scene: Scene) -> Parts:
@@ -115,6 +118,22 @@ def _body(scene: Scene, registry: Registry, number: int) -> Body:
         raise SceneError(subject, error.found, error.allowed, error.remedy) from None
     refuse_lost_body(body, at)
     return body
+
+
+def _size_fields(scene: Scene, registry: Registry) -> tuple[SizeField, ...]:
+    tables = () if scene.mesh is None else scene.mesh.field
+    return tuple(_size_field(table, f"mesh.field.{n}", registry, scene.dimension) for n, table in enumerate(tables))
+
+
+def _size_field(table: SizeFieldTable, at: str, registry: Registry, dimension: int) -> SizeField:
+    part = registry.get(SIZE_FIELD, table.type, f"{at}.type")
+    _refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        return part(options, dimension)
+    except SceneError as error:  # a field does not know its number
+        subject = f"{at}.{error.subject.removeprefix('mesh.field.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
 
 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:

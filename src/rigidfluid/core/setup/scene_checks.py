@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.setup.body_force import check_body_force
 from rigidfluid.core.setup.boundary_checks import check_inflow, check_oblique
 from rigidfluid.core.setup.initial_flow import check_initial_flow
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.periodic import check_periodic
-from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 

@@ -5,7 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, JOINT, MECHANISM, Entry, Registry
+from rigidfluid.registry import (
+    BODY,
+    DETECTOR,
+    DOMAIN,
+    FLUID_BACKEND,
+    FORCE_LAW,
+    JOINT,
+    MECHANISM,
+    SIZE_FIELD,
+    Entry,
+    Registry,
+)
 
 _TABLES = {
     FLUID_BACKEND: ("FluidTable",),
@@ -15,6 +26,7 @@ _TABLES = {
     FORCE_LAW: ("ContactTable", "InteractionTable"),
     DOMAIN: ("DomainTable",),
     JOINT: ("JointTable",),
+    SIZE_FIELD: ("SizeFieldTable",),
 }
 # The parts that a table means where it names none.
 _UNNAMED = {
@@ -25,6 +37,7 @@ _UNNAMED = {
     FORCE_LAW: (),
     DOMAIN: ("box",),
     JOINT: (),
+    SIZE_FIELD: (),
 }
 
 
@@ -38,7 +51,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
-    key = entry.kind.field.partition(".")[2]
+    key = entry.kind.field.rpartition(".")[2]
     condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
     if entry.name not in _UNNAMED[entry.kind]:
         condition["required"] = [key]

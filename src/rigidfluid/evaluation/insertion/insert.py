@@ -10,11 +10,13 @@ from pathlib import Path
 
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
+from rigidfluid.core.mesh.size_interface import with_fields_at_rest
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.core.output.writer import writing
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.insertion.figures import Figures, measured
 from rigidfluid.evaluation.insertion.page import write_page
@@ -44,7 +46,8 @@ def insert(
     with _timed(seconds, "scene"):
         progress("checking the scene")
         system, inserter = build_system(scene), inserter_of(table)
-        around, sizes = fluid_domain_at(system, system.pose), sizes_of(table, system.domain)
+        around = fluid_domain_at(system, system.pose)
+        sizes = with_fields_at_rest(sizes_of(table, system.domain), known_parts(scene).size_fields, around)
         way = inserter.chosen(around.bodies, around.domain)
     with _timed(seconds, "insertion"):
         progress(_WAYS[way])

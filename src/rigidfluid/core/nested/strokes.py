@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rigidfluid.core.mechanics.strokes import Stroke
+from rigidfluid.core.nested.rows import Rows, check_rows, read_rows
 from rigidfluid.core.scene.scene import StrokeTable, TimeFileTable
-from rigidfluid.core.setup.time_factor import Rows, check_rows, read_rows
 from rigidfluid.errors import SceneError
 
 _ROUNDING = 1e-9

@@ -8,10 +8,10 @@ from typing import TypeVar
 from pydantic import ConfigDict, Field
 
 from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.scene.vectors import Vector
-from rigidfluid.core.setup.placing import check_orientation
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry
 

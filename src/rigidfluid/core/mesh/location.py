@@ -1,0 +1,57 @@
+"""Finds the straight cells that hold given points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.model.types import FloatArray, IntArray
+
+INSIDE = -1e-10
+"""Least barycentric coordinate of a point that counts as inside a cell [1]."""
+
+_CANDIDATES = (3, 16, 64, 512)
+
+
+class CellFinder:
+    """The cells (M, d+1) between ``points`` (N, d), sorted by their centres for as many searches as are wanted."""
+
+    def __init__(self, points: FloatArray, cells: IntArray) -> None:
+        from scipy.spatial import cKDTree
+
+        self._corners = points[cells]
+        self._centres = cKDTree(self._corners.mean(axis=1))
+        self._inverse = np.linalg.inv(np.moveaxis(self._corners[:, 1:] - self._corners[:, :1], -1, -2))
+
+    def find(self, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The cell of each target (N,) and its barycentric coordinates there (N, d+1).
+
+        A target outside the mesh takes the cell that it is least outside of, with its coordinates moved inside.
+        The cells tried are those with the nearest centres, more of them for the targets that are not found yet.
+        """
+        corners, cells = self._corners, len(self._corners)
+        cell = np.zeros(len(targets), dtype=np.int64)
+        coordinates = np.full((len(targets), corners.shape[1]), -np.inf)
+        missing = np.arange(len(targets))
+        for count in _CANDIDATES:
+            _, near = self._centres.query(targets[missing], k=min(count, cells))
+            near = near.reshape(len(missing), min(count, cells))
+            rest = np.einsum("nkij,nkj->nki", self._inverse[near], targets[missing, None] - corners[near, 0])
+            found = np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
+            best = np.argmax(found.min(axis=2), axis=1)
+            rows = np.arange(len(missing))
+            cell[missing], coordinates[missing] = near[rows, best], found[rows, best]
+            missing = missing[coordinates[missing].min(axis=1) < INSIDE]
+            if len(missing) == 0:
+                break
+        return cell, move_inside(coordinates)
+
+
+def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+    """One search among cells, as `CellFinder.find`."""
+    return CellFinder(points, cells).find(targets)
+
+
+def move_inside(coordinates: FloatArray) -> FloatArray:
+    """Barycentric ``coordinates`` (N, d+1) without negative ones, and of sum 1."""
+    inside = np.maximum(coordinates, 0.0)
+    return np.asarray(inside / inside.sum(axis=1, keepdims=True))

@@ -1,0 +1,75 @@
+"""Abstract class of a size field, and what fields ask for when a mesh is made."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from rigidfluid.core.mesh.flow import AtRest, Flow
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.model.interfaces import SpatialPart
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.errors import PluginError
+
+
+class SizeField(SpatialPart):
+    """Longest edges wanted in the fluid, besides those that bodies, gaps and walls ask for: the least of all counts.
+
+    A field is asked for each mesh, at many points and several times. It must depend on its arguments alone, each length
+    on its own point, so that a run goes on from a checkpoint to the last bit. The mesher lets edges grow by a third
+    from one to the next, also at jumps of a field.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The type's own keys of the ``[[mesh.field]]`` table.
+    dimension : int
+        2 or 3.
+    """
+
+    @abstractmethod
+    def edge_length(self, points: FloatArray, around: FluidDomain, flow: Flow) -> FloatArray:
+        """Longest edge wanted at each point [length].
+
+        Parameters
+        ----------
+        points : (m, d) array
+            Points of the fluid or of its boundary [length].
+        around : FluidDomain
+            The domain without the bodies in their present pose. Its ``width`` asks for nothing: no edge is longer.
+        flow : Flow
+            Fluid and bodies on the mesh before; at rest when the first mesh is made.
+
+        Returns
+        -------
+        (m,) array
+            Positive and finite lengths [length].
+        """
+
+
+def with_fields(sizes: Sizes, fields: Sequence[SizeField], around: FluidDomain, flow: Flow) -> Sizes:
+    """Sizes with what ``fields`` ask for ``around`` the bodies at this moment of the ``flow``."""
+    asked = (partial(_asked_length, field=field, around=around, flow=flow) for field in fields)
+    return replace(sizes, asked=(*sizes.asked, *asked))
+
+
+def with_fields_at_rest(sizes: Sizes, fields: Sequence[SizeField], around: FluidDomain) -> Sizes:
+    """Sizes with what ``fields`` ask for in the first mesh, in a fluid at rest."""
+    return with_fields(sizes, fields, around, AtRest(len(around.bodies), around.domain.dimension))
+
+
+def _asked_length(points: FloatArray, field: SizeField, around: FluidDomain, flow: Flow) -> FloatArray:
+    """Edge lengths (m,) by a ``field``; raises PluginError for what is no length."""
+    lengths = np.asarray(field.edge_length(points, around, flow))
+    right = np.isfinite(lengths) & (lengths > 0.0)
+    if lengths.shape != (len(points),) or not right.all():
+        found = f"edge lengths of shape {lengths.shape}, {np.count_nonzero(~right)} of them not positive and finite"
+        allowed = f"positive and finite lengths of shape {(len(points),)}"
+        remedy = "Mend the size field; SizeFieldContract in rigidfluid.testing shows more."
+        raise PluginError(f"mesh.field {field.name!r}", found, allowed, remedy)
+    return lengths
