@@ -54,6 +54,18 @@ def test_a_shallow_contact_lasts_as_long_as_the_formula_says():
     assert RANGE - bodies["gap"].min() == pytest.approx(deepest, rel=0.01)
 
 
+def test_what_a_body_pushed_off_from_rest_meets_in_the_same_step_is_seen():
+    """It has no speed at the start, and a wall and a held ball to meet in all steps."""
+    pressed = {"position": [0.5, RADIUS + 0.2 * RANGE], "velocity": [0.0, 0.0]}
+    held = {"position": [0.5, 3.0 * RADIUS + 4.0 * RANGE], "velocity": None, "prescribed": {"velocity": [0.0, 0.0]}}
+    held = {key: value for key, value in (DISK | held).items() if value is not None}
+    scene = dry(pressed, step=0.1, end=0.4).to_dict()
+    history = rigidfluid.run(scene_from_dict(scene | {"body": [scene["body"][0], held]}))
+    assert history.summary["rejected_steps"] == 0
+    assert history.summary["energy"]["created"] < 1e-3
+    assert history.summary["energy"]["lost"] < 1e-3
+
+
 def test_the_fastest_that_is_stopped():
     """½ m v² = U(0) = range³ (4R + range)/(12 ε), R = 2r."""
     epsilon = 1e-5
