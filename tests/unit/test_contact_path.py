@@ -5,7 +5,7 @@ import pytest
 
 import rigidfluid
 from rigidfluid.core.contact import contact_load
-from rigidfluid.core.coupling import dry_scheme
+from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Wrench
 from rigidfluid.core.setup.load import scene_from_dict
@@ -156,8 +156,8 @@ def test_what_flies_apart_needs_ever_fewer_substeps(monkeypatch):
         counts.append(path.substeps)
         return path
 
-    follow = dry_scheme.advance_by_substeps
-    monkeypatch.setattr(dry_scheme, "advance_by_substeps", counted)
+    follow = SubstepPath.advance
+    monkeypatch.setattr(SubstepPath, "advance", counted)
     pair = [{"position": [x, 0.5], "velocity": [0.0, 0.0]} for x in (0.4 - 5e-8, 0.6 + 5e-8)]
     history = rigidfluid.run(dry(*pair, step=0.01, end=0.02, law="barrier", epsilon=1e-2))
     assert abs(history.summary["energy"]["relative_residual"]) < 1e-4
