@@ -350,7 +350,6 @@ def _in_fluid(
     quick: Sequence[Run] = (),
     fails: Mapping[Run, tuple[Demand, ...]] | None = None,
     demands: tuple[Demand, ...] = STEADY,
-    fails_by: str = "",
 ) -> Iterator[Case]:
     """A scene with steps [ms] by substeps and implicit ones; those that are not ``quick`` are heavy, some fail."""
     runs: list[Run] = [(step, "substeps") for step in substeps] + [(step, "implicit") for step in implicit]
@@ -359,7 +358,7 @@ def _in_fluid(
         step = 1e-3 * milliseconds
         name = f"fluid, {what}, Δt {milliseconds:g} ms" + (", implicit" if stepping == "implicit" else "")
         limits, known = (*demands, *balanced(step)), (fails or {}).get(run, ())
-        yield Case(name, partial(scene, step, stepping), limits, run not in quick, fails=known, fails_by=fails_by)
+        yield Case(name, partial(scene, step, stepping), limits, run not in quick, fails=known)
 
 
 def _by(stepping: Stepping, *steps: float) -> list[Run]:
@@ -415,7 +414,7 @@ def _wet_films() -> Iterator[Case]:
     yield from film("gap of 1e-3 radius", scene, (4, 2, 1), (4, 2, 1), sub(4, 1))
     yield from film("gap of 1e-5 radius", partial(let_go, gap=1e-5, refinements=12), (4, 2, 1), (4,))
     scene = partial(let_go, gap=1e-6, refinements=14)
-    yield from film("gap of 1e-6 radius", scene, (4,), (4,), sub(4) + imp(4), fails_by="found a cell of quality")
+    yield from film("gap of 1e-6 radius", scene, (4,), (4,), sub(4) + imp(4))
     yield from _in_fluid("range wider than the free gaps", squeezed, (4, 2, 1), (4, 2, 1), sub(4, 2))
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import rigidfluid
 from rigidfluid.core.contact import contact_load
-from rigidfluid.core.coupling import dry_scheme
+from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Wrench
 from rigidfluid.core.setup.load import scene_from_dict
@@ -52,6 +52,18 @@ def test_a_shallow_contact_lasts_as_long_as_the_formula_says():
     inside = bodies["gap"] < RANGE
     assert np.count_nonzero(inside) * time / 2000 == pytest.approx(time, rel=0.002)
     assert RANGE - bodies["gap"].min() == pytest.approx(deepest, rel=0.01)
+
+
+def test_what_a_body_pushed_off_from_rest_meets_in_the_same_step_is_seen():
+    """It has no speed at the start, and a wall and a held ball to meet in all steps."""
+    pressed = {"position": [0.5, RADIUS + 0.2 * RANGE], "velocity": [0.0, 0.0]}
+    held = {"position": [0.5, 3.0 * RADIUS + 4.0 * RANGE], "velocity": None, "prescribed": {"velocity": [0.0, 0.0]}}
+    held = {key: value for key, value in (DISK | held).items() if value is not None}
+    scene = dry(pressed, step=0.1, end=0.4).to_dict()
+    history = rigidfluid.run(scene_from_dict(scene | {"body": [scene["body"][0], held]}))
+    assert history.summary["rejected_steps"] == 0
+    assert history.summary["energy"]["created"] < 1e-3
+    assert history.summary["energy"]["lost"] < 1e-3
 
 
 def test_the_fastest_that_is_stopped():
@@ -144,8 +156,8 @@ def test_what_flies_apart_needs_ever_fewer_substeps(monkeypatch):
         counts.append(path.substeps)
         return path
 
-    follow = dry_scheme.advance_by_substeps
-    monkeypatch.setattr(dry_scheme, "advance_by_substeps", counted)
+    follow = SubstepPath.advance
+    monkeypatch.setattr(SubstepPath, "advance", counted)
     pair = [{"position": [x, 0.5], "velocity": [0.0, 0.0]} for x in (0.4 - 5e-8, 0.6 + 5e-8)]
     history = rigidfluid.run(dry(*pair, step=0.01, end=0.02, law="barrier", epsilon=1e-2))
     assert abs(history.summary["energy"]["relative_residual"]) < 1e-4

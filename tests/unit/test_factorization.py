@@ -106,6 +106,22 @@ def test_where_small_pivots_spoil_the_fast_factors_others_are_made(phases):
 
 
 @with_pardiso
+def test_factors_that_find_another_solution_with_the_same_residual_are_not_used():
+    """A long beam, held at both ends: rounding of its forces in single precision bends it."""
+    weights = [1.0, -4.0, 6.0, -4.0, 1.0]
+    beam = sparse.csr_array(sparse.diags_array(weights, offsets=range(-2, 3), shape=(N, N)))
+    single = Pardiso(beam, FAST, Orderings())
+    single.factorise(beam)
+    right_side = beam @ np.ones(N)
+    wrong = single.solve(right_side)
+    assert np.linalg.norm(beam @ wrong - right_side) < 1e-4 * np.linalg.norm(right_side)
+    assert abs(wrong - 1.0).max() > 0.1
+    factors = factorise(beam)
+    assert factors.settings is EXACT
+    np.testing.assert_allclose(factors.solve(right_side), 1.0, atol=1e-6)
+
+
+@with_pardiso
 def test_what_pardiso_refuses_is_a_singular_matrix(monkeypatch):
     def refusing(self, matrix):
         raise PardisoError("error -4")

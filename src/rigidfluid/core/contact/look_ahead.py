@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,18 +33,35 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
-def horizon(system: System, movement: BodyDynamics, size: float) -> tuple[float, float]:
-    """Gap up to which contacts are detected ahead [length], and the time for which that suffices [time]."""
+@dataclass(frozen=True)
+class Sight:
+    """Contacts at any pose, ``contacts_at``: all up to a gap ``reach`` [length], enough for a ``span`` [time] at the
+    speeds that it was made for."""
+
+    contacts_at: Callable[[Pose], Contacts]
+    reach: float
+    span: float
+
+    def widened(self, system: System, movement: BodyDynamics, size: float) -> Sight:
+        """Sight for the present speeds where these ask for a longer reach: contacts at a turning point hold energy that
+        no speed shows."""
+        now = look_ahead(system, movement, size) if np.isfinite(self.reach) else self
+        return now if now.reach > self.reach else self
+
+
+def look_ahead(system: System, movement: BodyDynamics, size: float) -> Sight:
+    """Sight for a step of this ``size`` [time] at the present speeds, by a detector that needs no mesh."""
     law_range = system.law.range if system.law else 0.0
     if system.substeps:
-        return law_range, size
+        return Sight(_detected(system, law_range), law_range, size)
     largest = max(body.bounding_radius for body in system.bodies)
     fastest = fastest_speed(system, movement, size)
     ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
-    return law_range + ahead, 0.5 * ahead / fastest if fastest > 0 else size
+    reach = law_range + ahead
+    return Sight(_detected(system, reach), reach, 0.5 * ahead / fastest if fastest > 0 else size)
 
 
-def detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
+def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
     """Function of the pose that detects the contacts, by a detector that needs no mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
 
@@ -10,13 +9,14 @@ import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
 from rigidfluid.core.contact.contact_load import contact_load, damping_loss
+from rigidfluid.core.contact.look_ahead import Sight
 from rigidfluid.core.contact.proximity import arms, refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
 
 MOST_SUBSTEPS = 100_000
@@ -61,26 +61,29 @@ class SubstepPath:
     movement: BodyDynamics
     size: float
 
-    def advance(self, contacts_at: Callable[[Pose], Contacts], span: float) -> BodyStep:
+    def advance(self, sight: Sight) -> BodyStep:
         """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
 
-        Substeps are planned for a ``span`` [time] at a time, as far ahead as contacts are detected, and anew when the
-        contacts are over.
+        Substeps are planned for a span of the ``sight`` at a time, and anew when the contacts are over. The sight is
+        widened then for bodies that contacts have made faster.
         """
         system, movement, size = self.system, self.movement, self.size
-        contacts = contacts_at(movement.pose)
+        contacts = sight.contacts_at(movement.pose)
         impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
         push = contact_load(system, self.law, contacts, movement)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
-                planned = min(left, span)
+                wider = sight.widened(system, movement, size)
+                if wider is not sight:
+                    sight, contacts = wider, wider.contacts_at(movement.pose)
+                planned = min(left, sight.span)
                 free_flight, substep = self._plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
             part = min(free_flight or substep, left, longest)
             movement.kick(push.wrench, 0.5 * part)
             movement.drift(part)
-            contacts = contacts_at(movement.pose)
+            contacts = sight.contacts_at(movement.pose)
             _refuse_overlap(system, contacts)
             before, push = push, contact_load(system, self.law, contacts, movement)
             movement.kick(push.wrench, 0.5 * part)

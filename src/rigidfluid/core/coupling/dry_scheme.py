@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.implicit_path import implicit_free
-from rigidfluid.core.contact.look_ahead import detected, horizon
+from rigidfluid.core.contact.look_ahead import look_ahead
 from rigidfluid.core.contact.proximity import arms
 from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.mechanics.motions import body_load
@@ -34,8 +34,8 @@ class DryScheme:
         elif system.implicit:
             path, movement = implicit_free(system, system.law, movement, size)
         else:
-            reach, span = horizon(system, movement, size)
-            path = SubstepPath(system, system.law, movement, size).advance(detected(system, reach), span)
+            sight = look_ahead(system, movement, size)
+            path = SubstepPath(system, system.law, movement, size).advance(sight)
         done = movement.link_work
         dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
         return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))

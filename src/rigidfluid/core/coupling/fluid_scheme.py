@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.body_step import BodyStep, undisturbed
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_path import implicit_coupled
-from rigidfluid.core.contact.look_ahead import detected, horizon, near_contacts
+from rigidfluid.core.contact.look_ahead import Sight, look_ahead, near_contacts
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
@@ -30,7 +29,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within, uncoupled
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose, Step
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Step
 
 SETTLED = 1e-3
 """Relative change of the bodies' velocities below which the iteration of a step has converged."""
@@ -76,12 +75,10 @@ class FluidScheme(ABC):
         if system.implicit:
             path = implicit_coupled(system, system.law, movement, near, size)
         else:
-            contacts_at: Callable[[Pose], Contacts] = ExtrapolatedContacts(near, state.pose).extrapolate
-            span = size
+            sight = Sight(ExtrapolatedContacts(near, state.pose).extrapolate, np.inf, size)
             if not system.detector.needs_mesh:
-                reach, span = horizon(system, movement, size)
-                contacts_at = detected(system, reach)
-            path = SubstepPath(system, system.law, movement, size).advance(contacts_at, span)
+                sight = look_ahead(system, movement, size)
+            path = SubstepPath(system, system.law, movement, size).advance(sight)
             path = replace(path, friction=movement.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
 

@@ -25,6 +25,9 @@ ATTEMPTS = 8
 ROUNDING = 1e-9
 """Relative excess over the longest edge allowed on a body that counts as rounding."""
 
+_TOUCHING = 3e-7
+"""Gap between two surfaces, over the mesher's unit, up to which Open CASCADE may take them for one."""
+
 
 def generate_mesh(
     fluid_domain: FluidDomain,
@@ -46,7 +49,7 @@ def generate_mesh(
     mesh = put_back(orient(run_netgen(fluid_domain, size, asked, growth, finer)), bodies, domain, curved=True)
     mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
     mesh = with_exact_images(mesh, bodies, domain)
-    refuse_touching_bodies(mesh, bodies)
+    refuse_touching_bodies(mesh, fluid_domain)
     check_mesh(mesh, quality=0.0)
     return mesh
 
@@ -93,14 +96,18 @@ def refuse_bodies_outside(pose: Pose, domain: Domain) -> None:
         raise MeshError(f"body.{i}.position", pose.position[i].tolist(), allowed, remedy)
 
 
-def refuse_touching_bodies(mesh: Mesh, count: int) -> None:
+def refuse_touching_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> None:
     """Raise MeshError for the first body without facets of its own, or with a vertex on another surface."""
+    count, domain = len(fluid_domain.bodies), fluid_domain.domain
+    names = [f"body.{i}" for i in range(count)] + [repr(piece.name) for piece in domain.pieces]
+    least = _TOUCHING * mesher_unit(domain.size)
     for i in range(count):
         mine = mesh.facets[mesh.markers == i]
         others = mesh.markers[np.isin(mesh.facets, mine).any(axis=1) & (mesh.markers != i)]
         if len(others) or not len(mine):
-            found = f"contact with surface {others[0]}" if len(others) else "no surface of its own"
-            raise MeshError(f"body.{i}.position", found, "a body apart from all others and from the walls", "Move it.")
+            found = f"contact with {names[others[0]]}" if len(others) else "no surface of its own"
+            allowed = f"a gap of more than {least:.2g} to all other surfaces, below which the mesher sees none"
+            raise MeshError(f"body.{i}.position", found, allowed, "Move it.")
 
 
 def run_netgen(
