@@ -60,6 +60,11 @@ class Parts:
     detector_why: str
     exact_detector: type[Detector]
 
+    @property
+    def wet(self) -> bool:
+        """Whether there is a fluid around the bodies, on a mesh."""
+        return self.backend.part.needs_mesh
+
 
 def select_plugins(scene: Scene) -> Parts:
     """Find the parts that a scene names, validate their options, and build its bodies and domain, on whose shapes the
