@@ -93,11 +93,14 @@ class _Given(NamedTuple):
     vertices: IntArray
 
 
+_Counts = tuple[int | None, int | None, int | None, int | None]
+
+
 def _surfaces(mesh: Mesh, system: System) -> Iterator[SurfaceFigures]:
     sides = _sides(mesh)
     for number in range(len(system.bodies)):
         yield _body_figures(mesh, system, number, sides)
-    for number in range(len(system.domain.pieces)):
+    for number in range(len(system.meshed(system.pose).pieces)):
         yield _piece_figures(mesh, system, number)
 
 
@@ -147,9 +150,7 @@ def _piece_figures(mesh: Mesh, system: System, number: int) -> SurfaceFigures:
     )
 
 
-def _kept(
-    mesh: Mesh, facets: IntArray, given: _Given | None
-) -> tuple[int, int, int, int] | tuple[None, None, None, None]:
+def _kept(mesh: Mesh, facets: IntArray, given: _Given | None) -> _Counts:
     """Number of facets given and kept, and of corners given and kept; None for shapes that are not made of facets."""
     if given is None:
         return None, None, None, None
