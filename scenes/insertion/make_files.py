@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from netgen import meshing, occ
 
-from rigidfluid.core.mesh.meshing import elements, netgen_mesh
+from rigidfluid.core.mesh.meshing import EdgeLengths, elements, netgen_mesh
 from rigidfluid.core.mesh.topology import orient
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_msh
@@ -45,7 +45,7 @@ def _name(middle: Any) -> str:
 
 def write_vessel() -> None:
     """A coarse mesh of it, as a segmentation would give one."""
-    netgen = netgen_mesh(vessel(), 2, 0.5, 0.3)
+    netgen = netgen_mesh(vessel(), 2, EdgeLengths(0.5, 0.3))
     facets, regions = elements(netgen.Elements1D(), 2)
     cells, _ = elements(netgen.Elements2D(), 3)
     names = [netgen.GetBCName(region) for region in range(regions.max() + 1)]
@@ -85,7 +85,7 @@ def bolt() -> Any:
 
 def write_stl(path: Path, shape: Any, size: float) -> None:
     """The triangles of a shape's surface, as bytes."""
-    netgen = netgen_mesh(shape, 3, size, 0.4, surfaces_alone=True)
+    netgen = netgen_mesh(shape, 3, EdgeLengths(size, 0.4), surfaces_alone=True)
     corners = netgen.Coordinates()[elements(netgen.Elements2D(), 3)[0]]
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("unused", "<u2")])
     triangles = np.zeros(len(corners), dtype=record)

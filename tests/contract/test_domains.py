@@ -12,6 +12,7 @@ from wedge import wedge
 
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.nested.bodies import NestedBodyTable
@@ -96,7 +97,7 @@ class TestBentTubeFromMesh(DomainContract):
     def domain(cls, tmp_path_factory):
         folder = tmp_path_factory.mktemp("domain")
         tube = drawn(bent_tube(), folder)
-        mesh = generate_mesh(FluidDomain([], nobody(3), tube, ()), 1.0, 1.0, 0.3)
+        mesh = generate_mesh(FluidDomain([], nobody(3), tube, ()), Sizes(1.0, 1.0, 0.3))
         write_gmsh41(folder / "tube.msh", mesh, tube.names)
         return meshed(folder / "tube.msh")
 
@@ -109,7 +110,7 @@ class TestPlateFromMesh(DomainContract):
     def domain(cls, tmp_path_factory):
         folder = tmp_path_factory.mktemp("domain")
         sheet = drawn(plate(), folder, 2)
-        mesh = generate_mesh(FluidDomain([], nobody(2), sheet, ()), 0.4, 0.4, 0.3)
+        mesh = generate_mesh(FluidDomain([], nobody(2), sheet, ()), Sizes(0.4, 0.4, 0.3))
         write_by_meshio(folder / "plate.med", mesh, sheet.names)
         return meshed(folder / "plate.med", 2)
 

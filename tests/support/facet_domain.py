@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mechanics.facet_moments import facet_moments
-from rigidfluid.core.mesh.meshing import netgen_mesh
+from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
@@ -86,7 +86,8 @@ def bent_tube(size: float = 0.4) -> FacetDomain:
     for side in shape.faces:
         middle = side.center
         side.name = "inlet" if middle.x < 1e-3 - LEG else "outlet" if middle.y > BEND + LEG - 1e-3 else "wall"
-    return _of_netgen(netgen_mesh(shape, 3, size, 0.3, surfaces_alone=True), ("wall", "inlet", "outlet"))
+    netgen = netgen_mesh(shape, 3, EdgeLengths(size, 0.3), surfaces_alone=True)
+    return _of_netgen(netgen, ("wall", "inlet", "outlet"))
 
 
 def along_the_tube(rng: np.random.Generator) -> FloatArray:

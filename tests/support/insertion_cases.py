@@ -17,7 +17,7 @@ from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.meshing import netgen_mesh
+from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
@@ -93,7 +93,7 @@ def peanut() -> FacetBody:
 
     balls = occ.Sphere(occ.Pnt(-0.2, 0, 0), 0.28) + occ.Sphere(occ.Pnt(0.2, 0, 0), 0.22)
     shape = balls + occ.Box(occ.Pnt(-0.05, -0.05, 0), occ.Pnt(0.05, 0.05, 0.45))
-    netgen = netgen_mesh(shape, 3, 0.08, 0.3, surfaces_alone=True)
+    netgen = netgen_mesh(shape, 3, EdgeLengths(0.08, 0.3), surfaces_alone=True)
     vertices = netgen.Elements2D().NumPy()["nodes"][:, :3].astype(np.int64) - 1
     used, compact = np.unique(vertices, return_inverse=True)
     facets = Facets(netgen.Coordinates()[used].copy(), compact.reshape(-1, 3), np.zeros(len(vertices), dtype=np.int64))

@@ -10,6 +10,7 @@ from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.setup.boundary import surfaces_of
@@ -53,7 +54,7 @@ def random_ellipsoids(dimension, seed):
     pose = Pose(position, turn if dimension == 2 else turn / np.linalg.norm(turn, axis=1, keepdims=True))
     lower, upper = np.zeros(dimension), np.full(dimension, 1.0 + cells.max())
     size = 0.04 if dimension == 2 else 0.2
-    mesh = generate_mesh(FluidDomain(bodies, pose, box(lower, upper), ()), 0.3, size, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(lower, upper), ()), Sizes(0.3, size, 0.5))
     return bodies, box_walls(lower, upper, len(bodies)), pose, mesh
 
 

@@ -67,9 +67,7 @@ def in_units(scene: Table, units: Units) -> Table:
         unit = re.search(r" \[([^]]*)\]$", field.get("description", ""))
         return given if unit is None else _times(units.factor(unit[1], _POWERS.get(law, 0)), given)
 
-    return {
-        key: value(key, given, schema["properties"][key], schema["$defs"], "", "") for key, given in scene.items()
-    }
+    return {key: value(key, given, schema["properties"][key], schema["$defs"], "", "") for key, given in scene.items()}
 
 
 def _times(factor: float, value: Any) -> Any:

@@ -56,7 +56,7 @@ def wall_drift(remeshings: int = 50) -> Iterator[Drift]:
     mesh = initial_mesh(FluidDomain([body], poses[0], domain, walls), sizes)
     yield _seen(0, mesh, poses[0], domain)
     for number, (before, after) in enumerate(pairwise(poses), start=1):
-        moved = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(after))
+        moved = replace(mesh, points=MeshMotion(mesh, FluidDomain([body], before, domain, ())).move(after))
         mesh = remesh(moved, FluidDomain([body], after, domain, walls), sizes)
         yield _seen(number, mesh, after, domain)
 

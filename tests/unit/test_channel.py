@@ -106,7 +106,7 @@ def test_a_polyhedron_is_an_obstacle(tmp_path: Path) -> None:
     tables = (NestedBodyTable(type="stl", file=str(tmp_path / "cube.stl"), scale=0.5, position=(1.0, 1.0, 1.0)),)
     domain = Channel(ChannelOptions(lower=(0.0, 0.0, 0.0), upper=(2.0, 2.0, 2.0), obstacle=tables), 3)
     assert domain.volume == pytest.approx(8.0 - 0.125, rel=1e-12)
-    mesh = generate_mesh(FluidDomain([], nobody(3), domain, ()), 0.5, 0.5, 0.3)
+    mesh = generate_mesh(FluidDomain([], nobody(3), domain, ()), Sizes(0.5, 0.5, 0.3))
     assert cell_volumes(mesh.points, mesh.cells).sum() == pytest.approx(domain.volume, rel=1e-12)
 
 

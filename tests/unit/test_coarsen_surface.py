@@ -28,7 +28,7 @@ BODIES = {"ball": ball(0.5, 3), "ellipsoid": ellipsoid(0.55, 0.55, 0.5), "three 
 def above_a_floor(request):
     """A body with a gap of .06, the walls, its pose, its mesh, and the same bisected for the gap."""
     body, pose, walls = request.param, upright([1.0, 1.0, 0.56]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([body], pose, BOX, ()), SIZES.size, SIZES.size_body, SIZES.growth)
+    mesh = generate_mesh(FluidDomain([body], pose, BOX, ()), Sizes(SIZES.size, SIZES.size_body, SIZES.growth))
     return body, pose, walls, mesh, refine_surface(mesh, FluidDomain([body], pose, BOX, walls), SIZES)
 
 
@@ -57,7 +57,7 @@ def test_facets_in_a_gap_stay(above_a_floor) -> None:
 def test_a_small_ball_keeps_the_facets_that_its_curvature_asks_for() -> None:
     """However coarse the wanted size: with 1.2 radii a ball would lose two thirds of its facets."""
     body, pose = ball(0.5, 3), upright([1.0, 1.0, 1.0])
-    mesh = generate_mesh(FluidDomain([body], pose, BOX, ()), 0.8, 0.25, 0.5)
+    mesh = generate_mesh(FluidDomain([body], pose, BOX, ()), Sizes(0.8, 0.25, 0.5))
     merged = coarsen_surface(mesh, FluidDomain([body], pose, BOX, []), Sizes(0.8, 0.6, 0.5))
     assert facets(merged) > 0.9 * facets(mesh)
 

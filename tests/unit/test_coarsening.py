@@ -29,7 +29,7 @@ REFERENCE = reference_of(MESH, START, np.array([1.0]), 0)
 def fallen(height):
     """The mesh's vertices when the disk has fallen so far, and its pose there."""
     pose = upright([1.0, 6.0 - height])
-    return MeshMotion(MESH, DISK, BOX, START).move(pose), pose
+    return MeshMotion(MESH, FluidDomain(DISK, START, BOX, ())).move(pose), pose
 
 
 def asks(points, pose, reference=REFERENCE, sizes=SIZES):
@@ -58,7 +58,7 @@ def test_cells_are_never_much_coarser_than_wanted_if_it_is_heeded():
     mesh, start, worst, made = MESH, START, 0.0, 0
     for height in np.arange(0.05, 4.0, 0.05):
         pose = upright([1.0, 6.0 - height])
-        points = MeshMotion(mesh, DISK, BOX, start).move(pose)
+        points = MeshMotion(mesh, FluidDomain(DISK, start, BOX, ())).move(pose)
         if asks(points, pose, reference_of(mesh, start, np.array([1.0]), 0)):
             mesh, start = remesh(replace(mesh, points=points), FluidDomain(DISK, pose, BOX, WALLS), SIZES), pose
             points, made = mesh.points, made + 1
@@ -86,7 +86,7 @@ def test_a_gap_asks_by_its_own_rule_alone():
     near = upright([1.0, RADIUS + 0.02])
     mesh = initial_mesh(FluidDomain(DISK, near, BOX, WALLS), SIZES)
     nearer = upright([1.0, RADIUS + 0.002])
-    points = MeshMotion(mesh, DISK, BOX, near).move(nearer)
+    points = MeshMotion(mesh, FluidDomain(DISK, near, BOX, ())).move(nearer)
     assert not asks(points, nearer, reference_of(mesh, near, np.array([0.02]), 0))
 
 

@@ -253,7 +253,7 @@ def test_the_wall_stays_where_it_is_through_many_meshes(
     mesh, start = initial_mesh(FluidDomain([body], path[0], domain, walls), sizes), path[0]
     enclosed = [enclosed_by_the_rim(mesh)]
     for pose in path[1:]:
-        moved = replace(mesh, points=MeshMotion(mesh, [body], domain, start).move(pose))
+        moved = replace(mesh, points=MeshMotion(mesh, FluidDomain([body], start, domain, ())).move(pose))
         mesh, start = remesh(moved, FluidDomain([body], pose, domain, walls), sizes), pose
         check_mesh(mesh, quality=0.05)
         on_rim = mesh.points[np.unique(mesh.facets[mesh.markers == 1])]
@@ -270,7 +270,7 @@ def test_vertices_of_a_slope_rest_while_the_mesh_moves_and_stay_on_it_when_it_is
     domain, walls, sizes = wedge(), surfaces_of(wedge(), 1), Sizes(0.2, 0.04)
     start, end = upright([0.6, 0.3]), upright([0.5, 0.5])
     mesh = initial_mesh(FluidDomain([body], start, domain, walls), sizes)
-    points = MeshMotion(mesh, [body], domain, start).move(end)
+    points = MeshMotion(mesh, FluidDomain([body], start, domain, ())).move(end)
     on_slope, on_floor = (np.unique(mesh.facets[mesh.markers == number]) for number in (2, 1))
     assert np.array_equal(points[on_slope], mesh.points[on_slope])
     assert not np.array_equal(points[on_floor], mesh.points[on_floor])

@@ -93,7 +93,7 @@ def test_ctrl_c_within_petsc_is_ctrl_c(monkeypatch, solver):
 
 def test_petscs_options_are_those_of_the_scene():
     run = after(two_dimensional(backend="dolfinx", petsc={"pc_factor_mat_solver_type": "umfpack"}), 1)
-    assert run.system.backend._solver._ksp.getPC().getFactorSolverType() == "umfpack"
+    assert run.system.backend._solvers.viscous._ksp.getPC().getFactorSolverType() == "umfpack"
 
 
 def test_petscs_flags_are_true_in_the_scene(capfd):
@@ -104,7 +104,7 @@ def test_petscs_flags_are_true_in_the_scene(capfd):
 def test_factors_on_a_kept_pattern_are_those_made_anew():
     """To the last bit, as a run that is resumed has none to keep."""
     kept, anew = (after(two_dimensional(backend="dolfinx"), 1) for _ in range(2))
-    solver = kept.system.backend._solver
+    solver = kept.system.backend._solvers.viscous
     analysed = solver._ksp
     for _ in range(3):
         solver._wasted, solver._corrections = np.inf, ()  # renews, and recycles nothing
@@ -120,7 +120,7 @@ def test_bodies_apart_have_no_entries_in_common():
     """Each would be a new nonzero of PETSc's matrix: many bodies would take minutes."""
     scene = scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}})
     run = after(scene, 1)
-    velocity, _ = run.system.backend._solver._ksp.getPC().getFieldSplitSchurGetSubKSP()
+    velocity, _ = run.system.backend._solvers.viscous._ksp.getPC().getFieldSplitSchurGetSubKSP()
     _, matrix = velocity.getOperators()
     first = matrix.getSize()[0] - 12  # twists come after velocities
     columns, _ = matrix.getRow(first)
@@ -129,7 +129,7 @@ def test_bodies_apart_have_no_entries_in_common():
 
 
 def iterations(scene, steps=2):
-    return after(scene_from_dict(scene), steps).system.backend._solver._ksp.getIterationNumber()
+    return after(scene_from_dict(scene), steps).system.backend._solvers.viscous._ksp.getIterationNumber()
 
 
 def test_iterations_depend_neither_on_the_cells_nor_on_the_step():

@@ -14,6 +14,7 @@ from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import pardiso
 from rigidfluid.taylor_hood.factorization import factorise
 from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.lagged_solver import Operator
 from rigidfluid.taylor_hood.pardiso import EXACT, FAST, Orderings, Pardiso, PardisoError
 
 N = 400
@@ -23,6 +24,11 @@ ANALYSE, FACTORISE = 11, 22
 SINGLE = 1e-5  # of what single precision gives
 
 with_pardiso = pytest.mark.skipif(importlib.util.find_spec("pypardiso") is None, reason="MKL is not installed")
+
+
+def system(matrix):
+    """A matrix, and what its factors are made from."""
+    return Operator(matrix.__matmul__, lambda: SimpleNamespace(reduced=lambda: matrix))
 
 
 def matrix(seed, pattern=PATTERN):
@@ -147,14 +153,12 @@ def test_renewals_by_wasted_iterations_analyse_once_until_all_is_forgotten(phase
         spread[-1].data *= np.repeat(10.0 ** (power * RIGHT), np.diff(PATTERN.indptr))
     for each in spread:
         for _ in range(5):
-            solver.solve(
-                each.__matmul__, lambda each=each: SimpleNamespace(reduced=lambda: each), RIGHT, 1e-9, again=True
-            )
+            solver.solve(system(each), RIGHT, 1e-9, again=True)
     assert phases.count(ANALYSE) == 1
     assert phases.count(FACTORISE) >= 4
     solver.forget()
     phases.clear()
-    solver.solve(each.__matmul__, lambda: SimpleNamespace(reduced=lambda: each), RIGHT, 1e-9)
+    solver.solve(system(each), RIGHT, 1e-9)
     assert phases == [ANALYSE, FACTORISE]
 
 

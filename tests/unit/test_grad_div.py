@@ -8,6 +8,7 @@ from skfem import Basis, BilinearForm, ElementTetP2, ElementTriP2, ElementVector
 from skfem.helpers import ddot, div, dot, grad, mul, transpose
 
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -57,7 +58,7 @@ def test_the_compiled_matrix_is_that_of_the_forms(dimension):
     random = np.random.default_rng(5)
     field, flow = random.normal(size=(2, numbering.nodes, dimension))
     gamma = random.uniform(size=len(numbering.cells))
-    found = CompiledAssembly(numbering).matrix(points, 2.0, 0.3, field, flow, gamma)
+    found = CompiledAssembly(numbering).matrix(points, Coefficients(2.0, 0.3, field, flow, gamma))
     mesh = (MeshTri if dimension == 2 else MeshTet)(points.T, numbering.cells.T, sort_t=False)
     element = ElementVector((ElementTriP2 if dimension == 2 else ElementTetP2)())
     basis = Basis(mesh, element, intorder=5 if dimension == 2 else 6)

@@ -9,6 +9,7 @@ from scipy import sparse
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import lagged_factors
 from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.lagged_solver import Operator
 
 N = 200
 RIGHT = np.eye(N)[0]
@@ -21,6 +22,11 @@ def of(matrix):
     return SimpleNamespace(reduced=lambda: matrix)
 
 
+def system(matrix, made_of=None):
+    """A matrix, and the one that factors are made from if it is another."""
+    return Operator(matrix.__matmul__, lambda: of(matrix if made_of is None else made_of))
+
+
 @pytest.fixture
 def made(monkeypatch):
     count = []
@@ -31,42 +37,42 @@ def made(monkeypatch):
 
 def test_stale_factors_that_fail_are_renewed_once(made):
     solver = LaggedFactors(2)
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
-    found, _ = solver.solve(SHIFT.__matmul__, lambda: of(SHIFT), RIGHT, 1e-9)
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
+    found, _ = solver.solve(system(SHIFT), RIGHT, 1e-9)
     np.testing.assert_allclose(SHIFT @ found, RIGHT, atol=1e-9)
     assert len(made) == 2
 
 
 def test_stale_factors_are_given_up_when_they_have_wasted_their_price_twice(made):
     solver, applied = LaggedFactors(2), []
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
 
     def shift(x):
         applied.append(1)
         return SHIFT @ x
 
-    assert solver.solve(shift, lambda: of(SHIFT), RIGHT, 1e-9)[1] == 1
+    assert solver.solve(Operator(shift, lambda: of(SHIFT)), RIGHT, 1e-9)[1] == 1
     assert len(applied) <= LaggedFactors.fresh_iterations + 2 * LaggedFactors.rebuild_cost[2] + 5
     assert len(made) == 2
 
 
 def test_factors_that_columns_have_made_are_stale_for_another_matrix(made):
     solver = LaggedFactors(2)
-    solver.solve_columns(IDENTITY.__matmul__, lambda: of(IDENTITY), np.asfortranarray(np.eye(N)[:, :2]), 1e-9)
-    assert solver.solve(SHIFT.__matmul__, lambda: of(SHIFT), RIGHT, 1e-9)[1] == 1
+    solver.solve_columns(system(IDENTITY), np.asfortranarray(np.eye(N)[:, :2]), 1e-9)
+    assert solver.solve(system(SHIFT), RIGHT, 1e-9)[1] == 1
     assert len(made) == 2
 
 
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
-        LaggedFactors(2).solve(SHIFT.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
+        LaggedFactors(2).solve(system(SHIFT, IDENTITY), RIGHT, 1e-9)
 
 
 def test_after_a_refusal_the_next_matrix_has_factors_of_its_own():
     solver = LaggedFactors(2)
     with pytest.raises(StepRejected):
-        solver.solve(SHIFT.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
-    assert solver.solve(SHIFT.__matmul__, lambda: of(SHIFT), RIGHT, 1e-9)[1] == 1
+        solver.solve(system(SHIFT, IDENTITY), RIGHT, 1e-9)
+    assert solver.solve(system(SHIFT), RIGHT, 1e-9)[1] == 1
 
 
 def test_after_factors_that_cannot_be_made_others_are():
@@ -74,19 +80,19 @@ def test_after_factors_that_cannot_be_made_others_are():
         raise StepRejected("a", "b", "c", "d")
 
     solver = LaggedFactors(2)
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
     with pytest.raises(StepRejected, match="found b"):
-        solver.solve(SHIFT.__matmul__, refused, RIGHT, 1e-9)
-    assert solver.solve(SHIFT.__matmul__, lambda: of(SHIFT), RIGHT, 1e-9)[1] == 1
+        solver.solve(Operator(SHIFT.__matmul__, refused), RIGHT, 1e-9)
+    assert solver.solve(system(SHIFT), RIGHT, 1e-9)[1] == 1
 
 
 def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made):
     solver = LaggedFactors(2)
     other = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 4))
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
     cost, seen = solver._rebuild_cost, []
     while len(made) == 1:
-        seen.append(solver.solve(other.__matmul__, lambda: of(other), np.ones(N), 1e-9, again=True)[1])
+        seen.append(solver.solve(system(other), np.ones(N), 1e-9, again=True)[1])
     assert sum(seen[:-1]) - len(seen[:-1]) > cost
     assert seen[-1] <= 2
 
@@ -94,7 +100,7 @@ def test_factors_are_renewed_when_the_iterations_wasted_have_paid_for_them(made)
 def test_outdated_factors_are_renewed_at_once(made):
     solver = LaggedFactors(2)
     for outdated in (False, False, True):
-        solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9, outdated, again=True)
+        solver.solve(system(IDENTITY), RIGHT, 1e-9, outdated, again=True)
     assert len(made) == 2
 
 
@@ -104,7 +110,7 @@ def test_what_was_corrected_in_steps_before_is_not_iterated_for():
     start, slope = np.sin(np.arange(N)), np.cos(np.arange(N))
     taken = []
     for step in range(4):
-        found, iterations = solver.solve(spread.__matmul__, lambda: of(IDENTITY), spread @ (start + step * slope), 1e-9)
+        found, iterations = solver.solve(system(spread, IDENTITY), spread @ (start + step * slope), 1e-9)
         np.testing.assert_allclose(found, start + step * slope, atol=1e-8)
         taken.append(iterations)
     assert min(taken[:2]) >= 4
@@ -113,20 +119,20 @@ def test_what_was_corrected_in_steps_before_is_not_iterated_for():
 
 def test_a_guess_from_an_attempt_leaves_the_corrections_of_steps_alone():
     solver = LaggedFactors(2)
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
     before = solver.memory()["corrections"]
-    solver.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), np.ones(N), 1e-9, again=True)
+    solver.solve(system(IDENTITY), np.ones(N), 1e-9, again=True)
     np.testing.assert_array_equal(solver.memory()["corrections"], before)
 
 
 def test_another_solver_goes_on_from_a_memory_to_the_last_bit():
     other = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 20))
     one, two = LaggedFactors(2), LaggedFactors(2)
-    one.solve(IDENTITY.__matmul__, lambda: of(IDENTITY), RIGHT, 1e-9)
-    one.solve(other.__matmul__, lambda: of(other), np.ones(N), 1e-9)
+    one.solve(system(IDENTITY), RIGHT, 1e-9)
+    one.solve(system(other), np.ones(N), 1e-9)
     two.recall(one.memory(), lambda: of(IDENTITY))
     for each in (RIGHT, np.ones(N), RIGHT + 1.0):
-        found, again = (solver.solve(other.__matmul__, lambda: of(other), each, 1e-9) for solver in (one, two))
+        found, again = (solver.solve(system(other), each, 1e-9) for solver in (one, two))
         np.testing.assert_array_equal(found[0], again[0])
         assert found[1] == again[1]
 
@@ -143,7 +149,7 @@ def test_each_iteration_takes_one_solve_by_the_factors_and_the_end_none(monkeypa
 
     monkeypatch.setattr(lagged_factors, "factorise", lambda *_: Identity())
     matrix = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 5))
-    found, iterations = LaggedFactors(2).solve(matrix.__matmul__, lambda: of(matrix), np.ones(N), 1e-9)
+    found, iterations = LaggedFactors(2).solve(system(matrix), np.ones(N), 1e-9)
     np.testing.assert_allclose(matrix @ found, np.ones(N), atol=1e-9)
     assert len(solves) == iterations == 5
 
@@ -151,8 +157,8 @@ def test_each_iteration_takes_one_solve_by_the_factors_and_the_end_none(monkeypa
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_what_is_not_finite_is_refused(value):
     with pytest.raises(StepRejected, match=f"found a residual of {value}"):
-        LaggedFactors(2).solve(IDENTITY.__matmul__, lambda: of(IDENTITY), np.full(N, value), 1e-9)
+        LaggedFactors(2).solve(system(IDENTITY), np.full(N, value), 1e-9)
 
 
 def test_nothing_to_do():
-    assert LaggedFactors(2).solve(IDENTITY.__matmul__, lambda: of(IDENTITY), np.zeros(N), 0.0)[1] == 0
+    assert LaggedFactors(2).solve(system(IDENTITY), np.zeros(N), 0.0)[1] == 0

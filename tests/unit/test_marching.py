@@ -3,7 +3,7 @@ import pytest
 from marching_meshes import INNER, OUTER, box, naive_distances, reachable, shell, stars
 
 from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
-from rigidfluid.marching.field import distance_field, march_from
+from rigidfluid.marching.field import Band, distance_field, exact_wave
 from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.walk import local_search_to_vertex
@@ -63,7 +63,7 @@ def test_a_tree_is_planted_unless_the_surface_is_convex_from_the_fluid(dimension
         (star_shaped(mesh), [INNER], False),
     ]:
         work = new_workspace(len(points))
-        wave = march_from(Topology.from_mesh(mesh), points, surfaces, np.inf, 0.0, "exact", work)
+        wave = exact_wave(Topology.from_mesh(mesh), points, surfaces, Band(np.inf), work)
         assert (len(wave.tree.order) == 0) == convex
 
 

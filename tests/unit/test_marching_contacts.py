@@ -8,6 +8,7 @@ from numba import njit
 
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.simplices import facet_to_facet
 from rigidfluid.core.model.types import Contacts, Mesh
@@ -15,7 +16,7 @@ from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure
-from rigidfluid.marching.field import march_from
+from rigidfluid.marching.field import WAVES, Band
 from rigidfluid.marching.pairs import facet_gaps
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace
@@ -50,7 +51,7 @@ def test_gaps_from_ragged_stars_are_those_of_all_pairs_of_facets(dimension, seed
         mesh, _ = stars(dimension, number)
         topology, work = Topology.from_mesh(mesh), new_workspace(len(mesh.points))
         star, wanted, _ = topology.seeds([0])
-        wave = march_from(topology, mesh.points, [0], np.inf, 0.0, accuracy, work)
+        wave = WAVES[accuracy](topology, mesh.points, [0], Band(np.inf), work)
         if accuracy == "first-order":
             measure(mesh.points, topology.surfaces, wanted, wave.tree, work, wave.touched)
         others = np.flatnonzero(mesh.markers != 0).astype(np.int32)
@@ -108,10 +109,10 @@ def test_threads_give_the_same_bits(ellipsoids):
 def test_a_detector_goes_on_with_a_mesh_that_moves_and_with_another():
     bodies, walls = [ball(0.3)], box_walls(np.zeros(2), np.ones(2), 1)
     detector, pose = narrow_band(bodies, walls), upright([0.5, 0.5])
-    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), 0.2, 0.02, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), Sizes(0.2, 0.02, 0.5))
     outside = np.clip((np.linalg.norm(mesh.points - 0.5, axis=1) - 0.3) / 0.2, 0.0, 1.0)
     moved = replace(mesh, points=mesh.points + np.outer(1.0 - outside, [0.0, 0.05]))
-    finer = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), 0.1, 0.01, 0.5)
+    finer = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.ones(2)), ()), Sizes(0.1, 0.01, 0.5))
     places = [(pose, mesh), (upright([0.5, 0.55]), moved), (pose, finer)]
     gaps = [detector.detect(*place, np.inf).gap for place in places]
     np.testing.assert_allclose(gaps, [[0.2] * 4, [0.2, 0.2, 0.25, 0.15], [0.2] * 4], atol=1e-3)
@@ -149,15 +150,13 @@ def test_a_fork_touches_the_floor_at_both_feet():
 
 
 def test_bodies_far_apart_are_not_marched(monkeypatch):
-    import rigidfluid.marching.contacts as contacts
-
     def refuse(*_):
         raise AssertionError("marched")
 
-    monkeypatch.setattr(contacts, "march_from", refuse)
+    monkeypatch.setitem(WAVES, "exact", refuse)
     bodies, walls = [ball(0.1), ball(0.1)], box_walls(np.zeros(2), np.full(2, 2.0), 2)
     pose = upright([0.6, 0.6], [1.4, 1.4])
-    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.full(2, 2.0)), ()), 0.3, 0.05, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.full(2, 2.0)), ()), Sizes(0.3, 0.05, 0.5))
     assert len(narrow_band(bodies, walls).detect(pose, mesh, 0.4)) == 0
 
 

@@ -11,12 +11,13 @@ from threaded_ranks import ThreadedRanks, on_ranks
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import put_back
-from rigidfluid.marching.field import march_from
+from rigidfluid.marching.field import Band, exact_wave
 from rigidfluid.marching.shared import SharedMesh
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import KNOWN, new_workspace
@@ -121,13 +122,13 @@ def test_the_band_ends_where_that_of_the_whole_does(dimension, seed):
     """It goes further at a vertex with a long edge, which may be in another part."""
     mesh, _ = stars(dimension, seed)
     whole = new_workspace(len(mesh.points))
-    march_from(Topology.from_mesh(mesh), mesh.points, [0], 0.1, 0.5, "exact", whole)
+    exact_wave(Topology.from_mesh(mesh), mesh.points, [0], Band(0.1, 0.5), whole)
 
     def work(ranks):
         part = part_of(mesh, ranks)
         shared = SharedMesh(part)
         points, space = shared.points(part), shared.part.workspace
-        [march] = shared.march(points, shared.neighbours(points), [[0]], 0.1, 0.5)
+        [march] = shared.march(points, [[0]], Band(0.1, 0.5))
         if march is not None:
             put_back(space, *march[:4])
         inside = slice(len(part.points))
@@ -165,7 +166,7 @@ def test_a_body_in_another_part_is_not_marched_from():
         part = part_of(mesh, ranks)
         shared = SharedMesh(part)
         points = shared.points(part)
-        marches = shared.march(points, shared.neighbours(points), [[body] for body in range(len(bodies))], 0.01, 0.5)
+        marches = shared.march(points, [[body] for body in range(len(bodies))], Band(0.01, 0.5))
         held = [np.isin(body, part.markers) for body in range(len(bodies))]
         return [march is not None for march in marches], held
 
@@ -176,7 +177,7 @@ def test_a_body_in_another_part_is_not_marched_from():
 
 def test_where_nothing_is_near_nobody_is_asked(monkeypatch):
     bodies, pose = [ball(0.2), ball(0.2)], upright([0.5, 0.5], [1.5, 0.5])
-    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.array([2.0, 1.0])), ()), 0.2, 0.1, 0.5)
+    mesh = generate_mesh(FluidDomain(bodies, pose, box(np.zeros(2), np.array([2.0, 1.0])), ()), Sizes(0.2, 0.1, 0.5))
 
     def work(ranks):
         part, detector = part_of(mesh, ranks), made(NarrowBandDetector, bodies, [])

@@ -28,13 +28,13 @@ from rigidfluid.errors import SceneError
 @pytest.fixture(scope="module")
 def tube(tmp_path_factory: pytest.TempPathFactory) -> tuple[Mesh, list[str]]:
     domain = drawn(bent_tube(), tmp_path_factory.mktemp("tube"))
-    return generate_mesh(FluidDomain([], nobody(3), domain, ()), 1.0, 1.0, 0.3), list(domain.names)
+    return generate_mesh(FluidDomain([], nobody(3), domain, ()), Sizes(1.0, 1.0, 0.3)), list(domain.names)
 
 
 @pytest.fixture(scope="module")
 def sheet(tmp_path_factory: pytest.TempPathFactory) -> tuple[Mesh, list[str]]:
     domain = drawn(plate(), tmp_path_factory.mktemp("sheet"), 2)
-    return generate_mesh(FluidDomain([], nobody(2), domain, ()), 0.4, 0.4, 0.3), list(domain.names)
+    return generate_mesh(FluidDomain([], nobody(2), domain, ()), Sizes(0.4, 0.4, 0.3)), list(domain.names)
 
 
 def volume(mesh: Mesh) -> float:

@@ -12,6 +12,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])
@@ -23,32 +24,36 @@ def domain_of(mesh):
     return BOX if mesh.points.shape[1] == 2 else CUBE
 
 
+def motion_of(mesh, bodies, pose, *how):
+    return MeshMotion(mesh, FluidDomain(bodies, pose, domain_of(mesh), ()), *how)
+
+
 @pytest.fixture(scope="module")
 def disk():
     pose = upright([1, 2])
-    return [ball(0.125)], pose, generate_mesh(FluidDomain([ball(0.125)], pose, BOX, ()), 0.2, 0.02, 0.2)
+    return [ball(0.125)], pose, generate_mesh(FluidDomain([ball(0.125)], pose, BOX, ()), Sizes(0.2, 0.02, 0.2))
 
 
 @pytest.fixture(scope="module")
 def ellipse():
     pose, body = Pose(np.array([[0.9, 1.2]]), np.array([[0.7]])), ellipsoid(0.3, 0.1)
-    return [body], pose, generate_mesh(FluidDomain([body], pose, BOX, ()), 0.2, 0.02, 0.2)
+    return [body], pose, generate_mesh(FluidDomain([body], pose, BOX, ()), Sizes(0.2, 0.02, 0.2))
 
 
 @pytest.fixture(scope="module")
 def solid():
     pose, body = upright([0, 0, 0]), ellipsoid(0.5, 0.25, 0.3)
-    return [body], pose, generate_mesh(FluidDomain([body], pose, CUBE, ()), 0.6, 0.2, 0.4)
+    return [body], pose, generate_mesh(FluidDomain([body], pose, CUBE, ()), Sizes(0.6, 0.2, 0.4))
 
 
 def test_the_reference_pose_gives_the_reference_mesh(ellipse):
     bodies, pose, mesh = ellipse
-    np.testing.assert_allclose(MeshMotion(mesh, bodies, domain_of(mesh), pose).move(pose), mesh.points, atol=1e-15)
+    np.testing.assert_allclose(motion_of(mesh, bodies, pose).move(pose), mesh.points, atol=1e-15)
 
 
 def test_a_disk_s_mesh_translates_and_does_not_turn(disk):
     bodies, pose, mesh = disk
-    moved = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(Pose(pose.position + [0.01, -0.05], np.array([[2.0]])))
+    moved = motion_of(mesh, bodies, pose).move(Pose(pose.position + [0.01, -0.05], np.array([[2.0]])))
     surface = np.unique(mesh.facets[mesh.markers == 0])
     np.testing.assert_allclose(moved[surface], mesh.points[surface] + [0.01, -0.05], atol=1e-15)
 
@@ -56,7 +61,7 @@ def test_a_disk_s_mesh_translates_and_does_not_turn(disk):
 def test_an_ellipse_s_vertices_turn_with_it(ellipse):
     bodies, pose, mesh = ellipse
     new = Pose(pose.position + [0.02, 0.03], pose.orientation + 0.2)
-    moved = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(new)
+    moved = motion_of(mesh, bodies, pose).move(new)
     surface = np.unique(mesh.facets[mesh.markers == 0])
     local = to_body_frame(new, 0, moved[surface])
     np.testing.assert_allclose(local, to_body_frame(pose, 0, mesh.points[surface]), atol=1e-15)
@@ -67,7 +72,7 @@ def test_an_ellipse_s_vertices_turn_with_it(ellipse):
 def test_an_ellipsoid_s_vertices_turn_with_it_in_space(solid):
     bodies, pose, mesh = solid
     new = Pose(pose.position + [0.05, 0, -0.02], np.array([[np.cos(0.1), 0, np.sin(0.1), 0]]))
-    moved = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(new)
+    moved = motion_of(mesh, bodies, pose).move(new)
     surface = np.unique(mesh.facets[mesh.markers == 0])
     turned = np.array([[np.cos(0.2), 0, np.sin(0.2)], [0, 1, 0], [-np.sin(0.2), 0, np.cos(0.2)]])
     expected = mesh.points[surface] @ turned.T + [0.05, 0, -0.02]
@@ -78,7 +83,7 @@ def test_an_ellipsoid_s_vertices_turn_with_it_in_space(solid):
 @pytest.mark.parametrize("case", ["disk", "solid"])
 def test_vertices_on_the_box_slide_on_their_faces_and_corners_stay(case, request):
     bodies, pose, mesh = request.getfixturevalue(case)
-    moved = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(Pose(pose.position + 0.04, pose.orientation))
+    moved = motion_of(mesh, bodies, pose).move(Pose(pose.position + 0.04, pose.orientation))
     on_faces = np.zeros(mesh.points.shape, dtype=bool)
     for face in range(2 * bodies[0].dimension):
         on_faces[np.unique(mesh.facets[mesh.markers == 1 + face]), face // 2] = True
@@ -90,7 +95,7 @@ def test_vertices_on_the_box_slide_on_their_faces_and_corners_stay(case, request
 def test_free_vertices_are_in_balance(ellipse):
     bodies, pose, mesh = ellipse
     new = Pose(pose.position + [0.05, 0.1], pose.orientation + 0.1)
-    moved = MeshMotion(mesh, bodies, BOX, pose).move(new)
+    moved = motion_of(mesh, bodies, pose).move(new)
     free = np.setdiff1d(np.arange(len(mesh.points)), mesh.facets)
     matrix = stiffness(mesh)
     residual = (matrix @ (moved - mesh.points))[free]
@@ -98,7 +103,7 @@ def test_free_vertices_are_in_balance(ellipse):
 
 
 def test_the_stiffness_weighs_each_cell_by_the_papers_tau():
-    mesh = generate_mesh(FluidDomain([ball(0.125)], upright([1, 2]), BOX, ()), 0.4, 0.1, 0.5)
+    mesh = generate_mesh(FluidDomain([ball(0.125)], upright([1, 2]), BOX, ()), Sizes(0.4, 0.1, 0.5))
     field = mesh.points @ [0.3, -0.7]
     volume = cell_volumes(mesh.points, mesh.cells)
     weight = 1 + (1 - volume.min() / volume.max()) / (volume / volume.max())
@@ -108,7 +113,7 @@ def test_the_stiffness_weighs_each_cell_by_the_papers_tau():
 
 def test_small_cells_keep_their_shape_better_than_large_ones(disk):
     bodies, pose, mesh = disk
-    moved = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(Pose(pose.position - [0, 0.3], pose.orientation))
+    moved = motion_of(mesh, bodies, pose).move(Pose(pose.position - [0, 0.3], pose.orientation))
     edges = edges_of(mesh.cells)
     before, after = (np.linalg.norm(np.diff(p[edges], axis=1)[:, 0], axis=1) for p in (mesh.points, moved))
     strain = np.abs(after / before - 1)
@@ -116,8 +121,8 @@ def test_small_cells_keep_their_shape_better_than_large_ones(disk):
 
 
 def test_a_box_without_bodies_stands_still():
-    mesh = generate_mesh(FluidDomain([], nobody(2), BOX, ()), 0.4, 0.1, 0.5)
-    assert np.array_equal(MeshMotion(mesh, [], domain_of(mesh), nobody(2)).move(nobody(2)), mesh.points)
+    mesh = generate_mesh(FluidDomain([], nobody(2), BOX, ()), Sizes(0.4, 0.1, 0.5))
+    assert np.array_equal(motion_of(mesh, [], nobody(2)).move(nobody(2)), mesh.points)
 
 
 @pytest.mark.parametrize("case", ["ellipse", "solid"])
@@ -127,9 +132,9 @@ def test_a_mesh_in_parts_moves_as_the_whole_does(case, request):
 
     def moved(ranks):
         part = distributed(mesh if ranks.is_root else None, ranks)
-        return part.part.vertices, MeshMotion(part, bodies, domain_of(part), pose, OnTheRoot).move(new)
+        return part.part.vertices, motion_of(part, bodies, pose, OnTheRoot).move(new)
 
-    expected = MeshMotion(mesh, bodies, domain_of(mesh), pose).move(new)
+    expected = motion_of(mesh, bodies, pose).move(new)
     for vertices, points in on_ranks(9, moved):
         np.testing.assert_allclose(points, expected[vertices], rtol=0, atol=1e-13)
 

@@ -10,6 +10,7 @@ from rigidfluid.core.mesh import meshing
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
@@ -38,7 +39,7 @@ CASES_3D = [
 
 @pytest.mark.parametrize(("bodies", "pose"), CASES_2D)
 def test_a_plane_mesh_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
-    mesh = generate_mesh(FluidDomain(bodies, pose, BOX, ()), 0.2, 0.02, 0.2)
+    mesh = generate_mesh(FluidDomain(bodies, pose, BOX, ()), Sizes(0.2, 0.02, 0.2))
     assert capfd.readouterr() == ("", "")
     assert_valid(mesh, bodies, pose, LOWER, UPPER)
     edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
@@ -49,7 +50,7 @@ def test_a_plane_mesh_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd
 
 @pytest.mark.parametrize(("bodies", "pose"), CASES_3D)
 def test_a_mesh_in_space_is_valid_silent_and_fine_on_the_bodies(bodies, pose, capfd):
-    mesh = generate_mesh(FluidDomain(bodies, pose, CUBE, ()), 0.6, 0.15, 0.4)
+    mesh = generate_mesh(FluidDomain(bodies, pose, CUBE, ()), Sizes(0.6, 0.15, 0.4))
     assert capfd.readouterr() == ("", "")
     assert_valid(mesh, bodies, pose, LOW, HIGH)
     edges = edges_of(mesh.facets[mesh.markers < len(bodies)])
@@ -59,12 +60,14 @@ def test_a_mesh_in_space_is_valid_silent_and_fine_on_the_bodies(bodies, pose, ca
 
 
 def test_a_mesh_away_from_everything_has_good_cells():
-    mesh = generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), 0.2, 0.02, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), Sizes(0.2, 0.02, 0.2))
     assert cell_quality(mesh.points, mesh.cells).min() > 0.5
 
 
 def test_the_same_input_gives_the_same_mesh_to_the_last_bit():
-    first, second = (generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), 0.2, 0.02, 0.2) for _ in range(2))
+    first, second = (
+        generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), Sizes(0.2, 0.02, 0.2)) for _ in range(2)
+    )
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.cells, second.cells)
     assert body_facets(first, 1) == body_facets(second, 1)
@@ -85,7 +88,7 @@ def test_surfaces_show_what_edges_to_ask_for_before_the_mesh_is_made(bodies, pos
         return run(*arguments, surfaces_alone=surfaces_alone)
 
     monkeypatch.setattr(meshing, "run_netgen", seen)
-    mesh = generate_mesh(FluidDomain(bodies, pose, domain, ()), *sizes)
+    mesh = generate_mesh(FluidDomain(bodies, pose, domain, ()), Sizes(*sizes))
     assert [alone for alone, _ in asked] == [True] * (len(asked) - 1) + [False]
     assert asked[0][1] == sizes[1] > asked[-1][1]
     edges = edges_of(mesh.facets[mesh.markers == 0])
@@ -103,11 +106,11 @@ def test_surfaces_show_what_edges_to_ask_for_before_the_mesh_is_made(bodies, pos
 )
 def test_an_impossible_geometry_is_refused_by_the_body_s_name(positions, body):
     with pytest.raises(MeshError, match=f"^body.{body}.position"):
-        generate_mesh(FluidDomain([DISK, DISK], upright(*positions), BOX, ()), 0.2, 0.02, 0.2)
+        generate_mesh(FluidDomain([DISK, DISK], upright(*positions), BOX, ()), Sizes(0.2, 0.02, 0.2))
 
 
 def test_a_mesh_with_an_unlisted_facet_is_refused():
-    mesh = generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), 0.2, 0.05, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], upright([1, 2]), BOX, ()), Sizes(0.2, 0.05, 0.2))
     with pytest.raises(MeshError, match="marked facets"):
         check_mesh(replace(mesh, facets=mesh.facets[1:], markers=mesh.markers[1:]), quality=0.0)
     inside = mesh.cells[np.isin(mesh.cells, mesh.facets).sum(axis=1) < 2][:1, :2]

@@ -65,7 +65,7 @@ def test_facets_of_periodic_surfaces_match_in_all_meshes(dimension: int) -> None
     poses = [upright([x, 0.6, 0.5][:d]) for x in (0.6, 0.8, 1.0)]
     mesh = initial_mesh(FluidDomain([body], poses[0], domain, []), sizes)
     for before, pose in pairwise(poses):
-        mesh = replace(mesh, points=MeshMotion(mesh, [body], domain, before).move(pose))
+        mesh = replace(mesh, points=MeshMotion(mesh, FluidDomain([body], before, domain, ())).move(pose))
         mesh = remesh(mesh, FluidDomain([body], pose, domain, []), sizes)
         for pair in domain.periodic:
             one, two = (across(mesh, 1 + piece, pair[0] // 2) for piece in pair)

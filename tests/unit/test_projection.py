@@ -12,6 +12,7 @@ from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import projection as module
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
 
 BALL = {
@@ -84,7 +85,7 @@ def test_masses_and_divergence_are_those_of_the_whole_matrix(given):
     target, points, *_ = given
     assembly, d = target._assembly, target.numbering.dimension
     still, none = np.zeros((target.numbering.nodes, d)), np.zeros(len(target.numbering.cells))
-    whole, velocities = assembly.matrix(points, 1.0, 0.0, still, still, none), still.size
+    whole, velocities = assembly.matrix(points, Coefficients(1.0, 0.0, still, still, none)), still.size
     masses = assembly.masses(points)
     for found, expected in (
         (masses.mass, whole[:velocities:d, :velocities:d]),

@@ -7,6 +7,7 @@ from scipy import sparse
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
 BALLS = {
@@ -114,7 +115,8 @@ def test_without_viscosity_the_pattern_is_the_same(steps):
     discretisation, made = steps
     matrix, _, masses, operator, built = made[-1]
     still, none = np.zeros_like(matrix.flow), np.zeros(len(discretisation.numbering.cells))
-    stiffness = discretisation._assembly.matrix(matrix.points, matrix.inertia, 0.0, still, still, none)
+    coefficients = Coefficients(matrix.inertia, 0.0, still, still, none)
+    stiffness = discretisation._assembly.matrix(matrix.points, coefficients)
     discretisation._constraint.place(matrix.node_points, matrix.position)
     inviscid = discretisation._reduced_matrix(stiffness).filled(stiffness, masses)
     wanted = expected(discretisation, stiffness, masses, operator)

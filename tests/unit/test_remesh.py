@@ -50,7 +50,7 @@ def drive(bodies, poses, gap, sizes, upper=UPPER):
     """Move along poses, re-mesh when a cell gets bad or the gap has halved; meshes made, with their pose and gap."""
     walls, domain = box_walls(LOWER, upper, len(bodies)), box(LOWER, upper)
     mesh, start = initial_mesh(FluidDomain(bodies, poses[0], domain, walls), sizes), poses[0]
-    motion, made = MeshMotion(mesh, bodies, domain, start), [(mesh, start, gap(start))]
+    motion, made = MeshMotion(mesh, FluidDomain(bodies, start, domain, ())), [(mesh, start, gap(start))]
     for pose in poses[1:]:
         points = motion.move(pose)
         quality = cell_quality(points, mesh.cells).min()
@@ -61,7 +61,7 @@ def drive(bodies, poses, gap, sizes, upper=UPPER):
             assert_valid(mesh, bodies, pose, LOWER, upper)
             unsplit = refine_surface(moved, FluidDomain(bodies, pose, domain, walls), sizes)
             assert body_facets(mesh, len(bodies)) == body_facets(unsplit, len(bodies))
-            motion = MeshMotion(mesh, bodies, domain, pose)
+            motion = MeshMotion(mesh, FluidDomain(bodies, pose, domain, ()))
             made.append((mesh, pose, gap(pose)))
     return made
 
@@ -117,12 +117,12 @@ def test_a_sphere_moves_towards_a_wall_in_space():
     mesh = initial_mesh(FluidDomain([body], upright([0, 0, 0]), cube, walls), sizes)
     assert_valid(mesh, [body], upright([0, 0, 0]), lower, upper)
     pose = upright([0, 0, -0.3])
-    moved = replace(mesh, points=MeshMotion(mesh, [body], cube, upright([0, 0, 0])).move(pose))
+    moved = replace(mesh, points=MeshMotion(mesh, FluidDomain([body], upright([0, 0, 0]), cube, ())).move(pose))
     halfway = remesh(moved, FluidDomain([body], pose, cube, walls), sizes)
     assert_valid(halfway, [body], pose, lower, upper)
     assert body_facets(halfway, 1) == body_facets(moved, 1)
     near = upright([0, 0, -0.45])
-    moved = replace(halfway, points=MeshMotion(halfway, [body], cube, pose).move(near))
+    moved = replace(halfway, points=MeshMotion(halfway, FluidDomain([body], pose, cube, ())).move(near))
     split = remesh(moved, FluidDomain([body], near, cube, walls), sizes)
     assert_valid(split, [body], near, lower, upper)
     assert np.sum(split.markers == 0) > np.sum(moved.markers == 0)
@@ -151,7 +151,7 @@ def test_a_narrow_gap_is_resolved_from_the_start(gap, count, shift):
 
 def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_surface():
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.01, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.01, 0.2))
     split = refine_surface(mesh, FluidDomain([DISK], pose, BOX, walls), FINE)
     assert np.array_equal(split.points[: len(mesh.points)], mesh.points)
     edges = np.sort(split.facets[split.markers == 0], axis=1)
@@ -215,7 +215,7 @@ SPOILERS = [spoil_lose_a_facet, spoil_move_a_body_vertex, spoil_invert_a_cell, s
 @pytest.mark.parametrize("spoil", SPOILERS)
 def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.025, 0.2))
     good = module.run_mmg
     monkeypatch.setattr(module, "run_mmg", lambda *arguments: spoil(good(*arguments)))
     with pytest.raises(MeshError):
@@ -224,7 +224,7 @@ def test_a_mesh_that_mmg_has_spoilt_is_refused(spoil, monkeypatch):
 
 def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.025, 0.2))
     good = module.run_mmg
 
     def without_corner(*arguments):
@@ -240,7 +240,7 @@ def test_a_lost_corner_of_the_box_is_seen_by_the_volume(monkeypatch):
 
 def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
     pose, walls = upright([1, RADIUS + 2e-3]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.025, 0.2))
     monkeypatch.setattr(module, "run_mmg", lambda mesh, *_: mesh)
     with pytest.raises(MeshError):
         remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE)
@@ -249,7 +249,7 @@ def test_an_mmg_that_does_nothing_is_refused(monkeypatch):
 def with_a_vertex_below_the_surface():
     """A disk near the floor, with a vertex added between a facet and the disk's arc above it; and that facet."""
     pose, walls = upright([1, RADIUS + 0.02]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.025, 0.2))
     edges, middles, _ = long_edges(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE, 1.5)
     added = 0.5 * (middles[0] + mesh.points[edges[0]].mean(axis=0))
     split = np.flatnonzero(np.isin(mesh.cells, edges[0]).sum(axis=1) == 2)
@@ -285,7 +285,7 @@ def test_edges_that_never_fit_stay(monkeypatch):
 
 def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
     pose, walls = upright([1, 1]), box_walls(LOWER, UPPER, 1)
-    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), 0.15, 0.025, 0.2)
+    mesh = generate_mesh(FluidDomain([DISK], pose, BOX, ()), Sizes(0.15, 0.025, 0.2))
     good, gradations = module.run_mmg, []
 
     def fails_once(*arguments):

@@ -63,7 +63,7 @@ def domain_of(shape: Any, dimension: int, kind: str, folder: Path) -> Domain:
     size = 0.2 * float(cad.size.max())
     write_gmsh41(
         folder / "shape.msh",
-        generate_mesh(FluidDomain([], nobody(dimension), cad, ()), size, size, 0.3),
+        generate_mesh(FluidDomain([], nobody(dimension), cad, ()), Sizes(size, size, 0.3)),
         list(cad.names),
     )
     return meshed(folder / "shape.msh", dimension)
@@ -95,7 +95,9 @@ def test_sloped_walls_stay_through_ten_meshes(name: str, kind: str, tmp_path: Pa
     allowed = MISSED if name == "pyramid" else 4.0 * EPSILON * float(np.abs(mesh.points).max()) / size
     assert off_its_planes(mesh, domain) <= allowed
     for start, end in pairwise(poses):
-        moved = Mesh(MeshMotion(mesh, [body], domain, start).move(end), mesh.cells, mesh.facets, mesh.markers)
+        moved = Mesh(
+            MeshMotion(mesh, FluidDomain([body], start, domain, ())).move(end), mesh.cells, mesh.facets, mesh.markers
+        )
         mesh = remesh(moved, FluidDomain([body], end, domain, walls), sizes)
         assert off_its_planes(mesh, domain) <= allowed
     assert float(cell_volumes(mesh.points, mesh.cells).sum()) == pytest.approx(before, rel=1e-14 * max(1.0, 1.0 / size))

@@ -27,10 +27,11 @@ from rigidfluid.evaluation.studies.kernel_subject import KernelSubject
 from rigidfluid.evaluation.studies.model import ErrorTable, FigureTable, Settings, StudyTable
 from rigidfluid.evaluation.studies.plot import error_plot
 from rigidfluid.evaluation.studies.results import Results, most_expensive, pareto_front
-from rigidfluid.evaluation.studies.rows import read_rows, short_text
+from rigidfluid.evaluation.studies.rows import short_text
 from rigidfluid.evaluation.studies.run import StudyProgress
 from rigidfluid.evaluation.studies.scene_subject import SceneSubject
 from rigidfluid.evaluation.studies.subject import Outcome
+from rigidfluid.evaluation.studies.table import read_rows
 from rigidfluid.registry import FLUID_BACKEND, Registry
 from rigidfluid.reports.style import PALETTE
 

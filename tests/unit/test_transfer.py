@@ -10,6 +10,7 @@ from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.time_scheme import predict_pose
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.discretisation import kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
@@ -36,7 +37,8 @@ def on(simulation, mesh):
 
 def divergence(discretisation, points, velocity):
     still, none = np.zeros_like(velocity), np.zeros(len(discretisation.numbering.cells))
-    matrix = CompiledAssembly(discretisation.numbering).matrix(points, 0.0, 0.0, still, still, none)
+    assembly = CompiledAssembly(discretisation.numbering)
+    matrix = assembly.matrix(points, Coefficients(0.0, 0.0, still, still, none))
     return (matrix @ np.concatenate([velocity.ravel(), np.zeros(discretisation.numbering.vertices)]))[velocity.size :]
 
 

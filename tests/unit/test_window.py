@@ -16,6 +16,7 @@ from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.model.window import Window
 from rigidfluid.core.output.history import History
@@ -93,8 +94,8 @@ def test_a_window_may_look_up() -> None:
 def test_a_mesh_goes_with_a_ball_as_it_is(dimension: int) -> None:
     window, start = long_box(dimension)
     body = [ball(0.25, dimension)]
-    mesh = generate_mesh(FluidDomain(body, start, window.meshed_domain(start), ()), 0.6, 0.2, 0.3)
-    motion = MeshMotion(mesh, body, window.domain, start, window=window)
+    mesh = generate_mesh(FluidDomain(body, start, window.meshed_domain(start), ()), Sizes(0.6, 0.2, 0.3))
+    motion = MeshMotion(mesh, FluidDomain(body, start, window.domain, ()), window=window)
     there = Pose(start.position - [0.0, 4.0, 0.0][:dimension], start.orientation)
     np.testing.assert_allclose(motion.move(there), mesh.points - [0.0, 4.0, 0.0][:dimension], rtol=0, atol=1e-12)
     aside = Pose(start.position + [0.2, -4.0, 0.0][:dimension], start.orientation)
@@ -105,14 +106,16 @@ def test_a_mesh_goes_with_a_ball_as_it_is(dimension: int) -> None:
 def test_a_mesh_in_parts_goes_as_the_whole_does() -> None:
     window, start = long_box(2)
     body, there = [ball(0.25)], upright([1.1, 6.0])
-    mesh = generate_mesh(FluidDomain(body, start, window.meshed_domain(start), ()), 0.6, 0.2, 0.3)
-    expected = MeshMotion(mesh, body, window.domain, start, window=window).move(there)
+    mesh = generate_mesh(FluidDomain(body, start, window.meshed_domain(start), ()), Sizes(0.6, 0.2, 0.3))
+    expected = MeshMotion(mesh, FluidDomain(body, start, window.domain, ()), window=window).move(there)
 
     def moved(ranks: Any) -> Any:
         part = distributed(mesh if ranks.is_root else None, ranks)
         assert part is not None
         assert part.part is not None
-        return part.part.vertices, MeshMotion(part, body, window.domain, start, OnTheRoot, window).move(there)
+        return part.part.vertices, MeshMotion(
+            part, FluidDomain(body, start, window.domain, ()), OnTheRoot, window
+        ).move(there)
 
     for vertices, points in on_ranks(5, moved):
         np.testing.assert_allclose(points, expected[vertices], rtol=0, atol=1e-13)

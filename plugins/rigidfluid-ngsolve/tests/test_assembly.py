@@ -10,6 +10,7 @@ from skfem import MeshTet, MeshTri
 
 from rigidfluid.api import FloatArray
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.testing.fluid.curved import ball_in_a_box
 from rigidfluid_ngsolve.assembly import FormAssembly
@@ -36,7 +37,8 @@ def test_the_integrals_are_those_of_scikit_fem_wherever_the_mesh_moves(dimension
         points = points + 0.05 * SIZE * random.uniform(-1, 1, size=points.shape)
         field, flow = random.normal(size=(2, numbering.nodes, dimension))
         grad_div = viscosity * random.uniform(size=len(numbering.cells))
-        matrix, theirs = (a.matrix(points, inertia, viscosity, field, flow, grad_div) for a in (found, expected))
+        given = Coefficients(inertia, viscosity, field, flow, grad_div)
+        matrix, theirs = (a.matrix(points, given) for a in (found, expected))
         assert abs(matrix - theirs).max() < 1e-13 * abs(theirs).max()
         load, theirs = (a.mass_times(points, field) for a in (found, expected))
         np.testing.assert_allclose(load, theirs, rtol=0, atol=1e-13 * np.abs(theirs).max())
@@ -53,11 +55,12 @@ def test_the_integrals_are_those_of_scikit_fem_on_curved_cells(dimension: int) -
     expected, found = CompiledAssembly(numbering), FormAssembly(numbering, convection=True)
     field, flow = np.random.default_rng(4).normal(size=(2, numbering.nodes, dimension))
     none, weight = np.zeros(len(numbering.cells)), np.ones(len(numbering.cells))
-    matrix, theirs = (a.matrix(points, 2.0, 0.0, field, flow, none) for a in (found, expected))
+    matrix, theirs = (a.matrix(points, Coefficients(2.0, 0.0, field, flow, none)) for a in (found, expected))
     assert abs(matrix - theirs).max() < 1e-13 * abs(theirs).max()
     load, theirs = (a.mass_times(points, field) for a in (found, expected))
     np.testing.assert_allclose(load, theirs, rtol=0, atol=1e-13 * np.abs(theirs).max())
-    matrix, theirs = (a.matrix(points, 0.0, 1.0, 0.0 * field, 0.0 * flow, weight) for a in (found, expected))
+    viscous = Coefficients(0.0, 1.0, 0.0 * field, 0.0 * flow, weight)
+    matrix, theirs = (a.matrix(points, viscous) for a in (found, expected))
     assert abs(matrix - theirs).max() < (1e-4 if dimension == 2 else 5e-3) * abs(theirs).max()
     assert found.strain_square(points, field) == pytest.approx(expected.strain_square(points, field), rel=1e-3)
 
@@ -67,9 +70,10 @@ def test_what_is_returned_stays_as_it_is() -> None:
     numbering, points = scattered(2)
     made = FormAssembly(numbering, convection=True)
     field, none = np.ones((numbering.nodes, 2)), np.zeros(len(numbering.cells))
-    matrix, load = made.matrix(points, 1.0, 1.0, field, field, none), made.mass_times(points, field)
+    matrix = made.matrix(points, Coefficients(1.0, 1.0, field, field, none))
+    load = made.mass_times(points, field)
     before = matrix.copy(), load.copy()
-    made.matrix(2.0 * points, 3.0, 1.0, -field, -field, none + 1.0)
+    made.matrix(2.0 * points, Coefficients(3.0, 1.0, -field, -field, none + 1.0))
     made.mass_times(2.0 * points, -field)
     assert abs(matrix - before[0]).max() == 0.0
     np.testing.assert_array_equal(load, before[1])
@@ -78,18 +82,19 @@ def test_what_is_returned_stays_as_it_is() -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_without_convection_the_rest_is_the_same(dimension: int) -> None:
     numbering, points = scattered(dimension)
-    given = points, 1.0, 0.5, np.zeros((numbering.nodes, dimension)), np.zeros((numbering.nodes, dimension))
-    none = np.zeros(len(numbering.cells))
-    theirs = CompiledAssembly(numbering).matrix(*given, none)
-    assert abs(FormAssembly(numbering, convection=False).matrix(*given, none) - theirs).max() < 1e-14
+    still, none = np.zeros((numbering.nodes, dimension)), np.zeros(len(numbering.cells))
+    given = Coefficients(1.0, 0.5, still, still, none)
+    theirs = CompiledAssembly(numbering).matrix(points, given)
+    assert abs(FormAssembly(numbering, convection=False).matrix(points, given) - theirs).max() < 1e-14
 
 
 def test_memory_does_not_grow_with_the_number_of_meshes() -> None:
     """Each takes about 1.5 MB."""
     numbering, points = scattered(2, refinements=4)
     field, none = np.ones((numbering.nodes, 2)), np.zeros(len(numbering.cells))
+    given = Coefficients(1.0, 1.0, field, field, none)
     most = []
     for _ in range(200):
-        FormAssembly(numbering, convection=True).matrix(points, 1.0, 1.0, field, field, none)
+        FormAssembly(numbering, convection=True).matrix(points, given)
         most.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert most[-1] < most[20] + 20_000  # KiB

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterat
     back = np.where(np.isnan(resolved), 1.0, _given_back(met, film, stokes))
     for row in met.worst(-stokes):
         if struck[row]:
-            yield _finding(met, film, row, float(stokes[row]), float(resolved[row]), float(back[row]))
+            yield _finding(met, film, row, _Rebound(float(stokes[row]), float(resolved[row]), float(back[row])))
 
 
 def _given_back(met: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
@@ -56,8 +57,22 @@ def _given_back(met: DesignContacts, film: Film, stokes: FloatArray) -> FloatArr
     return np.maximum(left - 2.0 * within / stokes, 0.0)
 
 
-def _finding(met: DesignContacts, film: Film, row: int, stokes: float, resolved: float, back: float) -> Finding:
-    share = float(np.exp(-BALLS / stokes)) if stokes >= REBOUND else 0.0
+class _Rebound(NamedTuple):
+    """An impact at a ``stokes`` number [1]: the gap down to which the mesh has ``resolved`` its film [length], NaN
+    where there is none, and the part of the speed that comes ``back`` with that film alone [1]."""
+
+    stokes: float
+    resolved: float
+    back: float
+
+    @property
+    def expected(self) -> float:
+        """Part of the speed with which balls in liquids come back [1]."""
+        return float(np.exp(-BALLS / self.stokes)) if self.stokes >= REBOUND else 0.0
+
+
+def _finding(met: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Finding:
+    (stokes, resolved, back), share = rebound, rebound.expected
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
     lossless = next(one for one in met.interactions if one.law.conservative)
     field = lossless.field

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import ceil, log2
 
 import numpy as np
@@ -44,51 +45,52 @@ def _finding(met: DesignContacts, row: int, frequency: float, stiffness: float, 
     }
     pair = " and ".join(met.names(row))
     text = f"{pair}: a contact lasts about {figure(np.pi / frequency)}, and a step {figure(time.step)}"
+    note = Finding("note", QUESTION, met.names(row), text, found=found)
     if met.system.implicit:
-        return _implicit_finding(met.names(row), text, found, frequency, time, met.law.dissipative)
+        return _implicit_finding(note, frequency, time, met.law.dissipative)
     if met.system.substeps is None:
-        return _adapted_finding(met.names(row), text, found, frequency, time)
-    return _fixed_finding(met.names(row), text, found, frequency * time.step, met.system.substeps)
+        return _adapted_finding(note, frequency, time)
+    return _fixed_finding(note, frequency * time.step, met.system.substeps)
 
 
-def _fixed_finding(names: tuple[str, str], text: str, found: dict[str, float], turn: float, substeps: int) -> Finding:
+def _told(note: Finding, text: str, **found: float) -> Finding:
+    """The note with more ``text`` and figures."""
+    return replace(note, text=note.text + text, found={**note.found, **found})
+
+
+def _fixed_finding(note: Finding, turn: float, substeps: int) -> Finding:
     """Compare a fixed substep with the contact's frequency; ``turn`` is ω times the step."""
     each = turn / substeps
-    found |= {"substeps": substeps, "turn_per_substep": each}
-    text += f" of {substeps} substeps; frequency times substep is {figure(each)}"
+    text = f" of {substeps} substeps; frequency times substep is {figure(each)}"
+    note = _told(note, text, substeps=substeps, turn_per_substep=each)
     if each <= ACCURATE:
-        return Finding("note", QUESTION, names, text, found=found)
+        return note
     grade: Grade = "error" if each > _STABLE else "warning"
-    text += ", which explodes above 2" if each > _STABLE else ", which is inaccurate above 0.5"
+    more = ", which explodes above 2" if each > _STABLE else ", which is inaccurate above 0.5"
     enough = {"substeps": ceil(turn / ACCURATE)}
     remedy = f"Set contact.substeps to {enough['substeps']} or more, or leave it out."
-    return Finding(grade, QUESTION, names, text, remedy, found, enough)
+    return replace(_told(note, more), grade=grade, remedy=remedy, enough=enough)
 
 
-def _implicit_finding(
-    names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable, damped: bool
-) -> Finding:
+def _implicit_finding(note: Finding, frequency: float, time: TimeTable, damped: bool) -> Finding:
     turn = frequency * time.step
-    found |= {"turn_per_step": turn}
-    text += f", which is implicit; frequency times step is {figure(turn)}"
+    note = _told(note, f", which is implicit; frequency times step is {figure(turn)}", turn_per_step=turn)
     if turn <= ACCURATE or not damped:
-        return Finding("note", QUESTION, names, text, found=found)
+        return note
     enough = {"time_step": ACCURATE / frequency}
     remedy = f"Set time.step to {round_down(enough['time_step'])} or less, or contact.stepping to substeps."
-    return Finding("warning", QUESTION, names, f"{text}: dampers are missed above 0.5", remedy, found, enough)
+    return replace(_told(note, ": dampers are missed above 0.5"), grade="warning", remedy=remedy, enough=enough)
 
 
-def _adapted_finding(
-    names: tuple[str, str], text: str, found: dict[str, float], frequency: float, time: TimeTable
-) -> Finding:
+def _adapted_finding(note: Finding, frequency: float, time: TimeTable) -> Finding:
     substeps, least = (2 ** ceil(log2(max(size * frequency / RESOLUTION, 1.0))) for size in (time.step, time.shortest))
-    found |= {"substeps": substeps}
-    text += f", divided into about {substeps}"
+    note = _told(note, f", divided into about {substeps}", substeps=substeps)
     if substeps <= MOST_SUBSTEPS:
-        return Finding("note", QUESTION, names, text, found=found)
+        return note
     enough = {"time_step": MOST_SUBSTEPS * RESOLUTION / frequency / 2.0}
     remedy = f"Soften the law, widen its range, or set time.step to {round_down(enough['time_step'])} or less."
+    note = replace(note, grade="warning", remedy=remedy, enough=enough)
     if least <= MOST_SUBSTEPS:
-        return Finding("warning", QUESTION, names, f"{text}: steps will be cut", remedy, found, enough)
-    text += f", and even the shortest step more than the {MOST_SUBSTEPS} that are allowed"
-    return Finding("error", QUESTION, names, text, remedy, found, enough)
+        return _told(note, ": steps will be cut")
+    text = f", and even the shortest step more than the {MOST_SUBSTEPS} that are allowed"
+    return replace(_told(note, text), grade="error")

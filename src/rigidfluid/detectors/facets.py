@@ -72,6 +72,7 @@ class FacetDetector(Detector):
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
         solids = {shape_key(body): _Solid(FacetSurface(body.facets)) for body in bodies if body.facets is not None}
         self._solids = [solids.get(shape_key(body)) for body in bodies]
+        self._wall_radii = {wall.surface: float(radius_of(wall.shape)) for wall in walls}
         self._fixed = {wall.surface: _fixed(wall.shape) for wall in walls}
         smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
         self._smooth = np.array(smooth, dtype=np.int64)
@@ -99,13 +100,12 @@ class FacetDetector(Detector):
             if isinstance(placed[a], _Facets) or isinstance(placed[b], _Facets):
                 spread = SPREAD * float(min(self._bounds[a], self._bounds[b]))
                 touches = _pair_touches(placed[a], placed[b], reach, spread)
-                found.append(_contacts(int(a), int(b), touches, self._radii[a], self._radii[b], False))
+                found.append(self._contacts(int(a), int(b), touches))
         for body, wall in near_walls(pose.position, self._bounds, self.walls, reach):
             fixed, one = self._fixed[wall.surface], placed[body]
             if isinstance(fixed, _Facets) or not isinstance(one, _Ellipsoid):
                 touches = _pair_touches(one, fixed, reach, SPREAD * float(self._bounds[body]))
-                radii = self._radii[body], radius_of(wall.shape)
-                found.append(_contacts(body, wall.surface, touches, *radii, True))
+                found.append(self._contacts(body, wall.surface, touches))
         return in_order(found)
 
     def _smooth_pair_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
@@ -115,6 +115,18 @@ class FacetDetector(Detector):
         at_walls = self._long_contacts.wall_contacts(_select_bodies(pose, self._long), reach)
         found = [pairs, *(replace(each, body_a=self._long[each.body_a]) for each in at_walls)]
         return [select(each, each.gap <= reach) for each in found]
+
+    def _contacts(self, a: int, b: int, touches: Touches) -> Contacts:
+        """Contacts of a body with another one or a wall, by their numbers."""
+        count = len(touches.gap)
+        return Contacts(
+            body_a=np.full(count, a),
+            body_b=np.full(count, b),
+            **touches._asdict(),
+            radius_a=np.full(count, self._radii[a]),
+            radius_b=np.full(count, self._radii[b] if b < len(self.bodies) else self._wall_radii[b]),
+            at_wall=np.full(count, b >= len(self.bodies)),
+        )
 
     def _placed(self, index: int, position: FloatArray, rotation: FloatArray) -> _Placed:
         solid, body = self._solids[index], self.bodies[index]
@@ -319,18 +331,6 @@ def _select_bodies(pose: Pose, bodies: IntArray) -> Pose:
 def _no_touches(dimension: int) -> Touches:
     vectors = np.empty((0, dimension))
     return Touches(vectors, vectors, vectors, np.empty(0))
-
-
-def _contacts(a: int, b: int, touches: Touches, radius_a: float, radius_b: float, at_wall: bool) -> Contacts:
-    count = len(touches.gap)
-    return Contacts(
-        body_a=np.full(count, a),
-        body_b=np.full(count, b),
-        **touches._asdict(),
-        radius_a=np.full(count, radius_a, dtype=float),
-        radius_b=np.full(count, radius_b, dtype=float),
-        at_wall=np.full(count, at_wall),
-    )
 
 
 def _is_taken(piece: Piece, long: bool) -> bool:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.mesh.meshing import netgen_mesh, sides, surfaces_of
+from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh, sides, surfaces_of
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facet_surface import FacetSurface
 from rigidfluid.core.model.facets import Facets, area_vectors
@@ -196,9 +196,8 @@ def _fine_facets(shape: Any, dimension: int, unit: float) -> Facets:
     for number, side in enumerate(sides(shape, dimension)):
         side.name = str(number)
     try:
-        made = netgen_mesh(
-            shape, dimension, size / _FACETS, _GROWTH, surfaces_alone=True, per_radius=_FACETS_PER_RADIUS
-        )
+        lengths = EdgeLengths(size / _FACETS, _GROWTH, per_radius=_FACETS_PER_RADIUS)
+        made = netgen_mesh(shape, dimension, lengths, surfaces_alone=True)
     except MeshError as error:
         found = f"a shape that Netgen cannot mesh ({str(error.__cause__).strip()})"
         remedy = "Repair it where it was drawn."

@@ -17,7 +17,8 @@ from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall, radius_of, wall_radii
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, put_back, reset
-from rigidfluid.marching.field import Accuracy, march_from
+from rigidfluid.marching.field import WAVES, Accuracy, Band
+from rigidfluid.marching.options import MarchingOptions
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
 from rigidfluid.marching.shared import NO_GAPS, Gaps, SharedMesh, joined_gaps
 from rigidfluid.marching.topology import Numbers, Topology
@@ -40,6 +41,14 @@ class _Scope(NamedTuple):
     reach: float
 
 
+class _Field(NamedTuple):
+    """Field marched from a ``body``: it is in ``work``, with the ``tree`` of the body's facets."""
+
+    body: int
+    work: Workspace
+    tree: Tree
+
+
 _Near = tuple[int, list[int]]
 """A body, and the surfaces that may be near it."""
 
@@ -52,28 +61,25 @@ class ContactFinder:
     ``reach`` on an edge or a facet has a corner of it in the band. So the march meets the facets at the end of every
     straight line of that length through the fluid.
 
-    ``accuracy`` is that of the fields: gaps are exact to the facets in both cases. A pair that is near at ``several``
-    separate places has a contact at each. Fields go on to the end of the mesh for the ``whole_domain``. 0 ``threads``
-    are as many as there are cores.
+    The ``options`` say how the fields are marched: gaps are exact to the facets with either accuracy. Fields go on to
+    the end of the mesh for the ``whole_domain``.
     """
 
     def __init__(
         self,
         bodies: Sequence[Body],
         walls: Sequence[Wall],
-        accuracy: Accuracy,
-        several: bool,
+        options: MarchingOptions,
         whole_domain: bool,
-        threads: int = 0,
     ) -> None:
         self._walls = tuple(walls)
         self._bounds = np.array([body.bounding_radius for body in bodies], dtype=float)
         self._radii = np.array([radius_of(body) for body in bodies], dtype=float)
         self._surfaces = max([len(bodies) - 1, *(wall.surface for wall in walls)]) + 1
-        self._accuracy: Accuracy = accuracy
-        self._several = several
+        self._accuracy: Accuracy = options.accuracy
+        self._several = options.multiple
         self._whole_domain = whole_domain
-        self._workers = Workers(threads)
+        self._workers = Workers(options.threads)
         self._shared: SharedMesh | None = None
 
     def find(self, pose: Pose, mesh: Mesh, reach: float) -> Contacts:
@@ -105,12 +111,13 @@ class ContactFinder:
         scope = _Scope(shared.part.topology, points, position, reach)
         near = [(body, close) for body, others in near if (close := self._close_surfaces(scope, body, others))]
         sources = [(body,) for body, _ in near]
-        marches = shared.march(points, shared.neighbours(points), sources, *self._band(scope))
+        marches = shared.march(points, sources, self._band(scope))
         gaps = [NO_GAPS]
         for (body, others), march in zip(near, marches, strict=True):
             if march is not None:
                 put_back(work, *march[:4])
-                gaps += [self._surface_gaps(scope, work, march.tree, body, it, shared.facets_of(it)) for it in others]
+                field = _Field(body, work, march.tree)
+                gaps += [self._surface_gaps(scope, field, other, shared.facets_of(other)) for other in others]
                 reset(work, len(march.vertices), len(march.beyond))
         return scope, shared.gather(joined_gaps(gaps))
 
@@ -143,29 +150,30 @@ class ContactFinder:
         if not others:
             return []
         topology, points = scope.topology, scope.points
-        wave = march_from(topology, points, [body], *self._band(scope), self._accuracy, work)
+        wave = WAVES[self._accuracy](topology, points, [body], self._band(scope), work)
         if self._accuracy != "exact":
             measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
-        gaps = [self._surface_gaps(scope, work, wave.tree, body, other, topology.facets_of(other)) for other in others]
+        field = _Field(body, work, wave.tree)
+        gaps = [self._surface_gaps(scope, field, other, topology.facets_of(other)) for other in others]
         reset(work, wave.touched, wave.beyond)
         return gaps
 
-    def _surface_gaps(self, scope: _Scope, work: Workspace, tree: Tree, body: int, other: int, chosen: Numbers) -> Gaps:
-        """Gaps of the facets ``chosen`` of the other surface to the body whose field is in ``work``."""
+    def _surface_gaps(self, scope: _Scope, field: _Field, other: int, chosen: Numbers) -> Gaps:
+        """Gaps of the facets ``chosen`` of the other surface to the body of a field."""
         topology, points, reach, several = scope.topology, scope.points, scope.reach, self._several
-        ball, wanted = self._ball(scope, body), topology.seeds([body]).wanted
+        ball, wanted = self._ball(scope, field.body), topology.seeds([field.body]).wanted
         gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
-        facet_gaps(points, topology.surfaces, wanted, tree, *ball, chosen, reach, several, work, gap, partner)
+        surfaces, work = topology.surfaces, field.work
+        facet_gaps(points, surfaces, wanted, field.tree, *ball, chosen, reach, several, work, gap, partner)
         near = np.flatnonzero(np.isfinite(gap))
-        pair = np.full(len(near), body * self._surfaces + other)
+        pair = np.full(len(near), field.body * self._surfaces + other)
         return Gaps(pair, chosen[near], gap[near], partner[near])
 
     def _ball(self, scope: _Scope, body: int) -> tuple[FloatArray, float]:
         return scope.position[body], self._bounds[body] * ROUNDED_UP
 
-    def _band(self, scope: _Scope) -> tuple[float, float]:
-        """Width [length] and slack [1] of the band."""
-        return inf if self._whole_domain else scope.reach, TO_CORNER[scope.points.shape[1]]
+    def _band(self, scope: _Scope) -> Band:
+        return Band(inf if self._whole_domain else scope.reach, TO_CORNER[scope.points.shape[1]])
 
     def _least_gaps(self, facets: Numbers, gaps: Gaps) -> Gaps:
         """Least gap of each pair, or of each separate place; of equal ones that at the first facet."""

@@ -33,8 +33,7 @@ class MarchingDetector(Detector):
         from rigidfluid.marching.contacts import ContactFinder
 
         super().__init__(options, bodies, walls)
-        how = options.accuracy, options.multiple, self.whole_domain, options.threads
-        self._finder = ContactFinder(bodies, walls, *how)
+        self._finder = ContactFinder(bodies, walls, options, self.whole_domain)
 
     @final
     @classmethod

@@ -18,6 +18,13 @@ from rigidfluid.marching.workspace import Workspace, new_workspace
 Accuracy = Literal["exact", "first-order"]
 
 
+class Band(NamedTuple):
+    """Vertices at a distance D ≤ ``width`` + ``slack`` L [length, 1], L the longest edge of the vertex."""
+
+    width: float
+    slack: float = 0.0
+
+
 class Wave(NamedTuple):
     """Numbers of vertices that a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
 
@@ -70,7 +77,7 @@ def distance_field(
     arXiv:2402.19093; that the nearest facet travels along is ours.
     """
     work = workspace or new_workspace(topology.vertices)
-    wave = march_from(topology, points, surfaces, band_width, 0.0, accuracy, work)
+    wave = WAVES[accuracy](topology, points, surfaces, Band(band_width), work)
     vertices = work.touched[: wave.touched].copy()
     distance = work.key[vertices]
     facet = work.facet[vertices]
@@ -78,26 +85,23 @@ def distance_field(
     return DistanceField(vertices, np.sqrt(distance) if accuracy == "exact" else distance, facet)
 
 
-def march_from(
-    topology: Topology,
-    points: FloatArray,
-    surfaces: Iterable[int],
-    band_width: float,
-    slack: float,
-    accuracy: Accuracy,
-    work: Workspace,
-) -> Wave:
-    """March and leave the field in ``work``, to be reset by the caller.
-
-    The band are the vertices with D ≤ ``band_width`` + ``slack`` L, L the longest edge of the vertex.
-    """
+def exact_wave(topology: Topology, points: FloatArray, surfaces: Iterable[int], band: Band, work: Workspace) -> Wave:
+    """March from facet to facet and leave the field, of squares, in ``work``, to be reset by the caller."""
     seeds = topology.seeds(surfaces)
     size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
-    band = band_width, slack
-    if accuracy == "exact":
-        surface = topology.surfaces, seeds.wanted, tree
-        touched, beyond = march(points, topology.neighbours, *surface, *band, work, 0, size, 0)
-    else:
-        cells = topology.cells, topology.cell_rows
-        touched, beyond = march_first_order(points, *cells, topology.neighbours, *band, work, size), 0
+    surface = topology.surfaces, seeds.wanted, tree
+    touched, beyond = march(points, topology.neighbours, *surface, *band, work, 0, size, 0)
     return Wave(touched, beyond, tree)
+
+
+def planar_wave(topology: Topology, points: FloatArray, surfaces: Iterable[int], band: Band, work: Workspace) -> Wave:
+    """The same to first order, by the paper's planar waves, which leave distances."""
+    seeds = topology.seeds(surfaces)
+    size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
+    cells = topology.cells, topology.cell_rows
+    touched = march_first_order(points, *cells, topology.neighbours, *band, work, size)
+    return Wave(touched, 0, tree)
+
+
+WAVES = {"exact": exact_wave, "first-order": planar_wave}
+"""March by its accuracy."""

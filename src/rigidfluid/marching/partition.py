@@ -20,7 +20,7 @@ import numpy as np
 from rigidfluid.core.model.facet_tree import Tree
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.exact import march_on, put_back, seed
-from rigidfluid.marching.field import DistanceField
+from rigidfluid.marching.field import Band, DistanceField
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
@@ -76,6 +76,17 @@ class Part:
     workspace: Workspace
 
 
+class PlacedPart(NamedTuple):
+    """A ``part`` where it lies: its vertices in their order are at ``points`` (n, d) [length].
+
+    Its ``neighbours`` know the longest edges elsewhere, at the border, where a band has a slack.
+    """
+
+    part: Part
+    points: FloatArray
+    neighbours: Neighbours
+
+
 def split(mesh: Mesh, owner: IntArray) -> list[Part]:
     """Cut a whole mesh into parts along its facets; ``owner`` (M,) is the number of each cell's part, from 0."""
     groups = [mesh.cells[owner == number] for number in range(int(owner.max()) + 1)]
@@ -120,32 +131,26 @@ def march_part(
     values depend on that order.
     """
     chosen = [tuple(surfaces)]
-    [march] = march_side_by_side(part, points, part.topology.neighbours, chosen, (band_width, 0.0), exchange)
+    placed = PlacedPart(part, points, part.topology.neighbours)
+    [march] = march_side_by_side(placed, chosen, Band(band_width), exchange)
     if march is None:
         return DistanceField(np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
     return DistanceField(part.vertices[march.vertices].astype(np.int32), np.sqrt(march.key), march.facet)
 
 
 def march_side_by_side(
-    part: Part,
-    points: FloatArray,
-    neighbours: Neighbours,
-    sources: Sequence[Sequence[int]],
-    band: tuple[float, float],
-    exchange: Exchange,
+    placed: PlacedPart, sources: Sequence[Sequence[int]], band: Band, exchange: Exchange
 ) -> list[Halted | None]:
     """This part of several fields of the whole mesh, each from its own ``sources``; None if a field does not reach it.
 
-    ``points`` (n, d) are in the order of ``part.vertices`` [length]; ``band`` is width and slack as in `march_from`
-    [length, 1], and with a slack ``neighbours`` must know the longest edges elsewhere, at the border. All parts call
-    ``exchange`` together, once a round for all fields.
+    All parts call ``exchange`` together, once a round for all fields.
     """
     marches: list[Halted | None] = [None] * len(sources)
-    due = [(number, _NOTHING) for number, surfaces in enumerate(sources) if _starts_in(part, surfaces)]
+    due = [(number, _NOTHING) for number, surfaces in enumerate(sources) if _starts_in(placed.part, surfaces)]
     while True:
         fresh = [_NOTHING]
         for number, news in due:
-            march, rows, first = _go_on(part, points, neighbours, sources[number], band, marches[number], news)
+            march, rows, first = _go_on(placed, sources[number], band, marches[number], news)
             marches[number] = march
             fresh.append(Reached(np.full(len(rows), number), rows, march.key[first], march.facet[first]))
         found = exchange(Reached(*map(np.concatenate, zip(*fresh, strict=True))))
@@ -164,15 +169,10 @@ def _starts_in(part: Part, surfaces: Sequence[int]) -> bool:
 
 
 def _go_on(
-    part: Part,
-    points: FloatArray,
-    neighbours: Neighbours,
-    surfaces: Sequence[int],
-    band: tuple[float, float],
-    before: Halted | None,
-    news: Reached,
+    placed: PlacedPart, surfaces: Sequence[int], band: Band, before: Halted | None, news: Reached
 ) -> tuple[Halted, IntArray, IntArray]:
     """March on from ``news``; return also the border rows newly reached and their places among the march's vertices."""
+    part, points, neighbours = placed
     topology, work, seeds = part.topology, part.workspace, part.topology.seeds(surfaces)
     if before is None:
         (size, tree), first, beyond = seed(points, topology.surfaces, seeds.facets, seeds.whole, work), 0, 0

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.marching.adjacency import inner_vertices, rows_of
 from rigidfluid.marching.band import longest_edges
-from rigidfluid.marching.partition import Halted, Reached, march_side_by_side, part_of
+from rigidfluid.marching.field import Band
+from rigidfluid.marching.partition import Halted, PlacedPart, Reached, march_side_by_side, part_of
 from rigidfluid.marching.topology import Neighbours, Numbers
 
 
@@ -80,16 +81,10 @@ class SharedMesh:
             elsewhere[border[row]] = np.maximum(elsewhere[border[row]], square)
         return own._replace(elsewhere=elsewhere)
 
-    def march(
-        self,
-        points: FloatArray,
-        neighbours: Neighbours,
-        sources: Sequence[Sequence[int]],
-        width: float,
-        slack: float,
-    ) -> list[Halted | None]:
-        """This part of several fields, as `march_side_by_side` has it."""
-        return march_side_by_side(self.part, points, neighbours, sources, (width, slack), self._exchange)
+    def march(self, points: FloatArray, sources: Sequence[Sequence[int]], band: Band) -> list[Halted | None]:
+        """This part of several fields, as `march_side_by_side` has it, for vertices at ``points`` (n, d) [length]."""
+        placed = PlacedPart(self.part, points, self.neighbours(points))
+        return march_side_by_side(placed, sources, band, self._exchange)
 
     def gather(self, gaps: Gaps) -> Gaps:
         """Gaps that all ranks have found."""

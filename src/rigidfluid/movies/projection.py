@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from matplotlib.colors import to_rgb
 
@@ -29,14 +31,24 @@ _AMBIENT = 0.35
 
 def draw_projected(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
     """Paint the bodies, as seen along the normal of the grid, into a picture (rows, columns, 3)."""
-    depth = np.full(picture.shape[:2], -np.inf)
+    canvas = _Canvas(picture, np.full(picture.shape[:2], -np.inf), grid)
     places = zip(results.system.bodies, results.vectors("")[state], rotations(results, state), strict=True)
     for body, centre, turn in places:
-        _draw(picture, depth, grid, body, centre, turn)
+        _draw(canvas, body, centre, turn)
 
 
-def _draw(picture: FloatArray, depth: FloatArray, grid: Grid, body: Body, centre: FloatArray, turn: FloatArray) -> None:
+class _Canvas(NamedTuple):
+    """A ``picture`` (rows, columns, 3) of a ``grid``, and the ``depth`` (rows, columns) of what it shows: the height
+    towards the observer [length]."""
+
+    picture: FloatArray
+    depth: FloatArray
+    grid: Grid
+
+
+def _draw(canvas: _Canvas, body: Body, centre: FloatArray, turn: FloatArray) -> None:
     """Paint one body at the points where nothing is in front of it."""
+    picture, depth, grid = canvas
     part = grid.about(centre, body.bounding_radius)
     if part is None:
         return

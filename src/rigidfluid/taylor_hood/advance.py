@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import face_leak, face_power, pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, with_masses
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
 from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
@@ -21,70 +21,87 @@ _TURNING_TOLERANCE = 1e-3
 """Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
 
 
-def advance(
-    discretisation: Discretisation,
-    matrix: CoupledMatrix,
-    tolerance: float,
-    fluid: FluidState,
-    mesh: Mesh,
-    step: Step,
-    attempt: FluidState | None,
-) -> Advance:
-    """Constrain, solve and measure one step from ``fluid`` on ``mesh`` by its ``matrix``.
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Equations of one ``step`` from ``fluid`` on ``mesh``: their ``matrix`` is that of `step_matrix`."""
+
+    discretisation: Discretisation
+    matrix: CoupledMatrix
+    fluid: FluidState
+    mesh: Mesh
+    step: Step
+
+    def mesh_velocity(self) -> FloatArray:
+        """Velocity of the nodes (nodes, d) at the end of the step, zero to the last bit where nothing moves."""
+        d0, _, d2 = self.step.derivative
+        before = self.mesh.geometry
+        moved, moved_before = self.matrix.points - before, before - self.fluid["points_previous"]
+        return self.discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
+
+
+def advance(equations: Equations, tolerance: float, attempt: FluidState | None) -> Advance:
+    """Constrain, solve and measure one step.
 
     The solution of an earlier ``attempt`` at the step is the first guess; without one, the extrapolation in time.
     """
-    problem, surfaces, points = discretisation.problem, discretisation.surfaces, matrix.points
-    before = mesh.geometry
-    on_faces = pressure_load(surfaces, matrix.node_points, step.time)
-    system = _system(discretisation, matrix, on_faces, fluid, step)
+    discretisation, step = equations.discretisation, equations.step
+    on_faces = pressure_load(discretisation.surfaces, equations.matrix.node_points, step.time)
+    system = _system(equations, on_faces)
     if attempt is not None:
         guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
     solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
-    d = problem.dimension
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
-    velocity, twist = solution.velocity, Twist(solution.twist[:, :d], solution.twist[:, d:])
-    state = {
-        "velocity": velocity,
+    return _measured(equations, solution, on_faces, link_force)
+
+
+def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
+    """The step's result: its state, and the forces and energies of its solution."""
+    discretisation, matrix, fluid = equations.discretisation, equations.matrix, equations.fluid
+    problem, surfaces, step = discretisation.problem, discretisation.surfaces, equations.step
+    d, at, velocity = problem.dimension, matrix.node_points, solution.velocity
+    mean = 0.5 * (fluid["velocity"] + velocity)
+    midway = 0.5 * (equations.mesh.geometry + matrix.points)
+    begins = problem.inertia and step.derivative[2] == 0.0
+    on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
+    faces = surfaces, problem.inert_density, at, velocity, equations.mesh_velocity
+    return Advance(
+        fluid=_state(equations, solution),
+        twist=_twist(solution, d),
+        hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
+        kinetic_energy=kinetic_energy(discretisation, matrix.points, velocity),
+        dissipation=dissipation(discretisation, matrix.points, velocity),
+        dissipation_midway=dissipation(discretisation, midway, mean),
+        boundary_power=face_power(*faces, on_faces, solution.reaction),
+        link_force=link_force,
+        leak=face_leak(*faces),
+        grad_div=grad_div_dissipation(discretisation, matrix, velocity),
+        source_power=_source_power(discretisation, matrix, velocity, step.time),
+        stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
+    )
+
+
+def _state(equations: Equations, solution: Solution) -> FluidState:
+    """The fluid's state at the end of the step, with what it keeps of the one before."""
+    fluid, step, discretisation = equations.fluid, equations.step, equations.discretisation
+    twist = _twist(solution, discretisation.problem.dimension)
+    return {
+        "velocity": solution.velocity,
         "velocity_previous": fluid["velocity"],
-        "pressure": centre_pressure(discretisation, points, solution.pressure),
+        "pressure": centre_pressure(discretisation, equations.matrix.points, solution.pressure),
         "pressure_previous": fluid["pressure"],
-        "points_previous": before,
+        "points_previous": equations.mesh.geometry,
         "twist": flat(step.kinematics.component_twist(twist)),
         "twist_previous": fluid["twist"],
         "position": step.pose.position,
         "position_previous": fluid["position"],
     }
-    at = matrix.node_points
 
-    def mesh_velocity() -> FloatArray:
-        """Written so that it is zero to the last bit where nothing moves."""
-        d0, _, d2 = step.derivative
-        moved, moved_before = points - before, before - fluid["points_previous"]
-        return discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
 
-    mean = 0.5 * (fluid["velocity"] + velocity)
-    begins = problem.inertia and step.derivative[2] == 0.0
-    on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
-    return Advance(
-        fluid=state,
-        twist=twist,
-        hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
-        kinetic_energy=kinetic_energy(discretisation, points, velocity),
-        dissipation=dissipation(discretisation, points, velocity),
-        dissipation_midway=dissipation(discretisation, 0.5 * (before + points), mean),
-        boundary_power=face_power(
-            surfaces, problem.inert_density, at, velocity, mesh_velocity, on_faces, solution.reaction
-        ),
-        link_force=link_force,
-        leak=face_leak(surfaces, problem.inert_density, at, velocity, mesh_velocity),
-        grad_div=grad_div_dissipation(discretisation, matrix, velocity),
-        source_power=_source_power(discretisation, matrix, velocity, step.time),
-        stress_power=stress_power(discretisation, points, velocity, mean) if begins else None,
-    )
+def _twist(solution: Solution, dimension: int) -> Twist:
+    return Twist(solution.twist[:, :dimension], solution.twist[:, dimension:])
 
 
 def _source_power(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, time: float) -> float:
@@ -132,9 +149,9 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned)
 
 
-def _system(
-    discretisation: Discretisation, matrix: CoupledMatrix, on_faces: FloatArray, fluid: FluidState, step: Step
-) -> CoupledSystem:
+def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
+    discretisation, matrix = equations.discretisation, equations.matrix
+    fluid, step = equations.fluid, equations.step
     problem, surfaces = discretisation.problem, discretisation.surfaces
     node_points, controlled = matrix.node_points, matrix.controlled
     _, d1, d2 = step.derivative

@@ -102,7 +102,7 @@ class TaylorHoodBackend(FluidBackend):
         if start == "rest":
             made = initial(*given)
         else:
-            flow = steady_flow(*given) if start == "steady" else formula_flow(*given, start)
+            flow = steady_flow(*given) if start == "steady" else formula_flow(*given)
             made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
         self.drop_factors()
         return made
@@ -136,13 +136,15 @@ class TaylorHoodBackend(FluidBackend):
     @final
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
-        from rigidfluid.taylor_hood.transfer import transfer
+        from rigidfluid.taylor_hood.transfer import Flow, transfer
 
-        source, present = self.numbering_of(old), self._any_discretisation(old)
+        numbering, present = self.numbering_of(old), self._any_discretisation(old)
         before = kinetic_energy(present, old.geometry, fluid["velocity"])
         earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
         target = self._projecting_discretisation(new)
-        moved = transfer(source, target, self.options.tolerance, self.drop_factors, fluid, old, new, (before, earlier))
+        self.drop_factors()
+        moved = transfer(Flow(fluid, old, numbering, (before, earlier)), target, self.options.tolerance, new)
+        self.drop_factors()
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
     @final
@@ -209,13 +211,13 @@ class TaylorHoodBackend(FluidBackend):
 
     def _advanced(self, fluid: FluidState, mesh: Mesh, step: Step, tolerance: float) -> Advance:
         """One step to a ``tolerance``, from where the latest attempt at it has led."""
-        from rigidfluid.taylor_hood.advance import advance
+        from rigidfluid.taylor_hood.advance import Equations, advance
 
         discretisation = self._discretisation(mesh, step.controlled)
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
-        advanced = advance(discretisation, matrix, tolerance, fluid, mesh, step, guess)
+        advanced = advance(Equations(discretisation, matrix, fluid, mesh, step), tolerance, guess)
         self._latest_attempt = fluid, advanced.fluid
         return advanced
 

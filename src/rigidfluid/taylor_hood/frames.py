@@ -7,7 +7,7 @@ face these are no components, and the unknowns of its nodes are taken along axes
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -111,7 +111,8 @@ def local_frames(faces: Sequence[Face], node_points: FloatArray, vertices: int, 
     across[passes] -= np.einsum("ti,tj->tij", way[passes], way[passes])
     values, axes = np.linalg.eigh(across)
     free = values < 0.5
-    return Frames(nodes, axes, free, _flux_corrections(slip, node_points, vertices, nodes, axes, free))
+    frames = replace(Frames.empty(d), nodes=nodes, axes=axes, free=free)
+    return replace(frames, taken=_flux_corrections(frames, slip, node_points, vertices))
 
 
 def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int) -> FloatArray:
@@ -142,16 +143,16 @@ def _normal_spaces(faces: Sequence[Face], node_points: FloatArray, vertices: int
 
 
 def _flux_corrections(
-    slip: Sequence[Face], node_points: FloatArray, vertices: int, nodes: IntArray, axes: FloatArray, free: BoolArray
+    frames: Frames, slip: Sequence[Face], node_points: FloatArray, vertices: int
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Rows, unknowns and values (e,) by which midpoints of edges cancel the flux through ``slip`` faces of nodes that
-    move along them.
+    move along them; none of the ``frames`` has taken any yet.
 
     The vector ∫ φᵢ n at a vertex of curved triangles is small, and has another direction than the normal. Each edge's
     midpoint in the same triangles takes an equal part by a velocity along its own normal: so no free velocity takes
     fluid through the faces, and an even pressure moves nothing.
     """
-    count, d = node_points.shape
+    (count, d), nodes, axes, free = node_points.shape, frames.nodes, frames.axes, frames.free
     flux = np.zeros((count, d))
     for face in slip:
         np.add.at(flux, face.facet_nodes, face.area_vectors(node_points))

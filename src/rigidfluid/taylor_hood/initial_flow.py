@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -21,16 +20,11 @@ STEADY, MOST_ITERATIONS = 1e-8, 200
 """A flow is steady when an iteration changes it by so little, relative in L²; so many are tried."""
 
 
-def formula_flow(
-    target: Discretisation,
-    tolerance: float,
-    mesh: Mesh,
-    pose: Pose,
-    twist: Twist,
-    velocity: Callable[[float, FloatArray], FloatArray],
-) -> FluidState:
-    """The flow without divergence that is nearest to ``velocity`` (time, points) at time 0, as bodies and boundary have
+def formula_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
+    """The flow without divergence that is nearest to the formula of the problem at time 0, as bodies and boundary have
     it there."""
+    velocity = target.problem.initial
+    assert callable(velocity), "the flow starts otherwise"
     surfaces, state = target.surfaces, dict(resting_state(target.surfaces, mesh, pose, twist))
     node_points = target.numbering.node_points(mesh.geometry)
     with surfaces.ranks.raise_on_all():
@@ -51,9 +45,16 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
     SceneError
         If the iteration does not converge; with the Reynolds number.
     """
-    problem, numbering = target.problem, target.numbering
     state = dict(resting_state(target.surfaces, mesh, pose, twist))
-    node_points = numbering.node_points(mesh.geometry)
+    system = _picard(target, tolerance, _stokes(target, mesh, state))
+    state["velocity"] = state["velocity_previous"] = system.velocity
+    state["pressure"] = state["pressure_previous"] = centre_pressure(target, mesh.geometry, system.pressure)
+    return state
+
+
+def _stokes(target: Discretisation, mesh: Mesh, state: FluidState) -> CoupledSystem:
+    """The flow's equations without convection, guessed to be at rest."""
+    problem, node_points = target.problem, target.numbering.node_points(mesh.geometry)
     load, bodies = pressure_load(target.surfaces, node_points, 0.0), np.zeros_like(state["twist"])
     if problem.source is not None:
         load += target.mass_times(mesh.geometry, problem.source(0.0, node_points))
@@ -65,32 +66,32 @@ def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose
         viscosity=problem.dynamic_viscosity,
         advection=still,
         flow=still,
-        position=pose.position,
+        position=state["position"],
         mass_matrix=np.zeros((*bodies.shape, bodies.shape[1])),
         controlled=np.ones(len(bodies), dtype=bool),
         frame=np.zeros(problem.dimension),
     )
-    frame = container_velocity(target.surfaces, 0.0, node_points)
     given = _prescribed_velocity(target, node_points, state)
     jump = target.surfaces.pressure_jump(0.0, mesh.points)
-    system = CoupledSystem(matrix, load, bodies, given, still, np.zeros(numbering.vertices), bodies, jump)
-    change = np.inf
+    return CoupledSystem(matrix, load, bodies, given, still, np.zeros(target.numbering.vertices), bodies, jump)
+
+
+def _picard(target: Discretisation, tolerance: float, system: CoupledSystem) -> CoupledSystem:
+    """The equations whose guess is their solution, and which convect with it."""
+    density, matrix, change = target.problem.inert_density, system.matrix, np.inf
+    frame = container_velocity(target.surfaces, 0.0, matrix.node_points)
     for _ in range(MOST_ITERATIONS):
         try:
             solution = target.solve(system, tolerance)
         except StepRejected as error:
-            raise _not_steady(target, node_points, system.velocity, str(error)) from None
-        change = _relative_norm(target, mesh.geometry, solution.velocity - system.velocity, solution.velocity)
-        flow = problem.inert_density * solution.velocity
-        matrix = replace(matrix, advection=flow, flow=flow - problem.inert_density * frame, frame=frame)
+            raise _not_steady(target, matrix.node_points, system.velocity, str(error)) from None
+        change = _relative_norm(target, matrix.points, solution.velocity - system.velocity, solution.velocity)
+        flow = density * solution.velocity
+        matrix = replace(matrix, advection=flow, flow=flow - density * frame, frame=frame)
         system = replace(system, matrix=matrix, velocity=solution.velocity, pressure=solution.pressure, again=True)
-        if change < STEADY or problem.inert_density == 0.0:
-            break
-    else:
-        raise _not_steady(target, node_points, system.velocity, f"changes of {change:.1g} in the last iteration")
-    state["velocity"] = state["velocity_previous"] = system.velocity
-    state["pressure"] = state["pressure_previous"] = centre_pressure(target, mesh.geometry, system.pressure)
-    return state
+        if change < STEADY or density == 0.0:
+            return system
+    raise _not_steady(target, matrix.node_points, system.velocity, f"changes of {change:.1g} in the last iteration")
 
 
 def _prescribed_velocity(target: Discretisation, node_points: FloatArray, state: FluidState) -> FloatArray:

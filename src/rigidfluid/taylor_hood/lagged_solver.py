@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import ClassVar, Generic, TypeVar, final
 
 import numpy as np
@@ -21,6 +22,14 @@ are."""
 
 _PARALLEL = 1e-10
 """Relative size of what is new in a vector, below which it is rounding."""
+
+
+@dataclass(frozen=True)
+class Operator(Generic[Matrix]):
+    """Matrix A of a linear system: ``apply(x)`` is A x, ``build()`` gives A where preconditioners are made of it."""
+
+    apply: Callable[[FloatArray], FloatArray]
+    build: Callable[[], Matrix]
 
 
 class LaggedSolver(ABC, Generic[Matrix]):
@@ -72,8 +81,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
     @final
     def solve(
         self,
-        apply: Callable[[FloatArray], FloatArray],
-        matrix: Callable[[], Matrix],
+        operator: Operator[Matrix],
         residual: FloatArray,
         tolerance: float,
         outdated: bool = False,
@@ -81,17 +89,17 @@ class LaggedSolver(ABC, Generic[Matrix]):
     ) -> tuple[FloatArray, int]:
         """The correction x with ‖residual - A x‖ ≤ tolerance, and the iterations spent; raises StepRejected.
 
-        ``apply(x)`` is A x; ``matrix()`` builds A where a new preconditioner is needed, as it is at once where the old
-        one is ``outdated``. ``again``: the guess is a solution of nearly the same system, and what corrects it has
-        nothing to do with the corrections of steps. Vectors are this process' part.
+        A new preconditioner is made at once where the old one is ``outdated``. ``again``: the guess is a solution of
+        nearly the same system, and what corrects it has nothing to do with the corrections of steps. Vectors are this
+        process' part.
         """
         start = self.norm(residual)
         if not np.isfinite(start):
             raise StepRejected("fluid", f"a residual of {start}", "finite numbers", "Shorten time.step.")
         if start <= tolerance:
             return np.zeros_like(residual), 0
-        recycled, left = (np.zeros_like(residual), residual) if again else self._recycle(apply, residual)
-        correction, iterations = self._iterate(apply, matrix, left, tolerance, outdated)
+        recycled, left = (np.zeros_like(residual), residual) if again else self._recycle(operator.apply, residual)
+        correction, iterations = self._iterate(operator, left, tolerance, outdated)
         correction = recycled + correction
         if not again:
             self._corrections = (correction, *self._corrections)[:_RECYCLED]
@@ -100,8 +108,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     def _iterate(
         self,
-        apply: Callable[[FloatArray], FloatArray],
-        matrix: Callable[[], Matrix],
+        operator: Operator[Matrix],
         residual: FloatArray,
         tolerance: float,
         outdated: bool,
@@ -110,12 +117,12 @@ class LaggedSolver(ABC, Generic[Matrix]):
             return np.zeros_like(residual), 0
         fresh = not self._is_made or outdated or self._wasted > self._rebuild_cost
         if fresh:
-            self._renew(matrix)
+            self._renew(operator.build)
         most = self.most if fresh else min(self.most, self.fresh_iterations + 2 * self._rebuild_cost)
-        correction, iterations, converged = self.iterate(apply, residual, tolerance, most)
+        correction, iterations, converged = self.iterate(operator.apply, residual, tolerance, most)
         if not converged and not fresh:
-            self._renew(matrix)
-            correction, iterations, converged = self.iterate(apply, residual, tolerance, self.most)
+            self._renew(operator.build)
+            correction, iterations, converged = self.iterate(operator.apply, residual, tolerance, self.most)
         if not converged:
             self.forget()  # the next step tried is another one
             raise StepRejected(
@@ -149,8 +156,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
     @final
     def solve_columns(
         self,
-        apply: Callable[[FloatArray], FloatArray],
-        matrix: Callable[[], Matrix],
+        operator: Operator[Matrix],
         right_sides: FloatArray,
         tolerance: float,
     ) -> FloatArray:
@@ -160,11 +166,11 @@ class LaggedSolver(ABC, Generic[Matrix]):
         """
         fresh = not self._is_made
         if fresh:
-            self._renew(matrix)
-        found, wasted = self.iterate_columns(apply, right_sides, self.sharper * tolerance)
+            self._renew(operator.build)
+        found, wasted = self.iterate_columns(operator.apply, right_sides, self.sharper * tolerance)
         if found is None and not fresh:
-            self._renew(matrix)
-            found, wasted = self.iterate_columns(apply, right_sides, self.sharper * tolerance)
+            self._renew(operator.build)
+            found, wasted = self.iterate_columns(operator.apply, right_sides, self.sharper * tolerance)
         self._wasted += wasted
         if found is None:
             self.forget()

@@ -6,7 +6,7 @@ import ctypes
 import functools
 import weakref
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -101,14 +101,14 @@ class Pardiso:
     def __init__(self, matrix: sparse.csr_array, settings: Settings, orderings: Orderings) -> None:
         self.settings = settings
         self._rows, self._columns = (each.astype(np.int32, copy=False) for each in (matrix.indptr, matrix.indices))
-        self._handle = np.zeros(64, dtype=np.int64)
-        self._iparm = np.zeros(64, dtype=np.int32)
+        self._instance = _Instance(np.zeros(64, np.int64), np.zeros(64, np.int32), matrix.shape[0])
+        self._iparm = self._instance.iparm
         self._iparm[[_GIVEN, _FROM_ZERO, _REORDERING, _PIVOTS]] = 1, 1, _NESTED_DISSECTION, settings.pivots
         self._iparm[[_SCALED, _MATCHED]] = settings.matched
         self._iparm[_SINGLE] = settings.precision is np.float32
         self._iparm[[_ENTRIES, _MFLOP]] = -1  # to be counted
         self._take(matrix)
-        self.free = weakref.finalize(self, _call, self._handle, self._iparm, _FREE, len(self._scale))
+        self.free = weakref.finalize(self, _call, self._instance, _FREE)
         """Gives PARDISO's memory back."""
         self._analyse(orderings)
 
@@ -170,7 +170,7 @@ class Pardiso:
     def _run(self, phase: int, *sides: Any) -> None:
         """A phase, with the right sides and where their solutions go."""
         matrix = self._data, self._rows, self._columns, self._order
-        error = _call(self._handle, self._iparm, phase, len(self._scale), matrix, sides)
+        error = _call(self._instance, phase, matrix, sides)
         if error == _OUT_OF_MEMORY:
             raise MemoryError(f"PARDISO cannot allocate factors of {len(self._scale)} unknowns")
         if error:
@@ -193,17 +193,25 @@ def _search_by_pypardiso() -> Any:
     return PyPardisoSolver().libmkl
 
 
-def _call(handle: Any, iparm: Any, phase: int, size: int, matrix: Any = (), sides: Any = ()) -> int:
+class _Instance(NamedTuple):
+    """One solver in PARDISO's memory: its ``handle`` (64,), its parameters ``iparm`` (64,), the number of unknowns."""
+
+    handle: NDArray[np.int64]
+    iparm: _Numbers
+    size: int
+
+
+def _call(instance: _Instance, phase: int, matrix: Any = (), sides: Any = ()) -> int:
     """One phase; the error code, zero if there is none."""
     columns = sides[0].shape[1] if sides and sides[0].ndim == 2 else 1
-    integers = (ctypes.c_int32(each) for each in (1, 1, _UNSYMMETRIC, phase, size, columns, 0))
+    integers = (ctypes.c_int32(each) for each in (1, 1, _UNSYMMETRIC, phase, instance.size, columns, 0))
     copies, number, kind, phases, sizes, right_sides, silent = map(ctypes.byref, integers)
     data, rows, places, order = map(_address, matrix or (None,) * 4)
     given, found = map(_address, sides or (None,) * 2)
     error = ctypes.c_int32(0)
     _library().pardiso(
-        _address(handle), copies, number, kind, phases, sizes, data, rows, places, order, right_sides,
-        _address(iparm), silent, given, found, ctypes.byref(error),
+        _address(instance.handle), copies, number, kind, phases, sizes, data, rows, places, order, right_sides,
+        _address(instance.iparm), silent, given, found, ctypes.byref(error),
     )  # fmt: skip
     return error.value
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from scipy import sparse
 
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.constraint import Constraint
 
 
@@ -16,15 +17,12 @@ class Parts:
     """Parts of the matrix Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the
     free motions.
 
-    ``points`` (vertices, d) of the mesh; weights ``inertia`` of (u, v), ``viscosity`` of (∇u + ∇uᵀ, ∇v) and
-    ``grad_div`` (M,) of (∇·u, ∇·v) in K; ``reduced()``: the matrix itself.
+    ``points`` (vertices, d) of the mesh; the ``coefficients`` in K; ``reduced()``: the matrix itself.
     """
 
     constraint: Constraint
     stiffness: sparse.csr_array
     masses: FloatArray
     points: FloatArray
-    inertia: float
-    viscosity: float
-    grad_div: FloatArray
+    coefficients: Coefficients
     reduced: Callable[[], sparse.csr_array]

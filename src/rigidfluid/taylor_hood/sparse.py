@@ -12,15 +12,16 @@ from scipy import sparse
 
 from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.taylor_hood.coefficients import Coefficients, coefficients_of
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
-from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
-from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.lagged_solver import LaggedSolver, Operator
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.pardiso import Orderings
 from rigidfluid.taylor_hood.parts import Parts
 from rigidfluid.taylor_hood.projection import Masses, SparseProjection
 from rigidfluid.taylor_hood.reduced_matrix import ReducedMatrix
+from rigidfluid.taylor_hood.solvers import Solvers
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 _OUTDATED = 0.1
@@ -38,22 +39,8 @@ class Assembly(Protocol):
 
     numbering: Numbering
 
-    def matrix(
-        self,
-        points: FloatArray,
-        inertia: float,
-        viscosity: float,
-        advection: FloatArray,
-        flow: FloatArray,
-        grad_div: FloatArray,
-    ) -> sparse.csr_array:
-        """Matrix K of
-
-        inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q).
-
-        ``advection`` a and ``flow`` c, (nodes, d), already hold the density. ``grad_div`` γ (M,) [viscosity] is zero
-        where ``viscosity`` is. All matrices have one sparsity pattern, zeros kept.
-        """
+    def matrix(self, points: FloatArray, coefficients: Coefficients) -> sparse.csr_array:
+        """Matrix K of these coefficients; all matrices have one sparsity pattern, zeros kept."""
 
     def masses(self, points: FloatArray) -> Masses:
         """The parts of K for projections: both patterns are the same for all ``points``, zeros kept."""
@@ -71,13 +58,13 @@ class Assembly(Protocol):
 @dataclass(frozen=True, eq=False)
 class _Assembled:
     """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``stiffness``, P of the
-    ``constraint``; ``grad_div`` (M,) in K."""
+    ``constraint``, with the ``coefficients`` in K."""
 
     coupled: CoupledMatrix
     stiffness: sparse.csr_array
     constraint: Constraint
     masses: FloatArray
-    grad_div: FloatArray
+    coefficients: Coefficients
 
     @property
     def twists(self) -> slice:
@@ -103,9 +90,8 @@ class SparseDiscretisation:
         Equations and boundary conditions.
     assembly : Assembly
         The integrals.
-    solver, inviscid_solver : LaggedSolver
-        Solvers for matrices of steps, and for those without viscosity, as projections have. Kept from topology to
-        topology; they must have been told to forget the last one.
+    solvers : Solvers
+        Kept from topology to topology; they must have been told to forget the last one.
     mesh : Mesh
         The topology.
     controlled : (N,) bool
@@ -116,8 +102,7 @@ class SparseDiscretisation:
         self,
         problem: FluidProblem,
         assembly: Assembly,
-        solver: LaggedSolver[Parts],
-        inviscid_solver: LaggedSolver[Parts],
+        solvers: Solvers[LaggedSolver[Parts]],
         mesh: Mesh,
         controlled: BoolArray,
     ) -> None:
@@ -126,7 +111,7 @@ class SparseDiscretisation:
         self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.carrier)
         self._constraint = Constraint(self.surfaces, mesh, controlled)
         self._assembly = assembly
-        self._solvers = {True: solver, False: inviscid_solver}
+        self._solvers = solvers
         self._latest: dict[bool, _Assembled] = {}
         self._reduced: ReducedMatrix | None = None
         self._orderings = Orderings()
@@ -152,7 +137,7 @@ class SparseDiscretisation:
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
         s, constraint, free = system, self._constraint, ~system.matrix.controlled
-        assembled, solver = self._assembled(s.matrix), self._solvers[s.matrix.viscosity != 0.0]
+        assembled, solver = self._assembled(s.matrix), self._solvers.select(s.matrix.viscosity)
         zero = np.zeros(self.numbering.vertices)
         given = np.concatenate([(s.given - s.matrix.frame).ravel(), s.pressure_jump])
         load = np.concatenate([s.load.ravel(), zero])
@@ -163,8 +148,7 @@ class SparseDiscretisation:
         scale = max(solver.norm(right_side), s.scale)
         residual = right_side - assembled.apply(guess)
         enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
-        build = partial(self._parts, assembled)
-        correction, _ = solver.solve(assembled.apply, build, residual, enough, outdated, s.again)
+        correction, _ = solver.solve(self._operator(assembled), residual, enough, outdated, s.again)
         reduced = guess + correction
         everything = constraint.operator @ reduced + given
         twist = s.twist.copy()
@@ -194,7 +178,7 @@ class SparseDiscretisation:
         """Arrays that the next step depends on beside the state: the matrices of the factors, and the solvers'
         memories."""
         found: dict[str, FloatArray] = {}
-        for viscous, solver in self._solvers.items():
+        for viscous, solver in self._named_solvers():
             if solver.is_made:
                 origin = self._made_from[viscous]
                 arrays = {name: np.asarray(getattr(origin, name)) for name in _ORIGIN}
@@ -203,11 +187,15 @@ class SparseDiscretisation:
 
     def recall(self, memory: Mapping[str, FloatArray]) -> None:
         """Make the factors of a `memory` again, to the last bit."""
-        for viscous, solver in self._solvers.items():
+        for viscous, solver in self._named_solvers():
             prefix = f"{_NAMES[viscous]}_"
             found = {name.removeprefix(prefix): each for name, each in memory.items() if name.startswith(prefix)}
             if found:
                 solver.recall(found, partial(self._parts, self._assembled(self._origin(found))))
+
+    def _named_solvers(self) -> tuple[tuple[bool, LaggedSolver[Parts]], ...]:
+        """Each solver, and whether it is the one for viscous matrices."""
+        return (True, self._solvers.viscous), (False, self._solvers.inviscid)
 
     def _origin(self, memory: Mapping[str, FloatArray]) -> CoupledMatrix:
         return CoupledMatrix(
@@ -225,10 +213,10 @@ class SparseDiscretisation:
 
     def _impulse_response(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
         """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
-        solver = self._solvers[assembled.coupled.viscosity != 0.0]
+        solver = self._solvers.select(assembled.coupled.viscosity)
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
         right_sides[assembled.twists] = wrenches[~assembled.coupled.controlled].reshape(-1, wrenches.shape[2])
-        return solver.solve_columns(assembled.apply, partial(self._parts, assembled), right_sides, tolerance)
+        return solver.solve_columns(self._operator(assembled), right_sides, tolerance)
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
         """The latest of a step and the latest of its masses are kept, since both are asked again how bodies answer."""
@@ -239,10 +227,13 @@ class SparseDiscretisation:
         return self._latest[viscous]
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
-        grad_div = grad_div_coefficient(self.numbering, m)
-        stiffness = self._assembly.matrix(m.points, m.inertia, m.viscosity, m.advection, m.flow, grad_div)
+        coefficients = coefficients_of(self.numbering, m)
+        stiffness = self._assembly.matrix(m.points, coefficients)
         self._constraint.place(m.node_points, m.position)
-        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled], grad_div)
+        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled], coefficients)
+
+    def _operator(self, assembled: _Assembled) -> Operator[Parts]:
+        return Operator(assembled.apply, partial(self._parts, assembled))
 
     def _parts(self, assembled: _Assembled) -> Parts:
         """Ingredients of a preconditioner of this matrix, which is kept as its origin."""
@@ -252,8 +243,7 @@ class SparseDiscretisation:
         def reduced() -> sparse.csr_array:
             return self._reduced_matrix(stiffness).filled(stiffness, masses)
 
-        weights = m.inertia, m.viscosity, assembled.grad_div
-        return Parts(self._constraint, stiffness, masses, m.points, *weights, reduced)
+        return Parts(self._constraint, stiffness, masses, m.points, assembled.coefficients, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
         """Whether the factors at hand are of a step of another length or order, which serve badly."""

@@ -13,6 +13,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, FluidState, Mesh,
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
+from rigidfluid.taylor_hood.solvers import Solvers
 
 if TYPE_CHECKING:
     from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
@@ -50,9 +51,9 @@ class SparseBackend(TaylorHoodBackend):
 
         super().__init__(options, problem)
         dimension, orderings = self.problem.dimension, Orderings()
-        self._solvers: dict[str, list[LaggedSolver[Parts]]] = {
-            "lu": [LaggedFactors(dimension, orderings) for _ in range(2)],
-            "schur": [LaggedSchur(dimension) for _ in range(2)],
+        self._solvers: dict[str, Solvers[LaggedSolver[Parts]]] = {
+            "lu": Solvers(LaggedFactors(dimension, orderings), LaggedFactors(dimension, orderings)),
+            "schur": Solvers(LaggedSchur(dimension), LaggedSchur(dimension)),
         }
         self._assembly: Assembly | None = None
         self._geometry: FloatArray
@@ -79,8 +80,7 @@ class SparseBackend(TaylorHoodBackend):
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
         self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
-        solver, inviscid_solver = self._solvers[method]
-        return SparseDiscretisation(self.problem, self._assembly, solver, inviscid_solver, mesh, controlled)
+        return SparseDiscretisation(self.problem, self._assembly, self._solvers[method], mesh, controlled)
 
     @final
     def memory(self) -> FluidState:
@@ -106,8 +106,8 @@ class SparseBackend(TaylorHoodBackend):
     @final
     def drop_factors(self) -> None:
         for solvers in self._solvers.values():
-            for solver in solvers:
-                solver.forget()
+            solvers.viscous.forget()
+            solvers.inviscid.forget()
 
     @final
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,31 +23,33 @@ _MOST_SCALED = 1.25
 """Flow beside potential flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
 
 
-def transfer(
-    source: Numbering,
-    target: Discretisation,
-    tolerance: float,
-    forget: Callable[[], None],
-    fluid: FluidState,
-    old: Mesh,
-    new: Mesh,
-    energies: tuple[float, float],
-) -> FluidState:
-    """Carry the state over to the mesh ``new``.
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """State of a ``fluid`` on a ``mesh`` with this ``numbering``, and its kinetic ``energies``: now, and one step
+    before [energy]."""
+
+    fluid: FluidState
+    mesh: Mesh
+    numbering: Numbering
+    energies: tuple[float, float]
+
+
+def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) -> FluidState:
+    """Carry a flow over to the mesh ``new``.
 
     Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
     one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
     are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
-    projected, on the mesh where it belongs, and given the kinetic energy that it had, of ``energies`` (now, one step
-    before). The solution of one level is the guess for the other. ``forget`` drops what solutions before have left.
+    projected, on the mesh where it belongs, and given the kinetic energy that it had. The solution of one level is the
+    guess for the other.
     """
-    forget()
+    source, fluid, old = flow.numbering, flow.fluid, flow.mesh
     numbering, inertia = target.numbering, target.problem.inert_density
     on_nodes = Samples(old, source, numbering.node_points(new.geometry))
     displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
     moved = dict(fluid)
     moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
-    levels = ("", new.geometry, energies[0]), ("_previous", moved["points_previous"], energies[1])
+    levels = ("", new.geometry, flow.energies[0]), ("_previous", moved["points_previous"], flow.energies[1])
     correction = beside = np.zeros((numbering.nodes, numbering.dimension))
     for suffix, points, energy in levels:
         moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
@@ -63,7 +65,6 @@ def transfer(
             held = target.surfaces.held_part(projected)
             scale, beside = _rotational_part(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
         moved["velocity" + suffix] = projected + (scale - 1.0) * beside
-    forget()
     return moved
 
 

@@ -13,6 +13,7 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
@@ -154,7 +155,7 @@ def in_a_box(
         from rigidfluid.core.mesh.fluid_domain import FluidDomain
         from rigidfluid.core.mesh.meshing import generate_mesh
 
-        return generate_mesh(FluidDomain(bodies, pose, box, walls), *sizes, 0.5)
+        return generate_mesh(FluidDomain(bodies, pose, box, walls), Sizes(*sizes, 0.5))
 
     return Arrangement(semi_axes, pose, tuple(walls[face] for face in faces), make_mesh)
 

@@ -196,7 +196,7 @@ def _mesh(domain: Domain, relative_size: float) -> Mesh:
     size = relative_size * _size(domain)
     if domain.facets is not None:
         return fill_mesh(FluidDomain([], _nobody(domain), domain, []), Sizes(size, size, 0.3))
-    return generate_mesh(FluidDomain([], _nobody(domain), domain, ()), size, size, 0.3)
+    return generate_mesh(FluidDomain([], _nobody(domain), domain, ()), Sizes(size, size, 0.3))
 
 
 def _nobody(domain: Domain) -> Pose:

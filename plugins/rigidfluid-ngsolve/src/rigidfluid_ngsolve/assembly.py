@@ -9,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.api import FloatArray, IntArray
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.projection import Masses
 from rigidfluid_ngsolve.mesh import NodeMesh
@@ -61,20 +62,12 @@ class FormAssembly:
         self._divergence_square = over(self._weight * ngs.div(self._field) ** 2, _ORDER_OF_STRAIN_SQUARE)
         self._order: IntArray | None = None
 
-    def matrix(
-        self,
-        points: FloatArray,
-        inertia: float,
-        viscosity: float,
-        advection: FloatArray,
-        flow: FloatArray,
-        grad_div: FloatArray,
-    ) -> sparse.csr_array:
-        self._take(points, advection)
-        self._weight.vec.FV().NumPy()[:] = grad_div
-        _nodal(self._flow.vec, flow.shape[1])[:] = flow
-        self._inertia.Set(inertia)
-        self._viscosity.Set(viscosity)
+    def matrix(self, points: FloatArray, coefficients: Coefficients) -> sparse.csr_array:
+        self._take(points, coefficients.advection)
+        self._weight.vec.FV().NumPy()[:] = coefficients.grad_div
+        _nodal(self._flow.vec, self.numbering.dimension)[:] = coefficients.flow
+        self._inertia.Set(coefficients.inertia)
+        self._viscosity.Set(coefficients.viscosity)
         self._form.Assemble()
         entries, columns, starts = self._form.mat.CSR()
         if self._order is None:
@@ -85,7 +78,7 @@ class FormAssembly:
     def masses(self, points: FloatArray) -> Masses:
         n, d = self.numbering, self.numbering.dimension
         still, velocities = np.zeros((n.nodes, d)), n.nodes * d
-        whole = self.matrix(points, 1.0, 0.0, still, still, np.zeros(len(n.cells)))
+        whole = self.matrix(points, Coefficients(1.0, 0.0, still, still, np.zeros(len(n.cells))))
         return Masses(whole[:velocities:d, :velocities:d], whole[velocities:, :velocities])
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:

@@ -14,9 +14,11 @@ from rigidfluid.core.model.types import BoolArray, Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.solvers import Solvers
 
 if TYPE_CHECKING:
     from rigidfluid.backends.dolfinx.discretisation import Topology
+    from rigidfluid.backends.dolfinx.krylov import Krylov
 
 
 @final
@@ -39,9 +41,8 @@ class Dolfinx(TaylorHoodBackend):
             self.ranks = MpiRanks(MPI.COMM_WORLD)
         by_schur = self.options.solver == "schur" or (self.options.solver == "auto" and self.problem.dimension == 3)
         kind = LaggedSchur if by_schur else LaggedLU
-        self._solver, self._inviscid_solver = (
-            kind(self.ranks, self.problem.dimension, self.options.petsc) for _ in range(2)
-        )
+        given = self.ranks, self.problem.dimension, self.options.petsc
+        self._solvers: Solvers[Krylov] = Solvers(kind(*given), kind(*given))
         self._topology: Topology | None = None
 
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
@@ -55,12 +56,11 @@ class Dolfinx(TaylorHoodBackend):
         from rigidfluid.backends.dolfinx.discretisation import PetscDiscretisation
 
         topology = self._topology_of(numbering, mesh)
-        solvers = self._solver, self._inviscid_solver
-        return PetscDiscretisation(self.problem, topology, *solvers, mesh, controlled)
+        return PetscDiscretisation(self.problem, topology, self._solvers, mesh, controlled)
 
     def drop_factors(self) -> None:
-        self._solver.forget()
-        self._inviscid_solver.forget()
+        self._solvers.viscous.forget()
+        self._solvers.inviscid.forget()
 
     def _topology_of(self, numbering: Numbering, mesh: Mesh) -> Topology:
         from rigidfluid.backends.dolfinx.discretisation import Topology

@@ -16,10 +16,12 @@ from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.taylor_hood.coefficients import coefficients_of
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
-from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
+from rigidfluid.taylor_hood.lagged_solver import Operator
 from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.solvers import Solvers
 from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
 
@@ -50,26 +52,23 @@ class PetscDiscretisation:
     """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``controlled`` (N,) have a prescribed
     twist.
 
-    ``solver`` is for matrices of steps, ``inviscid_solver`` for those without viscosity. Both are kept from topology to
-    topology, and must have been told to forget the last one.
+    The ``solvers`` are kept from topology to topology, and must have been told to forget the last one.
     """
 
     def __init__(
         self,
         problem: FluidProblem,
         topology: Topology,
-        solver: Krylov,
-        inviscid_solver: Krylov,
+        solvers: Solvers[Krylov],
         mesh: Mesh,
         controlled: BoolArray,
     ) -> None:
         self.problem = problem
         self.numbering = topology.numbering
         self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.carrier)
-        self._topology, self._solver, self._inviscid_solver = topology, solver, inviscid_solver
-        pressure_pin = (
-            pinned_vertex(self.surfaces, mesh) if self.surfaces.enclosed and isinstance(solver, LaggedLU) else None
-        )
+        self._topology, self._solvers = topology, solvers
+        is_pinned = self.surfaces.enclosed and isinstance(solvers.viscous, LaggedLU)
+        pressure_pin = pinned_vertex(self.surfaces, mesh) if is_pinned else None
         self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pressure_pin)
         self._pinned = pressure_pin
 
@@ -103,10 +102,10 @@ class PetscDiscretisation:
         right_side = reduced.collect(load - reduced.times(given))
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
-        scale = max(self._solver.norm(right_side), s.scale)
+        scale = max(self._solvers.viscous.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
         enough = tolerance * scale
-        correction, _ = self._solver.solve(reduced.apply, lambda: reduced, residual, enough, again=s.again)
+        correction, _ = self._solvers.viscous.solve(_operator(reduced), residual, enough, again=s.again)
         return self._solution(s, reduced, guess + correction, given, load)
 
     def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
@@ -125,24 +124,23 @@ class PetscDiscretisation:
         self, reduced: Reduced, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float
     ) -> FloatArray:
         """This process' unknowns (columns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
-        solver = self._inviscid_solver if matrix.viscosity == 0.0 else self._solver
+        solver = self._solvers.select(matrix.viscosity)
         constraint = self._constraint
         right_sides = np.zeros((constraint.columns, wrenches.shape[2]))
         on_bodies = wrenches[~matrix.controlled].reshape(-1, wrenches.shape[2])
         right_sides[constraint.twist_slice] = on_bodies[: constraint.twists]
-        return solver.solve_columns(reduced.apply, lambda: reduced, right_sides, tolerance)
+        return solver.solve_columns(_operator(reduced), right_sides, tolerance)
 
     def _reduced(self, matrix: CoupledMatrix) -> Reduced:
         """Reduced form of this matrix, valid until the next one is assembled in the place of K."""
         m, topology, constraint = matrix, self._topology, self._constraint
         topology.clean()
         topology.space.move(m.points)
-        grad_div = grad_div_coefficient(self.numbering, m)
-        topology.forms.assemble(topology.matrix, m.inertia, m.viscosity, m.advection, m.flow, grad_div)
+        coefficients = coefficients_of(self.numbering, m)
+        topology.forms.assemble(topology.matrix, coefficients)
         operator = constraint.operator(m.node_points, m.position)
         inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
-        weights = m.inertia, m.viscosity, grad_div
-        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, *weights)
+        schur = partial(schur_data, topology.space, topology.forms, self.surfaces, coefficients)
         return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
 
     def _pinned_pressure(self, pressure: FloatArray) -> float:
@@ -164,3 +162,7 @@ class PetscDiscretisation:
         twist[free] = ranks.bcast(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
         velocity = space.velocities(everything[:size]) + system.matrix.frame
         return Solution(velocity, space.pressures(everything[size:]), twist, reaction)
+
+
+def _operator(reduced: Reduced) -> Operator[Reduced]:
+    return Operator(reduced.apply, lambda: reduced)

@@ -13,6 +13,7 @@ from dolfinx.mesh import meshtags
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.model.types import FloatArray
+from rigidfluid.taylor_hood.coefficients import Coefficients
 
 _STRAIGHT, _CURVED = 1, 2
 _DEGREE_IN_CURVED_CELLS = {2: 6, 3: 7}
@@ -54,26 +55,13 @@ class Forms:
         """A PETSc matrix for `assemble`: the rows of each process' velocities, then of its pressures."""
         return compat.create_block_matrix(self._matrix)
 
-    def assemble(
-        self,
-        matrix: Any,
-        inertia: float,
-        viscosity: float,
-        advection: FloatArray,
-        flow: FloatArray,
-        grad_div: FloatArray,
-    ) -> None:
-        """Overwrite it by that of
-
-        inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity (∇u + ∇uᵀ, ∇v) + (γ ∇·u, ∇·v) - (p, ∇·v) - (∇·u, q).
-
-        ``advection`` a and ``flow`` c, (nodes, d), already hold the density; ``grad_div`` γ (M,) is zero without them.
-        """
-        self._inertia.value, self._viscosity.value = inertia, viscosity
-        self._space.set(self._field, advection)
-        self._space.set(self._flow, flow)
-        self._space.set_cells(self._weight, grad_div)
-        moving = advection.any() or flow.any()
+    def assemble(self, matrix: Any, coefficients: Coefficients) -> None:
+        """Overwrite a `new_matrix` by that of these coefficients."""
+        self._inertia.value, self._viscosity.value = coefficients.inertia, coefficients.viscosity
+        self._space.set(self._field, coefficients.advection)
+        self._space.set(self._flow, coefficients.flow)
+        self._space.set_cells(self._weight, coefficients.grad_div)
+        moving = coefficients.advection.any() or coefficients.flow.any()
         compat.assemble_block_matrix(matrix, self._matrix if moving else self._without_convection)
 
     def pressure_mass(self, weight: FloatArray) -> Any:

@@ -11,36 +11,32 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.model.types import BoolArray
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 @dataclass(frozen=True)
 class SchurData:
-    """Data of the Schur complement at present: weights ``inertia`` of (u, v), ``viscosity`` of
-    (∇u + ∇uᵀ, ∇v) and ``grad_div`` (M,) of (∇·u, ∇·v), the matrices' forms.
+    """Data of the Schur complement at present: the matrix' ``coefficients``, and the matrices' forms.
 
     ``open`` (owned vertices,): whether a pressure is prescribed there; ``enclosed``: whether it is nowhere.
     """
 
-    inertia: float
-    viscosity: float
-    grad_div: FloatArray
+    coefficients: Coefficients
     forms: Forms
     open: BoolArray
     enclosed: bool
 
 
-def schur_data(
-    space: Space, forms: Forms, surfaces: Surfaces, inertia: float, viscosity: float, grad_div: FloatArray
-) -> SchurData:
+def schur_data(space: Space, forms: Forms, surfaces: Surfaces, coefficients: Coefficients) -> SchurData:
     """Collect the data of the Schur complement on the mesh as it lies now."""
     numbering = space.numbering
     is_open = np.zeros(numbering.vertices, dtype=bool)
     for face in surfaces.faces:
         if face.condition.is_open:
             is_open[face.nodes[face.nodes < numbering.vertices]] = True
-    return SchurData(inertia, viscosity, grad_div, forms, is_open[space.owned_vertices], surfaces.enclosed)
+    return SchurData(coefficients, forms, is_open[space.owned_vertices], surfaces.enclosed)
 
 
 class CahouetChabard:
@@ -51,12 +47,12 @@ class CahouetChabard:
     """
 
     def __init__(self, data: SchurData) -> None:
-        self._data = data
+        self._data, coefficients = data, data.coefficients
         self._mass = self._laplacian = None
-        if data.viscosity > 0.0:
-            mass = data.forms.pressure_mass(1.0 / (2.0 * data.viscosity + data.grad_div))
+        if coefficients.viscosity > 0.0:
+            mass = data.forms.pressure_mass(1.0 / (2.0 * coefficients.viscosity + coefficients.grad_div))
             self._mass = _solver(_assembled(mass), "jacobi", 1e-2)
-        if data.inertia > 0.0:
+        if coefficients.inertia > 0.0:
             matrix = _assembled(data.forms.pressure_laplacian)
             first = matrix.getOwnershipRange()[0]
             held = (first + np.flatnonzero(data.open)).astype(PETSc.IntType)
@@ -80,7 +76,7 @@ class CahouetChabard:
             y.scale(-1.0)
         if self._laplacian is not None:
             self._laplacian.solve(source, self._image)
-            y.axpy(-self._data.inertia, self._image)
+            y.axpy(-self._data.coefficients.inertia, self._image)
 
 
 def _assembled(form: Any) -> Any:

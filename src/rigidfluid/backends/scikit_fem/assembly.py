@@ -10,6 +10,7 @@ from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
 from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.projection import Masses
 
@@ -109,19 +110,12 @@ class CompiledAssembly:
         self._straight = straight
         self._build_sparsity()
 
-    def matrix(
-        self,
-        points: FloatArray,
-        inertia: float,
-        viscosity: float,
-        advection: FloatArray,
-        flow: FloatArray,
-        grad_div: FloatArray,
-    ) -> sparse.csr_array:
-        n, cells = self.numbering, self._cells(points)
+    def matrix(self, points: FloatArray, coefficients: Coefficients) -> sparse.csr_array:
+        n, c, cells = self.numbering, coefficients, self._cells(points)
         data = np.zeros(len(self._indices))  # by NumPy, whose large pages cost a tenth of Numba's small ones
-        ratio = grad_div / viscosity if viscosity > 0.0 else grad_div
-        kernels.assemble(data, points, cells, self._sparsity, inertia, viscosity, advection, flow, ratio, self._tables)
+        ratio = c.grad_div / c.viscosity if c.viscosity > 0.0 else c.grad_div
+        given = c.inertia, c.viscosity, c.advection, c.flow, ratio
+        kernels.assemble(data, points, cells, self._sparsity, *given, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
 
     def masses(self, points: FloatArray) -> Masses:

@@ -212,8 +212,8 @@ class MeshUpdater:
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._motion is None or self._reference is not reference:
             s = self._system
-            surroundings = s.bodies, s.domain, reference.pose
-            motion = MeshMotion(reference.mesh, *surroundings, s.backend.extension, s.window)
+            around = FluidDomain(s.bodies, reference.pose, s.domain, s.walls)
+            motion = MeshMotion(reference.mesh, around, s.backend.extension, s.window)
             self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
         return self._motion
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import chain
 
 import numpy as np
@@ -10,10 +10,10 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.window import Window
 
@@ -31,8 +31,9 @@ class MeshMotion:
     Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
     (of a ball only its translation); vertices on a flat surface across an axis slide along it, so their normal
     coordinate is fixed and the natural condition holds along the surface; on other surfaces of the domain x = X.
-    ``extension`` makes the solver from the mesh, its stiffness matrix and the held vertices of one component. If a
-    ``window`` of the domain is meshed, the mesh's ends go with it.
+    The mesh is of ``fluid_domain``, whose pose is the reference pose. ``extension`` makes the solver from the mesh, its
+    stiffness matrix and the held vertices of one component. If a ``window`` of the domain is meshed, the mesh's ends go
+    with it.
 
     Equation (ALE) of Van Landeghem et al., arXiv:2402.19093; τ after Kanchi and Masud, DOI 10.1002/fld.1512.
     """
@@ -40,16 +41,15 @@ class MeshMotion:
     def __init__(
         self,
         mesh: Mesh,
-        bodies: Sequence[Body],
-        domain: Domain,
-        reference_pose: Pose,
+        fluid_domain: FluidDomain,
         extension: MakeExtension = factorised,
         window: Window | None = None,
     ) -> None:
+        bodies, domain = fluid_domain.bodies, fluid_domain.domain
         self._points = mesh.points
         self._curved = mesh.curved
         self._turns = np.array([body.radius is None for body in bodies], dtype=bool)
-        self._pose = reference_pose
+        self._pose = fluid_domain.pose
         surfaces = [surface_vertices(mesh, i) for i in range(len(bodies))]
         self._on_bodies = np.concatenate([*surfaces, np.empty(0, np.int64)])
         self._body = np.repeat(np.arange(len(bodies)), [len(on_body) for on_body in surfaces])

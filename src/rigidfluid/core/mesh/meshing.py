@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -13,6 +13,7 @@ from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
@@ -29,24 +30,42 @@ _TOUCHING = 3e-7
 """Gap between two surfaces, over the mesher's unit, up to which Open CASCADE may take them for one."""
 
 
-def generate_mesh(
-    fluid_domain: FluidDomain,
-    size: float,
-    size_body: float,
-    growth: float,
-    finer: Sequence[tuple[FloatArray, float]] = (),
-) -> Mesh:
+Finer = Sequence[tuple[FloatArray, float]]
+"""Points (d,), and the longest edge wanted there [length]."""
+
+
+@dataclass(frozen=True)
+class EdgeLengths:
+    """Lengths of edges asked of Netgen, in the unit of its shape: at most ``size``, growing by ``growth`` with the
+    distance to where they are small [1], and no longer than at the points of ``finer``.
+
+    There are ``per_radius`` edges to a radius of curvature; None leaves that to Netgen.
+    """
+
+    size: float
+    growth: float
+    finer: Finer = ()
+    per_radius: float | None = None
+
+    @classmethod
+    def from_sizes(cls, sizes: Sizes, finer: Finer, unit: float) -> EdgeLengths:
+        """Lengths away from bodies, over ``unit``."""
+        near = [(in_unit(point, unit), float(in_unit(length, unit))) for point, length in finer]
+        return cls(float(in_unit(sizes.size, unit)), sizes.growth, near)
+
+
+def generate_mesh(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer = ()) -> Mesh:
     """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, the vertices of each surface's facets on that surface.
 
-    ``size`` is the longest edge wanted far from the bodies, ``size_body`` the longest allowed on them [length],
-    ``growth`` that of the size with the distance to a body [1]; at the points (d,) of ``finer`` edges are at most as
-    long as given there [length]. Markers are surface numbers: bodies 0 … n-1, then the domain's pieces. Raises
-    MeshError where a body leaves the domain, or Netgen makes no valid mesh.
+    The size of ``sizes`` is the longest edge wanted far from the bodies, size_body the longest allowed on them; edges
+    are no longer than at the points of ``finer``. Gaps and regions are left to re-meshing. Markers are surface numbers:
+    bodies 0 … n-1, then the domain's pieces. Raises MeshError where a body leaves the domain, or Netgen makes no valid
+    mesh.
     """
     bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
     refuse_bodies_outside(fluid_domain.pose, domain)
-    asked = _size_to_ask(fluid_domain, size, size_body, growth, finer)
-    mesh = put_back(orient(run_netgen(fluid_domain, size, asked, growth, finer)), bodies, domain, curved=True)
+    asked = _size_to_ask(fluid_domain, sizes, finer)
+    mesh = put_back(orient(run_netgen(fluid_domain, sizes, asked, finer)), bodies, domain, curved=True)
     mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
     mesh = with_exact_images(mesh, bodies, domain)
     refuse_touching_bodies(mesh, fluid_domain)
@@ -54,20 +73,15 @@ def generate_mesh(
     return mesh
 
 
-def _size_to_ask(
-    fluid_domain: FluidDomain,
-    size: float,
-    size_body: float,
-    growth: float,
-    finer: Sequence[tuple[FloatArray, float]],
-) -> FloatArray:
-    """The edge length on each body (n,) to ask Netgen for, so that its edges are at most ``size_body`` long [length].
+def _size_to_ask(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer) -> FloatArray:
+    """The edge length on each body (n,) to ask Netgen for, so that its edges are at most size_body long [length].
 
     Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost.
     """
+    size_body = sizes.size_body
     asked = np.full(len(fluid_domain.bodies), size_body)
     for _ in range(ATTEMPTS):
-        surfaces = run_netgen(fluid_domain, size, asked, growth, finer, surfaces_alone=True)
+        surfaces = run_netgen(fluid_domain, sizes, asked, finer, surfaces_alone=True)
         excess = longest_edges(surfaces, len(fluid_domain.bodies)) / size_body
         if np.all(excess <= 1.0 + ROUNDING):
             return asked
@@ -111,51 +125,38 @@ def refuse_touching_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> None:
 
 
 def run_netgen(
-    fluid_domain: FluidDomain,
-    size: float,
-    size_body: FloatArray,
-    growth: float,
-    finer: Sequence[tuple[FloatArray, float]] = (),
-    surfaces_alone: bool = False,
+    fluid_domain: FluidDomain, sizes: Sizes, asked: FloatArray, finer: Finer = (), surfaces_alone: bool = False
 ) -> Mesh:
-    """Mesh by Netgen, cells and facets or facets alone; ``size_body`` (n,) is the target edge length on each body
+    """Mesh by Netgen, cells and facets or facets alone; ``asked`` (n,) is the target edge length on each body
     [length]."""
     from netgen import occ
 
     domain = fluid_domain.domain
     unit = mesher_unit(domain.size)
     try:
-        shape = fluid_shape(fluid_domain, size_body, unit)
+        shape = fluid_shape(fluid_domain, asked, unit)
     except (occ.OCCException, RuntimeError) as error:
         raise _netgen_failed(error) from error
-    near = [(in_unit(point, unit), float(in_unit(length, unit))) for point, length in finer]
-    netgen = netgen_mesh(shape, domain.dimension, float(in_unit(size, unit)), growth, near, surfaces_alone)
+    netgen = netgen_mesh(shape, domain.dimension, EdgeLengths.from_sizes(sizes, finer, unit), surfaces_alone)
     made = (surfaces_of if surfaces_alone else from_netgen)(netgen, domain.dimension)
     return replace(made, points=unit * made.points)
 
 
-def netgen_mesh(
-    shape: Any,
-    dimension: int,
-    size: float,
-    growth: float,
-    finer: Sequence[tuple[FloatArray, float]] = (),
-    surfaces_alone: bool = False,
-    per_radius: float | None = None,
-) -> Any:
-    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone, all lengths in the shape's unit; edges
-    ``per_radius`` of curvature are Netgen's own choice if not given."""
+def netgen_mesh(shape: Any, dimension: int, lengths: EdgeLengths, surfaces_alone: bool = False) -> Any:
+    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone."""
     from netgen import meshing, occ
 
     surfaces = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
     rules: dict[str, Any] = {"perfstepsend": surfaces} if surfaces_alone else {}
-    if per_radius is not None:
-        rules["curvaturesafety"] = per_radius
+    if lengths.per_radius is not None:
+        rules["curvaturesafety"] = lengths.per_radius
     verbosity = meshing.SetMessageImportance(0)
     try:
         geometry = occ.OCCGeometry(shape, dim=dimension)
-        parameters = meshing.MeshingParameters(maxh=size, grading=growth, parallel_meshing=False, **rules)
-        for point, length in finer:
+        parameters = meshing.MeshingParameters(
+            maxh=lengths.size, grading=lengths.growth, parallel_meshing=False, **rules
+        )
+        for point, length in lengths.finer:
             parameters.RestrictH(*in_space(point), h=float(length))
         return geometry.GenerateMesh(parameters)
     except (occ.OCCException, meshing.NgException, RuntimeError) as error:

@@ -69,7 +69,7 @@ def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -
         return insert(fluid_domain, sizes, inserter.timeout)
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
-        mesh = generate_mesh(fluid_domain, sizes.size, sizes.size_body, sizes.growth, finer)
+        mesh = generate_mesh(fluid_domain, sizes, finer)
         _, points, wanted = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
         if not len(points):
             break

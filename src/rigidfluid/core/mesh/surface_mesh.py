@@ -12,6 +12,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import (
     ATTEMPTS,
     ROUNDING,
+    EdgeLengths,
     longest_edges,
     netgen_mesh,
     put_back,
@@ -84,7 +85,8 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
         shape = body.cad_shape(unit)
         for side in sides(shape, body.dimension):
             side.name = "0"
-        netgen = netgen_mesh(shape, body.dimension, float(in_unit(asked, unit)), sizes.growth, surfaces_alone=True)
+        lengths = EdgeLengths(float(in_unit(asked, unit)), sizes.growth)
+        netgen = netgen_mesh(shape, body.dimension, lengths, surfaces_alone=True)
         found = surfaces_of(netgen, body.dimension)
         excess = float(longest_edges(found, 1)[0]) * unit / sizes.size_body
         if excess <= 1.0 + ROUNDING:
@@ -98,7 +100,7 @@ def _meshed_body(number: int, body: Body, sizes: Sizes) -> Mesh:
 def _meshed_domain(domain: Domain, sizes: Sizes) -> Mesh:
     """Facets of a domain that has a CAD shape; markers are the numbers of its pieces."""
     nobody = Pose(np.empty((0, domain.dimension)), np.empty((0, 1 if domain.dimension == 2 else 4)))
-    found = run_netgen(FluidDomain([], nobody, domain, ()), sizes.size, np.empty(0), sizes.growth, surfaces_alone=True)
+    found = run_netgen(FluidDomain([], nobody, domain, ()), sizes, np.empty(0), surfaces_alone=True)
     surface = put_back(_mesh_of_facets(Facets(found.points, found.facets, found.markers)), 0, domain, curved=True)
     return _into_fluid(surface, [piece.shape for piece in domain.pieces])
 

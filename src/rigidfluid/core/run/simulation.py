@@ -35,7 +35,7 @@ from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
-from rigidfluid.core.run.velocity_jump import halvings_after, shortened
+from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import FluidTable, Scene
 from rigidfluid.core.setup.build import build_system
@@ -252,7 +252,8 @@ class Simulation:
         twist = twist_row(self.scene.dimension, velocity, angular_velocity)
         within = over_time(over, now[row], twist)
         if self.system.has_fluid:
-            halvings = halvings_after(self.system, self.state, row, twist, self.clock.size(0), over)
+            step = self.clock.size(0)
+            halvings = halvings_within(halvings_after(self.system, self.state, row, twist, step), step, over)
             self.state = shortened(self.state, self.clock, halvings)
             within = within or self.clock.size(self.stepper.propose(self.state))
         motion = self._motion().changed(row, twist, self.time, within)

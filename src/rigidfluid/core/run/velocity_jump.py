@@ -16,18 +16,14 @@ from rigidfluid.core.run.initial_state import START_LEVEL
 from rigidfluid.core.run.step import bodies_energy
 
 
-def halvings_after(
-    system: System, state: State, row: int, twist: FloatArray, step: float, over: float | None = None
-) -> int:
+def halvings_after(system: System, state: State, row: int, twist: FloatArray, step: float) -> int:
     """Number of times that ``step`` is to be halved after body ``row`` takes a ``twist`` (d+k,) at once: log₂ of its
     jump over a step's own change, at least none and at most `START_LEVEL`.
 
     A step's own change is what the body's velocity would change by in two ``step`` at its latest acceleration, or a
     64th of the speed of the body, before and after, or of the fluid, whichever is most: so a start from rest has the
-    most halvings. A motion that changes ``over`` a time does not jump; a step then passes no more than that time.
+    most halvings.
     """
-    if over is not None and over >= step:
-        return 0
     radius, d, now = system.bodies[row].bounding_radius, system.dimension, flat(state.motions.twist)[row]
     jump, accelerated = _speed(twist - now, radius, d), 0.0
     if state.past is not None:
@@ -35,9 +31,13 @@ def halvings_after(
     fastest = max(_speed(now, radius, d), _speed(twist, radius, d), _fluid_speed(system, state))
     own = max(_LONGER * accelerated, fastest / 2.0**START_LEVEL)
     needed = math.ceil(math.log2(jump / own) - _ROUNDING) if jump > own else 0
-    if over is not None:
-        needed = min(needed, math.ceil(math.log2(step / over)))
     return min(needed, START_LEVEL)
+
+
+def halvings_within(halvings: int, step: float, over: float | None) -> int:
+    """Number of ``halvings`` that is left where a motion changes ``over`` a time and does not jump, which None says: a
+    step then passes no more than that time."""
+    return halvings if over is None else max(min(halvings, math.ceil(math.log2(step / over))), 0)
 
 
 def shortened(state: State, clock: Clock, halvings: int) -> State:

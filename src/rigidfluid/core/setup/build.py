@@ -4,39 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
 
-from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.mechanics.carried_leverage import leverages
-from rigidfluid.core.mechanics.kinematics import carried_sum
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
-from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.conditions import BoundaryCondition
 from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
-from rigidfluid.core.model.joints import Joints
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Film, FloatArray, IntArray, Loads, Twist
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Twist
 from rigidfluid.core.nested.placing import Tables, initial_pose, initial_twist
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.body_force import body_force
 from rigidfluid.core.setup.boundary import conditions, repelling_walls
 from rigidfluid.core.setup.geometry_checks import check_geometry
-from rigidfluid.core.setup.impact import creeping_resistances, fastest_flow, impact_speeds, travel_speeds
+from rigidfluid.core.setup.impact import creeping_resistances
 from rigidfluid.core.setup.initial_flow import initial_flow
-from rigidfluid.core.setup.interactions import SMALLEST_GAP, build_interactions, law_tables
+from rigidfluid.core.setup.interactions import build_interactions
 from rigidfluid.core.setup.joints import build_joints, joined_bodies
+from rigidfluid.core.setup.loads import build_loads
+from rigidfluid.core.setup.masses import Masses, masses_of
 from rigidfluid.core.setup.parts import Parts, known_parts
-from rigidfluid.core.setup.prescribed import prescribed_motion
-from rigidfluid.core.setup.stacks import stack_loads
+from rigidfluid.core.setup.prescribed import PrescribedMotion, controlled_bodies, prescribed_motion
 from rigidfluid.core.setup.window import build_window, open_wake_end
 
 _MOST_PAIRS = 1000
@@ -48,41 +43,18 @@ def build_system(scene: Scene) -> System:
     Raises SceneError if a body overlaps another or a surface of the domain, or the mesh is too coarse for a gap.
     """
     parts = known_parts(scene)
-    scene, mechanisms, domain = parts.scene, parts.mechanisms, parts.domain
-    walls = repelling_walls(scene, domain)
-    mass = np.array([body.density * shape.volume for body, shape in zip(scene.body, parts.bodies, strict=True)])
-    inertia = mass[:, None, None] * np.array([body.unit_inertia for body in parts.bodies])
-    controlled = np.array([body.fixed or body.prescribed is not None for body in scene.body])
-    single = len(mass) - sum(len(mechanism.components) for mechanism in mechanisms.values())
-    tables: Tables = (*scene.body[:single], *scene.mechanism)
-    start = initial_pose(tables, scene.dimension)
-    motion = prescribed_motion(scene, start)
-    started = _initial_twist(initial_twist(tables, scene.dimension), controlled[:single], motion(0.0))
-    own = mass, inertia, controlled, start, started
-    motions: Motions = CarriedBodies(mechanisms, *own) if mechanisms else SingleBodies(*own)
-    pose = motions.poses(start, 0.0)
+    scene, domain, walls = parts.scene, parts.domain, repelling_walls(parts.scene, parts.domain)
+    masses = masses_of(parts)
+    motions, given = _motions(parts, masses)
+    pose = motions.poses(motions.pose, 0.0)
     check_geometry(scene, parts, pose)
     window = build_window(scene, parts, pose)
-    held = open_wake_end(conditions(scene, domain), window)
-    creeping = parts.backend.part.needs_mesh and scene.fluid.model == "stokes"
-    resistance = creeping_resistances(scene, domain, parts.bodies) if creeping else None
-    joints = build_joints(scene, pose, motions, motion, resistance)
-    started = joints.fitting(start, started, 0.0)
-    motions = motions.starting_with(started)
-    weight, inert = _submerged_weight(scene, parts.bodies, mass), _inert_density(scene, parts)
-    added = inert * np.array([added_mass(body) for body in parts.bodies])
-    moved = _sum_linked(motions, joints, mass + np.trace(added, axis1=1, axis2=2) / scene.dimension)
-    pulled = _sum_linked(motions, joints, weight)
-    given = fastest_given(motions, mechanisms.values(), scene.time.end)
-    wet = parts.backend.part.needs_mesh
-    speed = impact_speeds(scene, domain, parts.bodies, moved, pulled, wet, given)
-    loads = _loads(scene, parts, controlled, moved, pulled, speed)
-    if wet:
-        travel = travel_speeds(scene, domain, parts.bodies, moved, pulled, given)
-        loads = replace(loads, travel_speed=travel, flow_speed=fastest_flow(scene, domain))
+    problem = _problem(scene, open_wake_end(conditions(scene, domain), window), motions)
+    joints = build_joints(scene, pose, motions, given, _least_resistance(parts))
+    motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
+    loads = build_loads(parts, masses, motions, joints)
     surfaces = (*(body.name for body in scene.body), *domain.names)
     interactions = build_interactions(scene, parts, surfaces, loads)
-    problem = _problem(scene, held, motions)
     detector, law = parts.detector.part(parts.detector.options, parts.bodies, walls), acting_together(interactions)
     return System(
         dimension=scene.dimension,
@@ -91,19 +63,19 @@ def build_system(scene: Scene) -> System:
         domain=domain,
         walls=walls,
         wall_velocity=None if all(wall.velocity is None for wall in walls) else SlidingWalls(walls),
-        mass=mass,
-        added_mass=added,
-        inertia=inertia,
-        weight=weight,
+        mass=masses.mass,
+        added_mass=masses.added,
+        inertia=masses.inertia,
+        weight=masses.weight,
         pose=pose,
-        twist=motions.kinematics(start, 0.0).component_twist(started),
+        twist=motions.kinematics(motions.pose, 0.0).component_twist(motions.twist),
         motions=motions,
         joints=joints,
         assembly=_assemblies(scene),
-        controlled=controlled,
-        controlled_twist=motion,
-        controlled_pose=motion.pose_at,
-        fluid=problem if wet else None,
+        controlled=controlled_bodies(scene),
+        controlled_twist=given,
+        controlled_pose=given.pose_at,
+        fluid=problem if parts.wet else None,
         backend_type=parts.backend.part,
         make_backend=cache(partial(parts.backend.part, parts.backend.options, problem)),
         detector=detector,
@@ -118,6 +90,18 @@ def build_system(scene: Scene) -> System:
         window=window,
         joined=joined_bodies(scene),
     )
+
+
+def _motions(parts: Parts, masses: Masses) -> tuple[Motions, PrescribedMotion]:
+    """The motions that carry the bodies, where and as they start, and those that are given."""
+    scene, controlled = parts.scene, controlled_bodies(parts.scene)
+    single = len(scene.body) - sum(len(mechanism.components) for mechanism in parts.mechanisms.values())
+    tables: Tables = (*scene.body[:single], *scene.mechanism)
+    start = initial_pose(tables, scene.dimension)
+    given = prescribed_motion(scene, start)
+    started = _initial_twist(initial_twist(tables, scene.dimension), controlled[:single], given(0.0))
+    own = masses.mass, masses.inertia, controlled, start, started
+    return (CarriedBodies(parts.mechanisms, *own) if parts.mechanisms else SingleBodies(*own)), given
 
 
 def _assemblies(scene: Scene) -> IntArray:
@@ -137,47 +121,9 @@ def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Tw
     )
 
 
-def _sum_linked(motions: Motions, joints: Joints, rows: FloatArray) -> FloatArray:
-    """Sum, for each body, of ``rows`` (n, …) over all bodies that a motion or joints link with it: an upper bound of
-    what it hits something with."""
-    whole = joints.clusters[motions.carrier]
-    return carried_sum(whole, rows, int(whole.max(initial=-1)) + 1)[whole]
-
-
-def _submerged_weight(scene: Scene, bodies: Sequence[Body], mass: FloatArray) -> FloatArray:
-    """(m - ρV)g with the exact volume, (n, d) [force]; the fluid carries no gravity, so buoyancy belongs here."""
-    volume = np.array([body.volume for body in bodies])
-    gravity = np.array(scene.fluid.gravity or [0.0] * scene.dimension)
-    return np.outer(mass - (scene.fluid.density or 0.0) * volume, gravity)
-
-
-def _inert_density(scene: Scene, parts: Parts) -> float:
-    """Density of the fluid that bodies have to move with them; none without a fluid, or without its inertia."""
-    inert = parts.backend.part.needs_mesh and scene.fluid.model == "navier-stokes"
-    return (scene.fluid.density or 0.0) if inert else 0.0
-
-
-def _loads(
-    scene: Scene, parts: Parts, controlled: BoolArray, mass: FloatArray, weight: FloatArray, speed: FloatArray
-) -> Loads:
-    """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
-    smallest = min((table.smallest_gap or SMALLEST_GAP * table.range for table in law_tables(scene)), default=0.0)
-    pull = np.where(controlled, 0.0, np.linalg.norm(weight, axis=1))
-    own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * mass * speed**2)])
-    position = np.array([table.position for table in scene.body])
-    radius = np.array([body.bounding_radius for body in parts.bodies])
-    together = stack_loads(own, weight, position, radius, parts.domain.size)
-    stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
-    mass = np.where(controlled, np.inf, mass)
-    return Loads(mass, pull, speed, stacked_weight, stacked_energy, smallest, _film(scene, parts))
-
-
-def _film(scene: Scene, parts: Parts) -> Film | None:
-    fluid, mesh = scene.fluid, scene.mesh
-    if fluid.viscosity is None or mesh is None or not parts.backend.part.needs_mesh:
-        return None
-    radius = np.array([equal_volume_radius(body) for body in parts.bodies])
-    return Film(fluid.viscosity, radius, mesh.size_body / 2**mesh.refinements, fluid.model == "navier-stokes")
+def _least_resistance(parts: Parts) -> FloatArray | None:
+    """Least resistance of a fluid without inertia to each body (n, d+k), None in any other."""
+    return creeping_resistances(parts) if parts.wet and parts.scene.fluid.model == "stokes" else None
 
 
 def _problem(scene: Scene, boundary: tuple[BoundaryCondition, ...], motions: Motions) -> FluidProblem | None:

@@ -32,7 +32,7 @@ def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
     """Refuse, with SceneError, bodies that overlap each other or a surface of the domain or are lost in it at their
     starting ``pose``, and a mesh too coarse for a gap."""
     _check_extent(parts)
-    mesh = scene.mesh if parts.backend.part.needs_mesh else None
+    mesh = scene.mesh if parts.wet else None
     reach = _coarsest_gap(mesh, parts) if mesh else 0.0
     contacts = initial_contacts(parts.domain, parts.exact_detector, parts.bodies, pose, reach)
     _check_overlap(scene, parts.domain, contacts)

@@ -4,6 +4,7 @@ keep."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +17,11 @@ from rigidfluid.core.setup.boundary import repelling_walls
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.initial_flow import fastest_at_start
 from rigidfluid.core.setup.interactions import law_tables
+from rigidfluid.core.setup.prescribed import controlled_bodies
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import BodyTable, Scene
+    from rigidfluid.core.setup.parts import Parts
 
 _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
@@ -27,71 +30,59 @@ _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 Vectors = Sequence[float] | FloatArray | None
 
 
-def impact_speeds(
-    scene: Scene,
-    domain: Domain,
-    bodies: Sequence[Body],
-    mass: FloatArray,
-    weight: FloatArray,
-    wet: bool,
-    carried: FloatArray,
-) -> FloatArray:
+@dataclass(frozen=True)
+class Impetus:
+    """Causes of the speeds of bodies: their ``mass`` (n,) with the added mass and their ``weight`` (n, d) [force], each
+    with what is linked to them, and the greatest speeds that strokes have ``given`` them, (n, 2) [length/time],
+    [rad/time]."""
+
+    mass: FloatArray
+    weight: FloatArray
+    given: FloatArray
+
+
+def impact_speeds(parts: Parts, impetus: Impetus) -> FloatArray:
     """Speed at which each body is expected to hit something (n,) [length/time].
 
-    v = √(v₀² + 2 (W/m) h), h the free height along the weight W (n, d) [force] to the end of the box around the domain,
-    less the shortest range of a law, and m the ``mass`` (n,) with the added mass. In a fluid (``wet``) at most the
-    larger of v₀ and the terminal speed, and on top of that the fastest inflow. For v₀ the surface of a body that is no
-    ball turns with it; v₀ of a component is at least the greatest speed that strokes give it, ``carried`` (n, 2)
-    [length/time], [rad/time]. A driven body has the greatest speed of its prescription. An ``impact_speed`` in the
-    scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
+    v = √(v₀² + 2 (W/m) h), h the free height along the weight W to the end of the box around the domain, less the
+    shortest range of a law, and m the mass. In a fluid at most the larger of v₀ and the terminal speed, and on top of
+    that the fastest inflow. For v₀ the surface of a body that is no ball turns with it; v₀ of a component is at least
+    the greatest speed that strokes give it. A driven body has the greatest speed of its prescription. An
+    ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
     """
-    start, falling = _own_speeds(scene, domain, bodies, mass, weight, wet, carried)
-    if wet:
-        falling = falling + fastest_flow(scene, domain)
+    scene = parts.scene
+    start, falling = _own_speeds(parts, impetus)
+    if parts.wet:
+        falling = falling + fastest_flow(scene, parts.domain)
     if scene.contact.impact_speed is not None:
         falling = np.maximum(start, scene.contact.impact_speed)
-    return np.where([table.fixed or table.prescribed is not None for table in scene.body], start, falling)
+    return np.where(controlled_bodies(scene), start, falling)
 
 
-def travel_speeds(
-    scene: Scene,
-    domain: Domain,
-    bodies: Sequence[Body],
-    mass: FloatArray,
-    weight: FloatArray,
-    carried: FloatArray,
-) -> FloatArray:
+def travel_speeds(parts: Parts, impetus: Impetus) -> FloatArray:
     """Highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
 
     It is the larger of the body's own speed, estimated as in `impact_speeds`, and that of the fastest flow, whatever
     the scene says of impacts.
     """
-    start, falling = _own_speeds(scene, domain, bodies, mass, weight, True, carried)
-    held = [table.fixed or table.prescribed is not None for table in scene.body]
-    return np.maximum(np.where(held, start, falling), fastest_flow(scene, domain))
+    start, falling = _own_speeds(parts, impetus)
+    own = np.where(controlled_bodies(parts.scene), start, falling)
+    return np.maximum(own, fastest_flow(parts.scene, parts.domain))
 
 
-def _own_speeds(
-    scene: Scene,
-    domain: Domain,
-    bodies: Sequence[Body],
-    mass: FloatArray,
-    weight: FloatArray,
-    wet: bool,
-    carried: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
+def _own_speeds(parts: Parts, impetus: Impetus) -> tuple[FloatArray, FloatArray]:
     """v₀, and what it becomes by falling, each (n,) [length/time]."""
-    lever = _measure_bodies(_lever, bodies)
-    start = np.array([_own_speed(table, arm) for table, arm in zip(scene.body, lever, strict=True)])
-    start = np.maximum(start, carried[:, 0] + lever * carried[:, 1])
-    pull = np.linalg.norm(weight, axis=1)
-    falling = np.sqrt(start**2 + 2.0 * pull / mass * _free_heights(scene, domain, bodies, weight))
-    if wet:
-        falling = np.minimum(falling, np.maximum(start, terminal_speeds(scene, domain, bodies, pull)))
+    lever = _measure_bodies(_lever, parts.bodies)
+    start = np.array([_own_speed(table, arm) for table, arm in zip(parts.scene.body, lever, strict=True)])
+    start = np.maximum(start, impetus.given[:, 0] + lever * impetus.given[:, 1])
+    pull = np.linalg.norm(impetus.weight, axis=1)
+    falling = np.sqrt(start**2 + 2.0 * pull / impetus.mass * _free_heights(parts, impetus.weight))
+    if parts.wet:
+        falling = np.minimum(falling, np.maximum(start, terminal_speeds(parts, pull)))
     return start, falling
 
 
-def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: FloatArray) -> FloatArray:
+def terminal_speeds(parts: Parts, pull: FloatArray) -> FloatArray:
     """Terminal speed (n,) [length/time] of each submerged weight ``pull`` (n,) [force], far from walls, from
     correlations for the drag of a ball of equal volume.
 
@@ -103,31 +94,32 @@ def terminal_speeds(scene: Scene, domain: Domain, bodies: Sequence[Body], pull: 
     Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006; Pironneau, J.
     Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
     """
+    scene = parts.scene
     density, viscosity = scene.fluid.density, scene.fluid.viscosity
     assert density is not None
     assert viscosity is not None
-    radius = _measure_bodies(equal_volume_radius, bodies)
+    radius = _measure_bodies(equal_volume_radius, parts.bodies)
     if scene.fluid.model == "stokes":
-        return np.asarray(pull / creeping_resistances(scene, domain, bodies)[:, 0])
+        return np.asarray(pull / creeping_resistances(parts)[:, 0])
     per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
     reynolds = _reynolds(pull * density / viscosity**2 * per_pull, drag)
     return np.asarray(reynolds * viscosity / (2.0 * radius * density))
 
 
-def creeping_resistances(scene: Scene, domain: Domain, bodies: Sequence[Body]) -> FloatArray:
+def creeping_resistances(parts: Parts) -> FloatArray:
     """Resistance of a fluid without inertia to each velocity of each body (n, d+k) [force·time/length |
     force·length·time].
 
     It is that of a ball of equal volume far from walls, which nearly every shape and place exceeds: 6πμr and 8πμr³ in
     3D, 4πμr² for rotation in 2D and, for translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
     """
-    viscosity = scene.fluid.viscosity
+    scene, viscosity = parts.scene, parts.scene.fluid.viscosity
     assert viscosity is not None
-    radius = _measure_bodies(equal_volume_radius, bodies)[:, None]
+    radius = _measure_bodies(equal_volume_radius, parts.bodies)[:, None]
     if scene.dimension == 3:
         along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
     else:
-        along, about = 4.0 * np.pi / np.log(float(np.max(domain.size)) / radius), 4.0 * np.pi * radius**2
+        along, about = 4.0 * np.pi / np.log(float(np.max(parts.domain.size)) / radius), 4.0 * np.pi * radius**2
     spin = 1 if scene.dimension == 2 else 3
     return viscosity * np.hstack([np.repeat(along, scene.dimension, axis=1), np.repeat(about, spin, axis=1)])
 
@@ -152,18 +144,18 @@ def _cylinder_drag(reynolds: FloatArray) -> FloatArray:
     return np.asarray(1.0 + 10.0 * reynolds ** (-2.0 / 3.0))
 
 
-def _free_heights(scene: Scene, domain: Domain, bodies: Sequence[Body], weight: FloatArray) -> FloatArray:
+def _free_heights(parts: Parts, weight: FloatArray) -> FloatArray:
     """Way along the weight from each body to the end of the box around the domain, less the range; zero without weight
     (n,)."""
-    lower, upper = domain.extent
+    lower, upper = parts.domain.extent
     length = np.linalg.norm(weight, axis=1, keepdims=True)
     down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
-    position = np.array([table.position for table in scene.body])
+    position = np.array([table.position for table in parts.scene.body])
     ahead = np.where(down > 0.0, upper - position, position - lower)
-    room = ahead - _measure_bodies(inscribed_radius, bodies)[:, None]
+    room = ahead - _measure_bodies(inscribed_radius, parts.bodies)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
     height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
-    shortest = min((table.range for table in law_tables(scene)), default=0.0)
+    shortest = min((table.range for table in law_tables(parts.scene)), default=0.0)
     return np.maximum(height - shortest, 0.0)
 
 

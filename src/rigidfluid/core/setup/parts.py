@@ -62,6 +62,11 @@ class Parts:
     exact_detector: type[Detector]
     size_fields: tuple[SizeField, ...]
 
+    @property
+    def wet(self) -> bool:
+        """Whether there is a fluid around the bodies, on a mesh."""
+        return self.backend.part.needs_mesh
+
 
 def select_plugins(scene: Scene) -> Parts:
     """Find the parts that a scene names, validate their options, and build its bodies and domain, on whose shapes the

@@ -9,10 +9,15 @@ import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import BoolArray, FloatArray, Pose
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
+
+
+def controlled_bodies(scene: Scene) -> BoolArray:
+    """Whether the motion of each body is given: fixed, or prescribed (n,)."""
+    return np.array([table.fixed or table.prescribed is not None for table in scene.body], dtype=bool)
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def _followed_body(scene: Scene, table: WindowTable) -> int:
 
 
 def _check_parts(parts: Parts) -> None:
-    if not parts.backend.part.needs_mesh:
+    if not parts.wet:
         found = f"a window with backend {parts.backend.part.name!r}, which has no mesh"
         raise SceneError("domain.window", found, "a backend with a mesh", "Remove the window.")
     if parts.detector.part.needs_mesh:

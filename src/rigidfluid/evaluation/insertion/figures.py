@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from math import factorial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -86,57 +86,82 @@ def measured(name: str, inserter: str, mesh: Mesh, system: System, seconds: dict
     )
 
 
+class _Given(NamedTuple):
+    """Facets that a shape is made of, where they lie: ``points`` (N, d) [length] and ``vertices`` (F, d)."""
+
+    points: FloatArray
+    vertices: IntArray
+
+
+_Counts = tuple[int | None, int | None, int | None, int | None]
+
+
 def _surfaces(mesh: Mesh, system: System) -> Iterator[SurfaceFigures]:
-    bodies, domain = system.bodies, system.meshed(system.pose)
     sides = _sides(mesh)
-    for i, body in enumerate(bodies):
-        given = None
-        if body.facets is not None:
-            given = to_world(system.pose, i, body.facets.points), body.facets.vertices
-        facets = mesh.facets[mesh.markers == i]
-        off = [np.abs(distance_to_body(system.pose, i, body, at)).max() for at in _vertices_and_middles(mesh, facets)]
-        volume = _enclosed(mesh.points[facets] - system.pose.position[i], sides[mesh.markers == i])
-        yield _surface(mesh, i, system.surfaces[i], given, off, None, (volume, body.volume), flat=False)
-    for k, piece in enumerate(domain.pieces):
-        given, number = None, len(bodies) + k
-        if domain.facets is not None:
-            given = domain.facets.points, domain.facets.vertices[domain.facets.markers == k]
-        facets = mesh.facets[mesh.markers == number]
-        parts = _vertices_and_middles(mesh, facets)
-        off = [np.linalg.norm(at - piece.shape.closest_point(at), axis=1).max() for at in parts]
-        flat = piece.shape.plane is not None
-        yield _surface(mesh, number, piece.name, given, off, piece.area, (None, None), flat)
+    for number in range(len(system.bodies)):
+        yield _body_figures(mesh, system, number, sides)
+    for number in range(len(system.meshed(system.pose).pieces)):
+        yield _piece_figures(mesh, system, number)
 
 
-def _surface(
-    mesh: Mesh,
-    number: int,
-    name: str,
-    given: tuple[FloatArray, IntArray] | None,
-    off: Sequence[float],
-    area: float | None,
-    volumes: tuple[float | None, float | None],
-    flat: bool,
-) -> SurfaceFigures:
-    facets = mesh.facets[mesh.markers == number]
-    counts: tuple[int | None, int | None, int | None, int | None] = None, None, None, None
-    if given is not None:
-        points, vertices = given
-        area = float(np.linalg.norm(area_vectors(points, vertices), axis=1).sum())
-        corners = points[np.unique(vertices)]
-        kept = _rows(points[vertices]) & _rows(mesh.points[facets])
-        counts = len(vertices), len(kept), len(corners), len(_rows(corners) & _rows(mesh.points[np.unique(facets)]))
+def _body_figures(mesh: Mesh, system: System, number: int, sides: FloatArray) -> SurfaceFigures:
+    """Figures of a body's surface; ``sides`` (F,) as in `_sides`."""
+    body, pose, own = system.bodies[number], system.pose, mesh.markers == number
+    facets, given = mesh.facets[own], None
+    if body.facets is not None:
+        given = _Given(to_world(pose, number, body.facets.points), body.facets.vertices)
+    parts = _vertices_and_middles(mesh, facets)
+    vertices_off, middles_off = (float(np.abs(distance_to_body(pose, number, body, at)).max()) for at in parts)
     return SurfaceFigures(
-        name,
-        "flat" if flat else "smooth" if given is None else "facets",
+        system.surfaces[number],
+        "smooth" if given is None else "facets",
         len(facets),
-        *counts,
-        float(off[0]),
-        float(off[1]),
-        float(np.linalg.norm(area_vectors(mesh.points, facets), axis=1).sum()),
-        area,
-        *volumes,
+        *_kept(mesh, facets, given),
+        vertices_off,
+        middles_off,
+        _area(mesh.points, facets),
+        None if given is None else _area(*given),
+        _enclosed(mesh.points[facets] - pose.position[number], sides[own]),
+        body.volume,
     )
+
+
+def _piece_figures(mesh: Mesh, system: System, number: int) -> SurfaceFigures:
+    """Figures of a piece of the domain's boundary, by its number among the pieces."""
+    domain = system.meshed(system.pose)
+    piece, facets, given = domain.pieces[number], mesh.facets[mesh.markers == len(system.bodies) + number], None
+    if domain.facets is not None:
+        given = _Given(domain.facets.points, domain.facets.vertices[domain.facets.markers == number])
+    parts = _vertices_and_middles(mesh, facets)
+    vertices_off, middles_off = (
+        float(np.linalg.norm(at - piece.shape.closest_point(at), axis=1).max()) for at in parts
+    )
+    return SurfaceFigures(
+        piece.name,
+        "flat" if piece.shape.plane is not None else "smooth" if given is None else "facets",
+        len(facets),
+        *_kept(mesh, facets, given),
+        vertices_off,
+        middles_off,
+        _area(mesh.points, facets),
+        piece.area if given is None else _area(*given),
+        None,
+        None,
+    )
+
+
+def _kept(mesh: Mesh, facets: IntArray, given: _Given | None) -> _Counts:
+    """Number of facets given and kept, and of corners given and kept; None for shapes that are not made of facets."""
+    if given is None:
+        return None, None, None, None
+    points, vertices = given
+    corners = points[np.unique(vertices)]
+    kept = _rows(points[vertices]) & _rows(mesh.points[facets])
+    return len(vertices), len(kept), len(corners), len(_rows(corners) & _rows(mesh.points[np.unique(facets)]))
+
+
+def _area(points: FloatArray, vertices: IntArray) -> float:
+    return float(np.linalg.norm(area_vectors(points, vertices), axis=1).sum())
 
 
 def _vertices_and_middles(mesh: Mesh, facets: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -12,9 +12,10 @@ from rigidfluid.evaluation.studies.kernel_subject import KernelSubject
 from rigidfluid.evaluation.studies.model import Settings, Study
 from rigidfluid.evaluation.studies.report import write_report
 from rigidfluid.evaluation.studies.results import Results
-from rigidfluid.evaluation.studies.rows import Row, fingerprint, read_rows, text_of, write_rows
+from rigidfluid.evaluation.studies.rows import Row, fingerprint, text_of
 from rigidfluid.evaluation.studies.scene_subject import SceneSubject
 from rigidfluid.evaluation.studies.subject import Subject
+from rigidfluid.evaluation.studies.table import read_rows, write_rows
 
 TABLE = "study.csv"
 
@@ -56,7 +57,7 @@ def _results(
             show(0.0)
             rows[key] = _tried(subject, settings, show)
             results = Results(study, subject.target, plan, prints, rows)
-        write_rows(out / TABLE, study.knobs, plan, prints, rows, results.errors)
+        write_rows(out / TABLE, results)
     return results
 
 

@@ -26,25 +26,25 @@ class CahouetChabard:
     """
 
     def __init__(self, parts: Parts) -> None:
-        constraint = parts.constraint
+        constraint, coefficients = parts.constraint, parts.coefficients
         self._which, self._count = _pressures(constraint)
         self._pin = constraint.pressure_pin
         numbering = constraint.surfaces.numbering
-        resisted = 2.0 * parts.viscosity + parts.grad_div
+        resisted = 2.0 * coefficients.viscosity + coefficients.grad_div
         points = parts.points[: numbering.vertices]
         mass, laplacian = _integrals(numbering.cells, points, self._which, self._count, resisted)
         self._terms: list[Factors] = []
         orderings = Orderings()  # both have the same pattern
-        if parts.viscosity > 0.0:
+        if coefficients.viscosity > 0.0:
             self._terms.append(factorise(mass, None, orderings))
-        if parts.inertia > 0.0:
+        if coefficients.inertia > 0.0:
             held = _open_vertices(constraint)
             grounded = _decoupled(laplacian, np.unique(self._which[held]))
             if self._pin is not None:  # known up to a constant
                 pin = np.zeros(self._count)
                 pin[self._which[self._pin]] = laplacian.diagonal()[self._which[self._pin]]
                 grounded = grounded + sparse.diags_array(pin)
-            self._terms.append(factorise(sparse.csr_array(grounded / parts.inertia), None, orderings))
+            self._terms.append(factorise(sparse.csr_array(grounded / coefficients.inertia), None, orderings))
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         """S⁻¹ of the pressures' residual (pressures,), without the one that is pinned."""

@@ -125,25 +125,10 @@ class Flow:
             Impulse of contacts, given at once [force·time | force·length·time].
         """
         pose = pose or self.pose
-        before = None if self.past is None else self.past[2]
-        weights = np.zeros(3) if length is None else derivative_weights(length, before)
-        extrapolation = np.array([1.0, 0.0]) if length is None else extrapolation_weights(length, before)
+        weights, extrapolation = self._time_weights(length)
         nothing = np.zeros((len(pose.position), size(pose)))
         pushed, given = (nothing if each is None else each for each in (push, impulse))
-        d = pose.position.shape[1]
-        poses, twists = [self.pose], [self.twist]
-        if self.past is not None:
-            poses.append(self.past[0])
-            twists.append(self.past[1])
-        mass_matrix, load = newton_euler(
-            self.bodies.mass,
-            self.bodies.inertia,
-            pose,
-            poses,
-            twists,
-            weights,
-            Wrench(pushed[:, :d], pushed[:, d:]),
-        )
+        mass_matrix, load = self._newton_euler(pose, weights, pushed)
         return Step(
             time=self.time + (length or 0.0),
             derivative=weights,
@@ -158,6 +143,22 @@ class Flow:
             load_scale=0.0,
             turning=nothing,
         )
+
+    def _time_weights(self, length: float | None) -> tuple[FloatArray, FloatArray]:
+        """Weights of the time derivative (3,) and of the extrapolation (2,)."""
+        if length is None:
+            return np.zeros(3), np.array([1.0, 0.0])
+        before = None if self.past is None else self.past[2]
+        return derivative_weights(length, before), extrapolation_weights(length, before)
+
+    def _newton_euler(self, pose: Pose, weights: FloatArray, pushed: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mass matrix and load of the bodies, under force and torque ``pushed`` (n, d+k)."""
+        d, poses, twists = pose.position.shape[1], [self.pose], [self.twist]
+        if self.past is not None:
+            poses.append(self.past[0])
+            twists.append(self.past[1])
+        wrench = Wrench(pushed[:, :d], pushed[:, d:])
+        return newton_euler(self.bodies.mass, self.bodies.inertia, pose, poses, twists, weights, wrench)
 
     def probe(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d)."""

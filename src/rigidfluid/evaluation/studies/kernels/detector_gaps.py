@@ -15,6 +15,7 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.scene.validation import read_table
@@ -123,9 +124,8 @@ class DetectorGaps(Kernel):
 
     def _mesh(self, bodies: list[Body], pose: Pose) -> Mesh:
         corners = BoxOptions(lower=(0.0,) * self.dimension, upper=(float(self._side),) * self.dimension)
-        return generate_mesh(
-            FluidDomain(bodies, pose, Box(corners, self.dimension), ()), max(FAR_SIZE, self.size), self.size, 0.5
-        )
+        sizes = Sizes(max(FAR_SIZE, self.size), self.size, 0.5)
+        return generate_mesh(FluidDomain(bodies, pose, Box(corners, self.dimension), ()), sizes)
 
     @property
     def _side(self) -> int:
