@@ -44,6 +44,7 @@ from rigidfluid.core.model.interfaces import (
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
@@ -66,6 +67,7 @@ from rigidfluid.core.model.types import (
 )
 from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.core.scene.scene import Scene, StrokeTable
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.core.setup.strokes import build_stroke
 from rigidfluid.domains.box import Box, BoxOptions
@@ -78,6 +80,7 @@ from rigidfluid.errors import (
     StepError,
     StepRejected,
 )
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 from rigidfluid.hookspecs import hookimpl
 from rigidfluid.registry import (
     BODY,
@@ -167,16 +170,20 @@ __all__ = [
     "Sphere",
     "SphereOptions",
     "Spring",
+    "SpringDashpotLaw",
+    "SpringDashpotOptions",
     "Step",
     "StepError",
     "StepRejected",
     "StrokeTable",
     "Surface",
+    "System",
     "Twist",
     "Wall",
     "Wrench",
     "axes_along",
     "build_stroke",
+    "build_system",
     "hookimpl",
     "load_scene",
     "missing_packages",

@@ -12,7 +12,7 @@ import pytest
 from rigidfluid import api
 
 ROOT = Path(__file__).parents[2]
-PUBLIC = ("rigidfluid.api", "rigidfluid.testing", "rigidfluid.taylor_hood")
+PUBLIC = ("rigidfluid.api", "rigidfluid.commands", "rigidfluid.testing", "rigidfluid.taylor_hood")
 HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -14,8 +15,10 @@ import numpy as np
 import pytest
 from falling import SCENES
 from linked_runs import body, linked_scene
+from typer.testing import CliRunner
 
 import rigidfluid
+from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
@@ -164,6 +167,19 @@ def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
     np.testing.assert_allclose(history.joints["displacement"], expected, atol=1e-4)
     np.testing.assert_allclose(history.bodies["wz"], 3.0)
     refuse_failed_contract(folder, contract, tmp_path / "test_sleeve.py")
+
+
+def test_the_example_of_a_command_runs(install: Install, tmp_path: Path) -> None:
+    page = section(text("docs/plugins.md"), "A command, from nothing")
+    (code,), (points,) = blocks(page, "python"), blocks(page, "toml")
+    points = points.replace("project.entry-points.", "").replace('"', "")
+    install(code, name="weigh", module="rigidfluid_weigh", entry_points=points)
+    file = tmp_path / "masses.json"
+    arguments = ["weigh", str(SCENES / "dry_bounce.toml"), "--set", "body.0.density=2", "--json", str(file)]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.splitlines() == ["left_disk 0.06283", "right_disk 0.03142"]
+    assert json.loads(file.read_text()) == pytest.approx({"left_disk": 0.02 * np.pi, "right_disk": 0.01 * np.pi})
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
