@@ -80,7 +80,7 @@ def test_it_may_be_called_by_another_process(weigh: Install) -> None:
 def test_its_help_is_its_own(weigh: Install) -> None:
     weigh()
     text = call("weigh", "--help").stdout
-    for words in ("weigh [OPTIONS]", "Print the mass of each body.", "--least", "Scene file (TOML)."):
+    for words in ("weigh [OPTIONS]", "Print the mass of each body.", "--least", "--set"):
         assert words in text
 
 
