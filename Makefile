@@ -23,8 +23,9 @@ test-dolfinx:
 	tools/dolfinx make
 	tools/dolfinx run python3 -m pytest tests/contract/test_fluid_backends.py tests/unit/test_dolfinx.py tests/mpi
 
-validate: .venv/.installed-test
+validate: .venv/.installed-plugins
 	$(BIN)/pytest -m validation
+	cd plugins/rigidfluid-lammps && $(CURDIR)/$(BIN)/python -m pytest -m validation
 	$(BIN)/python docs/make_validation.py
 
 stale: .venv/.installed
@@ -34,7 +35,7 @@ lint: .venv/.installed-dev
 	$(BIN)/ruff check
 	$(BIN)/mypy
 
-bench: .venv/.installed-bench
+bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python benchmarks/step.py --page docs/validation/step.md
 	$(BIN)/python benchmarks/backends.py --page docs/validation/backends.md
 	$(BIN)/python benchmarks/work_precision.py --page docs/validation/work_precision.md

@@ -21,12 +21,12 @@ from typing import Any
 
 import numpy as np
 from disk_under_way import MESHES, OUTPUT_EVERY, falling
+from processes import measured_apart
 from stages import STAGES, measured
 from written_page import write_page
 
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.errors import RigidfluidError
-from rigidfluid.evaluation.bench.processes import measured_apart
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 SMALLEST = min(MESHES)  # thousands of unknowns: compiles, not reported

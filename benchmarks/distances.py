@@ -13,6 +13,7 @@ import coal
 import numpy as np
 import potpourri3d
 import skfmm
+from nearest_facet import nearest_facet_distances
 from scipy.spatial import cKDTree
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
@@ -21,9 +22,8 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
-from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
-from rigidfluid.evaluation.bench.shells import INNER, shell
-from rigidfluid.evaluation.bench.timing import fastest
+from rigidfluid.evaluation.studies.kernels.shells import INNER, shell
+from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.marching.field import distance_field
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace

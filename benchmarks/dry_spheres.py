@@ -4,6 +4,7 @@ The spheres move at random from a lattice and collide by the law `centre` (LAMMP
 or `spring-dashpot` (LAMMPS: `pair_style granular`). Both take the same velocity Verlet steps; nothing is written. They
 take turns, and each figure is the smallest of several timings, which a busy machine disturbs least.
 
+    pip install ./plugins/rigidfluid-lammps
     python benchmarks/dry_spheres.py [--side 22] [--steps 200] [--repeats 3] [--json FILE]
 """
 
@@ -21,9 +22,9 @@ import numpy as np
 import rigidfluid
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.evaluation.crosscheck.kinds import kinds
-from rigidfluid.evaluation.crosscheck.library import lammps_session
-from rigidfluid.evaluation.crosscheck.theirs import build
+from rigidfluid_lammps.kinds import kinds
+from rigidfluid_lammps.library import lammps_session
+from rigidfluid_lammps.theirs import build
 
 RADIUS, SPACING, RANGE, STEP = 0.4, 1.0, 0.05, 1e-3
 LAWS: dict[str, dict[str, Any]] = {

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from grids import RANGE, balls_in_a_box
+from mesh_sizes import mesh_sizes
 from mpi4py import MPI
 
 from rigidfluid.core.mesh.distribution import distributed
@@ -22,8 +24,6 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.model.ranks import MpiRanks
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.narrow_band import NarrowBandDetector
-from rigidfluid.evaluation.bench.grids import RANGE, balls_in_a_box
-from rigidfluid.evaluation.bench.mesh_sizes import mesh_sizes
 
 CASES = ((2, 25), (2, 100), (3, 27), (3, 125))
 REPEATS = 20

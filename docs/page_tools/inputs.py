@@ -17,7 +17,9 @@ Inputs = dict[str, str]
 
 SOURCES = ("src", "plugins", "docs", "tests/support", "benchmarks")
 NOT_COMPUTING = (
-    *(f"src/rigidfluid/{room}" for room in ("cli.py", "__main__.py", "checks", "movies", "reports", "testing")),
+    *(f"src/rigidfluid/{file}" for file in ("__main__.py", "cli.py", "commands.py", "plugin_commands.py")),
+    *(f"src/rigidfluid/{room}" for room in ("checks", "movies", "reports", "testing")),
+    "plugins/rigidfluid-lammps/src/rigidfluid_lammps/command.py",
     "docs/page_tools",
 )
 """What no figure depends on."""

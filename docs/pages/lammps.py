@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from dry_scenes import sphere_gas
 from matplotlib.figure import Figure
 from page_tools import Page, Work, table
 
-from rigidfluid.evaluation.crosscheck import crosscheck
-from rigidfluid.evaluation.crosscheck.comparison import PARTED, Row
+if TYPE_CHECKING:
+    from rigidfluid_lammps import Row
 
 
 def page(work: Work) -> Page:
-    """Largest differences until then, and means over all of the time."""
+    """Largest differences until then, and means over all of the time; needs the package rigidfluid-lammps."""
+    from rigidfluid_lammps import crosscheck
+    from rigidfluid_lammps.comparison import PARTED
+
     start = time.process_time()
     early = crosscheck(sphere_gas(1_000), steps=4).rows
     late = crosscheck(sphere_gas(100_000), steps=1, samples=2_000)

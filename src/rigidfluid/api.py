@@ -58,6 +58,7 @@ from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     Advance,
     BoolArray,
@@ -82,6 +83,7 @@ from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.scene import Positive, Scene, StrokeTable
 from rigidfluid.core.scene.vectors import Vector
+from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.obstacles import Obstacles
@@ -94,6 +96,7 @@ from rigidfluid.errors import (
     StepError,
     StepRejected,
 )
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 from rigidfluid.hookspecs import hookimpl
 from rigidfluid.mechanisms.components import ComponentTable, build_components
 from rigidfluid.mechanisms.strokes import (
@@ -210,6 +213,8 @@ __all__ = [
     "Sphere",
     "SphereOptions",
     "Spring",
+    "SpringDashpotLaw",
+    "SpringDashpotOptions",
     "Step",
     "StepError",
     "StepRejected",
@@ -217,6 +222,7 @@ __all__ = [
     "StrokeTable",
     "StrokedMechanism",
     "Surface",
+    "System",
     "Translation",
     "Twist",
     "Vector",
@@ -226,6 +232,7 @@ __all__ = [
     "build_components",
     "build_shape",
     "build_stroke",
+    "build_system",
     "check_length",
     "hookimpl",
     "in_unit",

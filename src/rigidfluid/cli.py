@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
@@ -15,21 +15,22 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
 
 from rigidfluid import __version__
+from rigidfluid.commands import Assignments, JsonFile, SceneFile, write_json
 from rigidfluid.core.run.process import Launch, no_collection
 from rigidfluid.errors import RigidfluidError, SharedInterrupt
+from rigidfluid.plugin_commands import PluginCommand, missing_package, plugin_commands
 
 if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
     from rigidfluid.checks import Report
     from rigidfluid.core.output.history import History
     from rigidfluid.core.run.run import Progress
     from rigidfluid.core.scene.scene import Scene
     from rigidfluid.evaluation.comparison.compare import CompareProgress
-    from rigidfluid.evaluation.comparison.comparison import Comparison as BackendComparison
-    from rigidfluid.evaluation.crosscheck import Comparison
+    from rigidfluid.evaluation.comparison.comparison import Comparison
     from rigidfluid.evaluation.insertion.figures import Figures as InsertionFigures
     from rigidfluid.evaluation.studies.results import Results
     from rigidfluid.evaluation.studies.run import StudyProgress
@@ -41,12 +42,7 @@ INTERRUPTED = 130
 MOST_BODIES = 20
 """More are not printed."""
 
-SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
-Assignments = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set a value, as contact.range=0.02 or body.0.density=1.5."),
-]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
 CompareFolder = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_compare.")
@@ -63,15 +59,6 @@ Backends = Annotated[
     list[str] | None, typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.")
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
-
-JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
-Refinement = Annotated[float, typer.Option(help="Vertices per length, relative to the paper's meshes.", min=0.3)]
-Steps = Annotated[int, typer.Option(help="Steps to run with: time.step over contact.substeps, half of it, …", min=1)]
-Coarseness = Annotated[float, typer.Option(help="Edge lengths over those of meshes as fine as the paper's.", min=1.0)]
-RankCounts = Annotated[
-    list[int] | None, typer.Option("--ranks", metavar="N", help="On how many processes; default 1 and 2.", min=1)
-]
-MostBodies = Annotated[int, typer.Option(help="Leave out arrangements of more bodies.", min=1)]
 
 MovieFile = Annotated[
     Path | None, typer.Option("--out", metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4.")
@@ -97,9 +84,42 @@ FramesPerSecond = Annotated[int, typer.Option("--fps", help="Pictures a second."
 LAUNCH = Launch.read()
 """This process among those that share a run; the first one speaks for all."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-bench = typer.Typer(help="Measure on this machine what a paper measured on its own.")
-app.add_typer(bench, name="bench")
+
+class PluginTyperCommand(TyperCommand):
+    """A command of a plug-in: help lists it by its package's summary, and it is imported when it is called."""
+
+    def __init__(self, command: PluginCommand) -> None:
+        super().__init__(command.name, help=command.summary)
+        self._command = command
+
+    def make_context(self, *args: Any, **kwargs: Any) -> Any:
+        """Context of the command that the function makes, which takes the place of this one."""
+        with _reported():
+            function = self._command.load()
+        alone = typer.Typer(add_completion=False)
+        alone.command(self._command.name)(_reported()(function))
+        return get_command(alone).make_context(*args, **kwargs)
+
+
+class Commands(TyperGroup):
+    """The commands below, and those of plug-ins after them."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names, each once."""
+        return list(dict.fromkeys([*super().list_commands(ctx), *plugin_commands()]))
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Command of that name: one below, else one of a plug-in, else None."""
+        if built_in := super().get_command(ctx, cmd_name):
+            return built_in
+        if command := plugin_commands().get(cmd_name):
+            return PluginTyperCommand(command)
+        if missing := missing_package(cmd_name):
+            raise _refusal(missing)
+        return None
+
+
+app = typer.Typer(cls=Commands, add_completion=False, pretty_exceptions_enable=False)
 
 
 @app.callback(invoke_without_command=True)
@@ -144,7 +164,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
 
         report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
-            _write_json(report.to_dict(), json_file)
+            write_json(report.to_dict(), json_file)
         _print_domain(report)
         _print_features(report)
         _print_bodies(report)
@@ -167,16 +187,6 @@ def insert(scene: SceneFile, assignments: Assignments = None, out: MeshFolder = 
 
 
 @app.command()
-def crosscheck(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile = None, steps: Steps = 3) -> None:
-    """Run a dry scene of balls in LAMMPS too, and say how far the results are apart."""
-    with _reported():
-        from rigidfluid.core.setup.load import load_scene
-        from rigidfluid.evaluation.crosscheck import crosscheck as run_both
-
-        _print_comparison(run_both(load_scene(scene, assignments or ()), steps), json_file)
-
-
-@app.command()
 def compare(
     scene: SceneFile,
     backends: Backends = None,
@@ -194,7 +204,7 @@ def compare(
                 scene, backends or [], assignments or [], out, fresh=not resume, progress=show
             )
         if json_file is not None:
-            _write_json(comparison.to_dict(), json_file)
+            write_json(comparison.to_dict(), json_file)
         _print_backends(comparison)
         _print(f"wrote to {written[0].parent}: {', '.join(path.name for path in written)}")
     if comparison.failed:
@@ -202,8 +212,8 @@ def compare(
 
 
 @app.command()
-def plugins() -> None:
-    """List the fluid backends, detectors, force laws and body types that are installed."""
+def plugins(context: typer.Context) -> None:
+    """List the parts and commands that are installed, those of plug-ins too."""
     with _reported():
         from rigidfluid.registry import Registry
 
@@ -213,6 +223,11 @@ def plugins() -> None:
             table.add_row(entry.kind.title, entry.name, entry.origin, "yes" if entry.available else f"no: {entry.hint}")
         for plugin in registry.unloaded:
             table.add_row("plug-in", plugin.name, plugin.origin, f"no: {plugin.reason}")
+        group = context.find_root().command
+        assert isinstance(group, Commands)
+        for name, command in plugin_commands().items():
+            hindrance = command.hindrance(group.commands)
+            table.add_row("command", name, command.origin, f"no: {hindrance}" if hindrance else "yes")
         _console().print(table)
 
 
@@ -244,35 +259,6 @@ def movie(
 
         path = make_movie(folder, out, Look(show, follow, view, size, fps, plane), progress)
     _print(f"wrote {path}")
-
-
-@bench.command()
-def narrow_band(json_file: JsonFile = None, refinement: Refinement = 1.0) -> None:
-    """Time distance fields in bands around a disk and a ball (Van Landeghem et al., Table 1)."""
-    with _reported():
-        from rigidfluid.evaluation.bench.narrow_band import band_rows
-
-        _print_rows(band_rows(refinement), json_file)
-
-
-@bench.command()
-def collisions(json_file: JsonFile = None, most_bodies: MostBodies = 125) -> None:
-    """Time the collision algorithm among many balls (Van Landeghem et al., Tables 2 and 3)."""
-    with _reported():
-        from rigidfluid.evaluation.bench.collisions import collision_rows
-
-        _print_rows(collision_rows(most_bodies), json_file)
-
-
-@bench.command()
-def parallel(
-    json_file: JsonFile = None, ranks: RankCounts = None, most_bodies: MostBodies = 125, coarseness: Coarseness = 1.0
-) -> None:
-    """Time steps of many balls in a fluid on one process and on several (Van Landeghem et al., Tables 2 and 3)."""
-    with _reported():
-        from rigidfluid.evaluation.bench.parallel import parallel_rows
-
-        _print_rows(parallel_rows(ranks or (1, 2), most_bodies, coarseness), json_file)
 
 
 @app.command()
@@ -309,6 +295,8 @@ def _reported(on_interrupt: str = "") -> Iterator[None]:
         yield
     except RigidfluidError as error:
         raise _refusal(error) from None
+    except (typer.Exit, typer.Abort, typer.BadParameter):
+        raise
     except KeyboardInterrupt as interrupt:
         _complain(f"Interrupted. {on_interrupt}")
         if isinstance(interrupt, SharedInterrupt):
@@ -546,30 +534,7 @@ def _print_findings(report: Report) -> None:
     _print(f"{report.count('error')} errors, {report.count('warning')} warnings")
 
 
-def _write_json(data: object, path: Path) -> None:
-    from rigidfluid.core.output.writer import writing
-
-    with writing(path):
-        path.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-
-
-def _print_comparison(comparison: Comparison, json_file: Path | None) -> None:
-    """Differences over the step, and the means of both programs; all rows to a file, if one is named."""
-    from dataclasses import asdict
-
-    columns = ("step", "position", "velocity", "spin", "energy", "momentum", "from_finest", "parted")
-    table = Table(*(column.replace("_", " ") for column in columns), title="largest differences from LAMMPS")
-    means = Table("step", "mean energy", "LAMMPS'", "momentum", "LAMMPS'", "pressure on walls", "LAMMPS'")
-    for row in comparison.rows:
-        table.add_row(*("never" if (value := getattr(row, column)) is None else f"{value:.1e}" for column in columns))
-        pairs = [(getattr(row.ours, name), getattr(row.theirs, name)) for name in ("energy", "momentum", "pressure")]
-        means.add_row(_figure(row.step), *(_figure(value) for pair in pairs for value in pair))
-    _console().print(table, means)
-    if json_file is not None:
-        _write_json([asdict(row) for row in comparison.rows], json_file)
-
-
-def _print_backends(comparison: BackendComparison) -> None:
+def _print_backends(comparison: Comparison) -> None:
     from rigidfluid.evaluation.comparison.tables import HEADER, cost_rows, difference_rows, meaning
 
     for pair in comparison.pairs:
@@ -586,21 +551,6 @@ def _print_backends(comparison: BackendComparison) -> None:
     _console().print(costs)
     for run in comparison.failed:
         _complain(f"{run.backend} failed: {run.error}")
-
-
-def _print_rows(rows: Iterable[DataclassInstance], json_file: Path | None) -> None:
-    """A line for each row as soon as it is measured; all of them to a file, if one is named."""
-    from dataclasses import asdict
-
-    made = []
-    for row in rows:
-        made.append(asdict(row))
-        if len(made) == 1:
-            _print("  ".join(made[0]))
-        cells = {name: value if isinstance(value, int) else _figure(value) for name, value in made[-1].items()}
-        _print("  ".join(f"{cell:>{len(name)}}" for name, cell in cells.items()))
-    if json_file is not None:
-        json_file.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
 
 
 def _figure(value: Any) -> str:

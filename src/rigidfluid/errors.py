@@ -5,8 +5,6 @@ RigidfluidError
 ├── PluginError         a plug-in is missing, misspelt, doubled or incomplete
 ├── MeshError           no valid mesh can be made for this geometry
 ├── OutputError         a result cannot be written or read back
-├── CrosscheckError     the program to compare with is missing, cannot run the scene, or fails
-├── LaunchError         processes that share a measurement cannot be started, or one of them fails
 └── StepError           the simulation cannot go on, even with the shortest step
     └── StepRejected    one attempted step is not usable; the loop retries it shorter
 """
@@ -56,14 +54,6 @@ class MeshError(RigidfluidError):
 
 class OutputError(RigidfluidError):
     """A result cannot be written or read back."""
-
-
-class CrosscheckError(RigidfluidError):
-    """The program to compare with is missing, cannot run the scene, or fails."""
-
-
-class LaunchError(RigidfluidError):
-    """Processes that share a measurement cannot be started, or one of them fails."""
 
 
 class StepError(RigidfluidError):

@@ -21,6 +21,7 @@ from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
+from rigidfluid.entry_points import load, origin
 from rigidfluid.errors import PluginError
 
 GROUP = "rigidfluid"
@@ -96,15 +97,14 @@ class Registry:
         origins: dict[str, str] = {}
         unloaded = []
         for point in metadata.entry_points(group=GROUP):
-            origin = _origin(point)
-            plugin = f"{point.name} of {origin}"
+            plugin = f"{point.name} of {origin(point)}"
             try:
-                module = _import(point, plugin)
+                module = load(point, f"plug-in {plugin}")
             except ImportError as error:
-                unloaded.append(Unloaded(point.name, origin, str(error)))
+                unloaded.append(Unloaded(point.name, origin(point), str(error)))
                 continue
             _register(manager, module, plugin)
-            origins[plugin] = origin
+            origins[plugin] = origin(point)
         entries = tuple(_entries(manager, origins))
         _refuse_doubles(entries)
         return cls(entries, tuple(unloaded))
@@ -168,21 +168,6 @@ def suggestion(word: str, words: Iterable[str]) -> str:
     """The question "Did you mean …?" with the nearest of ``words``, or nothing where none is near."""
     near = difflib.get_close_matches(word, list(words), n=1)
     return f"Did you mean {near[0]!r}?" if near else ""
-
-
-def _origin(point: metadata.EntryPoint) -> str:
-    # An entry point made by hand has no distribution; those that Python finds have one.
-    return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown"
-
-
-def _import(point: metadata.EntryPoint, plugin: str) -> Any:
-    try:
-        return point.load()
-    except ImportError:
-        raise
-    except (Exception, SystemExit) as error:  # foreign code may raise anything
-        found = f"{type(error).__name__}: {error}"
-        raise PluginError(f"plug-in {plugin}", found, "a module that can be imported", "Mend the plug-in.") from error
 
 
 def _register(manager: pluggy.PluginManager, module: Any, plugin: str) -> None:

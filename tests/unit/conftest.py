@@ -35,15 +35,17 @@ Install = Callable[..., Path]
 
 @pytest.fixture
 def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
-    """Puts a distribution with one module and its entry point on the path."""
+    """Puts a distribution with one module and its entry points, one if not given, on the path."""
 
-    def install(code: str, name: str = "springy", module: str = "springy_plugin") -> Path:
+    def install(
+        code: str, name: str = "springy", module: str = "springy_plugin", entry_points: str | None = None
+    ) -> Path:
         folder = tmp_path / name
         info = folder / f"{name}-1.2.dist-info"
         info.mkdir(parents=True)
         (folder / f"{module}.py").write_text(dedent(code))
         (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.2\n")
-        (info / "entry_points.txt").write_text(f"[rigidfluid]\n{name} = {module}\n")
+        (info / "entry_points.txt").write_text(entry_points or f"[rigidfluid]\n{name} = {module}\n")
         monkeypatch.syspath_prepend(str(folder))
         monkeypatch.delitem(sys.modules, module, raising=False)
         return folder

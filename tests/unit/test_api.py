@@ -13,7 +13,7 @@ from rigidfluid import api
 
 ROOT = Path(__file__).parents[2]
 SOURCE = Path(api.__file__).parent
-PUBLIC = ("rigidfluid.api", "rigidfluid.testing", "rigidfluid.taylor_hood")
+PUBLIC = ("rigidfluid.api", "rigidfluid.commands", "rigidfluid.testing", "rigidfluid.taylor_hood")
 HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}
 
 

@@ -18,7 +18,7 @@ NUMERICS = {
     *("mesh.mesh_quality", "mesh.location", "joints.joint_forces"),
 }
 """Of core's rooms above `mechanics`, what holds no state, and what two parts would otherwise write twice."""
-PUBLIC = {"api", "testing", "taylor_hood"}
+PUBLIC = {"api", "commands", "testing", "taylor_hood"}
 
 
 def imported(folder: Path) -> Iterator[list[str]]:
@@ -43,7 +43,7 @@ def test_no_more_is_allowed_than_is_needed() -> None:
     assert used >= NUMERICS
 
 
-@pytest.mark.parametrize("plugin", ["coal", "ngsolve"])
+@pytest.mark.parametrize("plugin", ["coal", "lammps", "ngsolve"])
 def test_the_plug_ins_beside_import_what_is_public(plugin: str) -> None:
     found = list(imported(ROOT / "plugins" / f"rigidfluid-{plugin}" / "src"))
     assert {names[0] for names in found} <= PUBLIC

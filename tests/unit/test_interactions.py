@@ -19,8 +19,7 @@ from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.schema import json_schema
-from rigidfluid.errors import CrosscheckError, PluginError, SceneError, StepError
-from rigidfluid.evaluation.crosscheck.crosscheck import crosscheck
+from rigidfluid.errors import PluginError, SceneError, StepError
 from rigidfluid.forces.contact import ContactLaw, ContactOptions
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw, NormalOptions
@@ -296,12 +295,6 @@ def test_the_schema_takes_the_keys_of_a_law_and_no_others() -> None:
     for wrong in (NORMAL | {"viscosity": 1.0}, FILM | {"samples": 3}):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate(tables(wrong), schema)
-
-
-def test_lammps_has_no_such_list() -> None:
-    for laws in ([NORMAL, FILM], [NORMAL | {"between": "walls"}]):
-        with pytest.raises(CrosscheckError, match=r"interaction: found .* interactions that act side by side"):
-            crosscheck(scene_from_dict(tables(*laws)))
 
 
 def findings(*interactions: Tables, question: str, **more: Any) -> list[Finding]:

@@ -13,8 +13,7 @@ from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.geometry_checks import initial_contacts
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.errors import CrosscheckError, SceneError, StepError
-from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
+from rigidfluid.errors import SceneError, StepError
 from rigidfluid.reports import report
 
 LAW = {"law": "centre", "range": 0.05, "epsilon": 1e-3}
@@ -209,13 +208,6 @@ def test_velocities_at_the_start_are_those_that_joints_allow():
     rod = {"type": "rod", "between": ["one", "two"]}
     system = system_of(PAIR[0] | {"velocity": [2.0, 0.0]}, PAIR[1], joint=[rod])
     np.testing.assert_allclose(system.twist.velocity, [[1.0, 0.0], [1.0, 0.0]], atol=1e-12)
-
-
-def test_crosscheck_refuses_joints():
-    for data in (tables(*PAIR, joint=[hinge("one", "two")]), tables(ball("it", 0.5, 0.5, free=["x"]))):
-        scene = scene_from_dict(data)
-        with pytest.raises(CrosscheckError, match=r"joint|free"):
-            refuse_foreign(scene, build_system(scene))
 
 
 @pytest.fixture(scope="module")

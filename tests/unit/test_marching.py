@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from benchmark_scripts import benchmark
 from marching_meshes import INNER, OUTER, box, naive_distances, reachable, shell, stars
 
-from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
 from rigidfluid.marching.field import Band, distance_field, exact_wave
 from rigidfluid.marching.first_order import from_edge, from_triangle
 from rigidfluid.marching.topology import Topology
@@ -41,8 +41,14 @@ def test_exact_march_equals_the_nearest_of_all_facets(dimension, shape, surfaces
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
+@pytest.fixture(scope="module")
+def nearest_facet_distances():
+    with benchmark("nearest_facet") as module:
+        return module.nearest_facet_distances
+
+
 @pytest.mark.parametrize(("dimension", "seeds"), [(2, 60), (3, 15)])
-def test_exact_march_among_ragged_stars_equals_the_nearest_of_all_facets(dimension, seeds):
+def test_exact_march_among_ragged_stars_equals_the_nearest_of_all_facets(dimension, seeds, nearest_facet_distances):
     for number in range(seeds):
         mesh, surfaces = stars(dimension, number)
         topology = Topology.from_mesh(mesh)

@@ -21,8 +21,7 @@ from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.errors import CrosscheckError, PluginError, SceneError
-from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
+from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.testing import MechanismContract
 
 LAW = {"law": "centre", "range": 0.005, "epsilon": 1e-8}
@@ -423,12 +422,6 @@ def test_what_meets_a_wall_is_as_heavy_as_the_whole():
     np.testing.assert_allclose(one.loads.mass, one.motions.mass[0])
     np.testing.assert_allclose(other.loads.weight, 2.0 * one.loads.weight)
     assert one.leverage.min() > 0.0
-
-
-def test_programs_that_know_no_mechanisms_are_not_asked():
-    given = scene(pair(), contact=LAW)
-    with pytest.raises(CrosscheckError, match=r"mechanism.*Leave mechanisms out"):
-        refuse_foreign(given, build_system(given))
 
 
 def test_names_of_components_are_taken():

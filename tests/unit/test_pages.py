@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import json
 import os
 import re
 import subprocess
@@ -16,9 +17,11 @@ import numpy as np
 import pytest
 from falling import SCENES
 from linked_runs import body, linked_scene
+from typer.testing import CliRunner
 
 import rigidfluid
 from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
@@ -270,6 +273,19 @@ def test_the_example_of_a_size_field_runs(install: Install, tmp_path: Path) -> N
     without, *with_it = (len(simulation.state.mesh.cells) for simulation in simulations)
     assert with_it[0] == with_it[1] > 1.2 * without
     refuse_failed_contract(folder, contract, tmp_path / "test_fast.py")
+
+
+def test_the_example_of_a_command_runs(install: Install, tmp_path: Path) -> None:
+    page = section(text("docs/plugins.md"), "A command, from nothing")
+    (code,), (points,) = blocks(page, "python"), blocks(page, "toml")
+    points = points.replace("project.entry-points.", "").replace('"', "")
+    install(code, name="weigh", module="rigidfluid_weigh", entry_points=points)
+    file = tmp_path / "masses.json"
+    arguments = ["weigh", str(SCENES / "dry_bounce.toml"), "--set", "body.0.density=2", "--json", str(file)]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.splitlines() == ["left_disk 0.06283", "right_disk 0.03142"]
+    assert json.loads(file.read_text()) == pytest.approx({"left_disk": 0.02 * np.pi, "right_disk": 0.01 * np.pi})
 
 
 def test_the_example_of_control_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

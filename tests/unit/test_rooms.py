@@ -73,6 +73,19 @@ def test_built_in_parts_import_neither_each_other_nor_the_loop(kind: str) -> Non
     assert rooms <= {kind, "core.model", "core.mechanics", "errors", "hookspecs", *PARTS[kind].split()}
 
 
+def test_nothing_imports_the_command_line_and_what_is_for_commands_alone() -> None:
+    paths = [path for path in SOURCE.rglob("*.py") if path.name != "__main__.py"]
+    users = {path.name for path in paths if {"rigidfluid.commands", "rigidfluid.plugin_commands"} & set(imports(path))}
+    assert users == {"cli.py"}
+    assert [path.name for path in paths if "rigidfluid.cli" in imports(path)] == []
+
+
+def test_every_room_is_in_the_table_of_rooms() -> None:
+    table = (SOURCE.parents[1] / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    rooms = {path.name + "/" * path.is_dir() for path in SOURCE.iterdir() if not path.name.startswith(("_", "py."))}
+    assert [room for room in sorted(rooms) if f"`{room}" not in table] == []
+
+
 def test_no_room_is_more_than_twelve_hundredths_of_all() -> None:
     def lines(folder: Path) -> int:
         return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in folder.rglob("*.py"))

@@ -12,8 +12,7 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.features import features
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.errors import CrosscheckError, SceneError
-from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
+from rigidfluid.errors import SceneError
 
 BELT = {"on": "bottom", "type": "wall", "velocity": [0.5, 0.0]}
 RUBBING = {"law": "spring-dashpot", "range": 0.02, "stiffness": 400.0, "damping": 1.0, "friction": 0.4}
@@ -111,12 +110,6 @@ def test_a_velocity_across_a_wall_is_refused_by_name() -> None:
 def test_a_velocity_of_all_walls_is_across_some() -> None:
     with pytest.raises(SceneError, match=r"across the wall 'left'"):
         scene([BELT | {"on": "all"}])
-
-
-def test_lammps_has_no_walls_that_slide() -> None:
-    belt = scene([BELT])
-    with pytest.raises(CrosscheckError, match="domain: found the wall 'bottom'"):
-        refuse_foreign(belt, build_system(belt))
 
 
 def test_a_profile_is_no_matter_of_walls() -> None:

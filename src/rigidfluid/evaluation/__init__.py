@@ -1,1 +1,1 @@
-"""Running scenes and setting them side by side: studies, backends, LAMMPS, the paper's tables."""
+"""Running scenes and setting them side by side: studies, backends, meshes alone."""

@@ -21,9 +21,9 @@ from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError
-from rigidfluid.evaluation.bench.timing import fastest
 from rigidfluid.evaluation.studies.kernels.convex_gaps import true_gap
 from rigidfluid.evaluation.studies.kernels.kernel import Kernel
+from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.evaluation.studies.subject import Outcome
 from rigidfluid.registry import DETECTOR, Registry
 

@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.model.types import IntArray, Mesh
-from rigidfluid.evaluation.bench.shells import INNER, shell
-from rigidfluid.evaluation.bench.timing import fastest
 from rigidfluid.evaluation.studies.kernels.kernel import Kernel
+from rigidfluid.evaluation.studies.kernels.shells import INNER, shell
+from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.evaluation.studies.subject import Outcome
 from rigidfluid.marching.field import Accuracy, DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, IntArray
-from rigidfluid.errors import CrosscheckError
+from rigidfluid.api import FloatArray, IntArray, System
+from rigidfluid_lammps.errors import CrosscheckError
 
 MOST_KINDS = 12
 """A law needs a table for each pair of kinds."""

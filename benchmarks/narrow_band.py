@@ -1,17 +1,24 @@
-"""The paper's Table 1: the distance from the inner of two concentric circles or spheres, in bands of growing width."""
+"""Distance from the inner of two concentric circles or spheres, in bands of growing width.
+
+As in Table 1 of Van Landeghem et al., arXiv:2402.19093, whose figures stand beside.
+
+    python benchmarks/narrow_band.py [--refinement 1] [--json FILE]
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from time import thread_time
 
 import numpy as np
+from nearest_facet import nearest_facet_distances
+from row_command import at_least, row_parser, show_rows
 
 from rigidfluid.core.model.types import IntArray, Mesh
-from rigidfluid.evaluation.bench.nearest_facet import nearest_facet_distances
-from rigidfluid.evaluation.bench.shells import INNER, shell
-from rigidfluid.evaluation.bench.timing import fastest, least_processor_time, timed
+from rigidfluid.evaluation.studies.kernels.shells import INNER, shell
+from rigidfluid.evaluation.studies.kernels.timing import fastest, timed
 from rigidfluid.marching.field import DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology
@@ -113,3 +120,29 @@ def _band_elements(mesh: Mesh, field: DistanceField) -> int:
     reached = np.zeros(len(mesh.points), dtype=bool)
     reached[field.vertices] = True
     return int(np.count_nonzero(reached[mesh.cells].any(axis=1)))
+
+
+def least_processor_time(call: Callable[[], object], repeats: int) -> float:
+    """The least time of several calls that a processor works on this thread, whatever else the machine does [s]."""
+    call()
+    return min(_processor_time(call) for _ in range(repeats))
+
+
+def _processor_time(call: Callable[[], object]) -> float:
+    start = thread_time()
+    call()
+    return thread_time() - start
+
+
+def main() -> None:
+    """Read the arguments, measure and print."""
+    parser = row_parser(__doc__)
+    parser.add_argument(
+        "--refinement", type=at_least(0.3, float), default=1.0, help="vertices per length, relative to the paper's"
+    )
+    arguments = parser.parse_args()
+    show_rows(band_rows(arguments.refinement), arguments.json)
+
+
+if __name__ == "__main__":
+    main()

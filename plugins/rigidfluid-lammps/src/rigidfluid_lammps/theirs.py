@@ -8,15 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.model.wall import require_plane
-from rigidfluid.core.run.step import contact_energy
-from rigidfluid.evaluation.crosscheck.kinds import Kinds, kinds, radii
-from rigidfluid.evaluation.crosscheck.library import lammps_session
-from rigidfluid.evaluation.crosscheck.samples import Sample, Samples
-from rigidfluid.evaluation.crosscheck.timing import Timing
-from rigidfluid.evaluation.crosscheck.translation import (
+from rigidfluid.api import FloatArray, Pose, SpringDashpotLaw, System, require_plane
+from rigidfluid_lammps.kinds import Kinds, kinds, radii
+from rigidfluid_lammps.library import lammps_session
+from rigidfluid_lammps.samples import Sample, Samples
+from rigidfluid_lammps.timing import Timing
+from rigidfluid_lammps.translation import (
     ballast_type,
     forces,
     motion,
@@ -26,7 +23,6 @@ from rigidfluid.evaluation.crosscheck.translation import (
     wall_fix,
     write_bodies,
 )
-from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
 _GLOBAL, _PER_ATOM = 0, 1
 _VECTOR, _ARRAY = 1, 2
@@ -89,7 +85,7 @@ def _sample(engine: Any, system: System, sorts: Kinds) -> Sample:
     spin = spin[:, 3 - system.twist.angular_velocity.shape[1] :]
     normals = [require_plane(wall, "lammps").unit_normal for wall in system.walls]
     if isinstance(system.law, SpringDashpotLaw):
-        stored = _spring_energy(system, position[:, :d])
+        stored = _spring_energy(system, system.law, position[:, :d])
         pushed = [_granular_push(engine, number, normal) for number, normal in enumerate(normals)]
     else:
         stored = float(engine.get_thermo("pe"))
@@ -97,11 +93,10 @@ def _sample(engine: Any, system: System, sorts: Kinds) -> Sample:
     return Sample(position[:, :d], velocity[:, :d], spin, stored, np.array(pushed))
 
 
-def _spring_energy(system: System, position: FloatArray) -> float:
-    """LAMMPS does not sum it for granular contacts, so it is that of the springs at its positions [energy]."""
-    assert system.law is not None
-    contacts = system.detector.detect(Pose(position, system.pose.orientation), None, system.law.range)
-    return contact_energy(system, contacts)
+def _spring_energy(system: System, law: SpringDashpotLaw, position: FloatArray) -> float:
+    """Energy of the springs at LAMMPS' positions [energy]: it does not sum that of granular contacts itself."""
+    contacts = system.detector.detect(Pose(position, system.pose.orientation), None, law.range)
+    return float(np.sum(law.energy(contacts)))
 
 
 def _granular_push(engine: Any, wall: int, normal: FloatArray) -> float:

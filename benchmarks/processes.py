@@ -10,8 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.errors import LaunchError
+from rigidfluid.errors import RigidfluidError
 from rigidfluid.evaluation.python_process import environment, failure, python
+
+
+class LaunchError(RigidfluidError):
+    """Processes that share a measurement cannot be started, or one of them fails."""
 
 
 def measured_apart(program: Sequence[str], ranks: int = 1, threads: int = 1) -> Any:

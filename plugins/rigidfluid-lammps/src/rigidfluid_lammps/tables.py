@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.api import Contacts, FloatArray, ForceLaw
 
 POINTS = 10_001
 """In each table, joined by cubic splines: the force is then right to 1e-9 of its largest value."""

@@ -1,6 +1,6 @@
-"""One arrangement of `rigidfluid bench parallel` on the ranks that share this process' run.
+"""One arrangement of `parallel.py` on the ranks that share this process' run.
 
-python -m rigidfluid.evaluation.bench.parallel_child DIMENSION BODIES COARSENESS FILE
+    python benchmarks/parallel_child.py DIMENSION BODIES COARSENESS FILE
 """
 
 from __future__ import annotations
@@ -11,14 +11,15 @@ import time
 from pathlib import Path
 from typing import Any
 
+from collisions import count_contacts
+from grids import RANGE, balls_in_a_box
+from mesh_sizes import mesh_sizes
+
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.run.process import Launch, one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.evaluation.bench.collisions import count_contacts
-from rigidfluid.evaluation.bench.grids import RANGE, balls_in_a_box
-from rigidfluid.evaluation.bench.mesh_sizes import mesh_sizes
 
 STEPS = 10
 """Number of steps, the same as in the paper."""

@@ -7,8 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.api import FloatArray, Scene
 
 
 @dataclass(frozen=True)

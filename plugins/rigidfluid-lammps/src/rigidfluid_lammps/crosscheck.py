@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.evaluation.crosscheck.comparison import Comparison, compared
-from rigidfluid.evaluation.crosscheck.ours import run_ours
-from rigidfluid.evaluation.crosscheck.refusals import refuse_foreign
-from rigidfluid.evaluation.crosscheck.theirs import run_theirs
-from rigidfluid.evaluation.crosscheck.timing import Timing
+from rigidfluid.api import Scene, build_system
+from rigidfluid_lammps.comparison import Comparison, compared
+from rigidfluid_lammps.ours import run_ours
+from rigidfluid_lammps.refusals import refuse_foreign
+from rigidfluid_lammps.theirs import run_theirs
+from rigidfluid_lammps.timing import Timing
 
 SAMPLES = 200
 """Times at which positions and energies are compared, if there are as many steps."""

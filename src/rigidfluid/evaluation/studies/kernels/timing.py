@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter, thread_time
+from time import perf_counter
 from typing import TypeVar
 
 Result = TypeVar("Result")
@@ -20,15 +20,3 @@ def fastest(call: Callable[[], object], repeats: int) -> float:
     """The shortest of several calls, after one that compiles and warms the caches [s]."""
     call()
     return min(timed(call)[1] for _ in range(repeats))
-
-
-def least_processor_time(call: Callable[[], object], repeats: int) -> float:
-    """The least time of several calls that a processor works on this thread, whatever else the machine does [s]."""
-    call()
-    return min(_processor_time(call) for _ in range(repeats))
-
-
-def _processor_time(call: Callable[[], object]) -> float:
-    start = thread_time()
-    call()
-    return thread_time() - start

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
-from rigidfluid.evaluation.crosscheck.kinds import radii
-from rigidfluid.evaluation.crosscheck.samples import Samples
+from rigidfluid.api import FloatArray, System
+from rigidfluid_lammps.kinds import radii
+from rigidfluid_lammps.samples import Samples
 
 PARTED = 0.01
 """Positions that differ by more than this, over the smallest radius, are two different histories."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from dry_scenes import sphere_gas
 
-from rigidfluid.errors import CrosscheckError
-from rigidfluid.evaluation.crosscheck import crosscheck
-from rigidfluid.evaluation.crosscheck.library import lammps_session
+from rigidfluid_lammps import CrosscheckError, crosscheck
+from rigidfluid_lammps.library import lammps_session
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -1,14 +1,22 @@
-"""The paper's Tables 2 and 3 with the fluid: steps of many balls on one process and on several."""
+"""Steps of many balls in a fluid on one process and on several.
+
+As in Tables 2 and 3 of Van Landeghem et al., arXiv:2402.19093. Needs DOLFINx and `mpirun`.
+
+    python benchmarks/parallel.py [--ranks 1 2] [--most-bodies 125] [--coarseness 1] [--json FILE]
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from rigidfluid.evaluation.bench.collisions import PAPER
-from rigidfluid.evaluation.bench.mesh_sizes import PAPER_NODES
-from rigidfluid.evaluation.bench.processes import measured_apart
+from collisions import PAPER
+from mesh_sizes import PAPER_NODES
+from processes import measured_apart
+from row_command import at_least, row_parser, show_rows
+
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 BACKEND = "dolfinx"
@@ -106,6 +114,22 @@ def row(
 
 
 def _measured(dimension: int, bodies: int, ranks: int, coarseness: float) -> Mapping[str, Any]:
-    program = ("-m", "rigidfluid.evaluation.bench.parallel_child", str(dimension), str(bodies), str(coarseness))
-    found: Mapping[str, Any] = measured_apart(program, ranks)
+    child = Path(__file__).with_name("parallel_child.py")
+    found: Mapping[str, Any] = measured_apart([str(child), str(dimension), str(bodies), str(coarseness)], ranks)
     return found
+
+
+def main() -> None:
+    """Read the arguments, measure and print."""
+    parser = row_parser(__doc__)
+    parser.add_argument("--ranks", type=at_least(1), nargs="+", default=[1, 2], help="on how many processes")
+    parser.add_argument("--most-bodies", type=at_least(1), default=125, help="leave out arrangements of more")
+    parser.add_argument(
+        "--coarseness", type=at_least(1.0, float), default=1.0, help="edge lengths over those of the paper's meshes"
+    )
+    arguments = parser.parse_args()
+    show_rows(parallel_rows(arguments.ranks, arguments.most_bodies, arguments.coarseness), arguments.json)
+
+
+if __name__ == "__main__":
+    main()
