@@ -21,7 +21,7 @@ test-plugins: .venv/.installed-plugins
 # In Debian 13's packages, in a folder; see tools/dolfinx.
 test-dolfinx:
 	tools/dolfinx make
-	tools/dolfinx run python3 -m pytest tests/contract/test_fluid_backends.py tests/unit/test_dolfinx.py tests/mpi
+	tools/dolfinx run python3 -m pytest tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py tests/mpi
 
 validate: .venv/.installed-test
 	$(BIN)/pytest -m validation

@@ -1,16 +1,16 @@
 """Sliders in a fluid, with contacts: they stay on their axis and give no energy."""
 
-from pathlib import Path
 
 import numpy as np
 import pytest
 from linked_runs import linked_scene, misfit
+from paths import SCENES
 
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import load_scene
 
-SCENE = Path(__file__).parents[2] / "scenes" / "slider.toml"
+SCENE = SCENES / "slider.toml"
 
 
 def test_a_piston_that_hits_the_bottom_creates_no_energy():

@@ -1,11 +1,11 @@
 """Mechanisms that a scene spells out: bodies of any shape, and strokes that move them."""
 
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 from articulated_scenes import BALL, OUT, WAG, components, scene
+from paths import ROOT, SCENES
 
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.run.simulation import Simulation
@@ -144,7 +144,7 @@ def test_an_overlap_along_the_stroke_is_refused_by_name_and_time():
 
 
 def test_the_phases_of_the_three_sphere_swimmer_are_four():
-    path = Path(__file__).parents[2] / "scenes" / "swimmer.toml"
+    path = SCENES / "swimmer.toml"
     with pytest.raises(SceneError, match=r"mechanism.0.order.*each of left in"):
         load_scene(path, ['mechanism.0.order=["left in", "left in", "left out", "right out"]'])
     with pytest.raises(SceneError, match=r"mechanism.0.amplitude.*less than 8"):
@@ -152,7 +152,7 @@ def test_the_phases_of_the_three_sphere_swimmer_are_four():
 
 
 def test_the_scene_of_the_page_on_mechanisms_swims():
-    page = (Path(__file__).parents[2] / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "mechanisms.md").read_text(encoding="utf-8")
     tables = tomllib.loads(page.partition("```toml\n")[2].partition("```")[0])
     tables["mesh"] |= {"size": 0.8, "size_body": 0.1}
     tables["time"] |= {"end": 0.1, "step": 0.05}

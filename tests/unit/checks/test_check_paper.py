@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paths import SCENES
 from typer.testing import CliRunner
 
 from rigidfluid import load_scene
 from rigidfluid.cli import app
 from rigidfluid.core.setup.build import build_system
 
-SCENES = Path(__file__).parents[2] / "scenes"
 NONE = "none"
 # scene, law, against, largest force over submerged weight, rest gap [cm]; computed by hand from 4 range³/(27 ε),
 # 2 r range²/ε and the roots of F(gap) = W

@@ -1,14 +1,14 @@
 """The three-sphere swimmer in Stokes flow, in the closed channel of its reference."""
 
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
+from paths import SCENES
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import load_scene
 
-SCENE = Path(__file__).parents[2] / "scenes" / "swimmer.toml"
+SCENE = SCENES / "swimmer.toml"
 
 
 def advances(cycles, *overrides):

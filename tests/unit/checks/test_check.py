@@ -10,6 +10,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from paths import ROOT
 from typer.testing import CliRunner
 
 from rigidfluid.checks import Finding, Report, check
@@ -463,7 +464,7 @@ def test_a_long_list_of_bodies_is_cut(tmp_path: Path) -> None:
 
 
 def test_every_question_and_figure_is_explained() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "check.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "check.md").read_text(encoding="utf-8")
     near = BALL | {"position": [1.0, RADIUS + 0.5 * RANGE]}
     weak = {"epsilon": 1.0, "epsilon_wall": 1.0, "smallest_gap": 0.01}
     coarse = {"mesh": {"size": 0.2, "size_body": 0.16, "refinements": 0}}

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
 from falling import falling_disk
+from paths import ROOT
 
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
@@ -15,7 +15,6 @@ from rigidfluid.core.run import step
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.stepper import Stepper
 
-ROOT = Path(__file__).parents[2]
 WALL = {"law": "centre", "range": 0.1, "epsilon": 1e-4, "epsilon_wall": 1e-4}
 SHORT = {"time": {"step": 0.004, "end": 0.04}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 1.0}}
 

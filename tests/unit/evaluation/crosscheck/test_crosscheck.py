@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from paths import SCENES
 from typer.testing import CliRunner
 
 from rigidfluid.cli import app
@@ -21,7 +22,6 @@ from rigidfluid.evaluation.crosscheck import library as lammps_library
 from rigidfluid.evaluation.crosscheck.kinds import kinds
 from rigidfluid.evaluation.crosscheck.theirs import build
 
-SCENES = Path(__file__).parents[2] / "scenes"
 RADIUS = 0.1
 RANGE = 0.02
 WEAK = {"centre": 2e-7, "contact": 2e-8, "normal": 2e-6, "barrier": 1e-4}

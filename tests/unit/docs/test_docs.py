@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import runpy
-from pathlib import Path
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "make_scene_reference.py"
+from paths import ROOT
+
+SCRIPT = ROOT / "docs" / "make_scene_reference.py"
 
 
 def test_scene_reference_is_up_to_date() -> None:

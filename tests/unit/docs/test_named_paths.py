@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *ROOT.glob("plugins/*/*.md")]
 ROOMS = "tests|docs|scenes|studies|benchmarks|tools|plugins|src"
 NAMED = re.compile(rf"`((?:{ROOMS})/[\w./-]+)`")

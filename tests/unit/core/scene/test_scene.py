@@ -13,6 +13,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from paths import SCENES
 
 import rigidfluid
 from rigidfluid import load_scene
@@ -28,8 +29,8 @@ from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 
-SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*.toml"))
-DRY = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
+SCENE_FILES = sorted(SCENES.glob("*.toml"))
+DRY = SCENES / "dry_bounce.toml"
 
 DISK = {
     "scene": {"name": "disk", "dimension": 2},
@@ -70,7 +71,7 @@ def in_3d(**changes: Any) -> dict[str, Any]:
     return changed(changes, changed(base | {"body.0.position": [1, 4, 1]}))
 
 
-@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", SCENE_FILES, ids=lambda path: path.stem)
 def test_our_scenes_load_build_and_fit_the_schema(path: Path) -> None:
     scene = load_scene(path)
     build_system(scene)
@@ -334,7 +335,7 @@ def test_toml_that_python_cannot_hold_is_refused(tmp_path: Path, text: str) -> N
         load_scene(path)
     key, _, value = text.partition(" = ")
     with pytest.raises(SceneError):
-        load_scene(SCENES[0], [f"{key}={value}"])
+        load_scene(SCENE_FILES[0], [f"{key}={value}"])
 
 
 def test_folder_is_no_scene(tmp_path: Path) -> None:
