@@ -6,26 +6,24 @@ import signal
 import numpy as np
 import pytest
 from falling import falling_disk
+from scenes import wet_tables
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
 
-BALLS = {
-    "scene": {"name": "two_balls", "dimension": 3},
-    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0, 0.0]},
-    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
-    "boundary": [{"on": "left", "type": "velocity", "velocity": [0.2, 0.0, 0.0], "profile": "parabolic"}]
+BALLS = wet_tables(
+    {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
+    {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
+    end=0.1,
+    step=0.02,
+    fluid={"gravity": [0.0, -10.0, 0.0]},
+    domain={"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
+    boundary=[{"on": "left", "type": "velocity", "velocity": [0.2, 0.0, 0.0], "profile": "parabolic"}]
     + [{"on": "right", "type": "pressure", "pressure": 0.3}, {"on": "front", "type": "slip"}],
-    "body": [
-        {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
-        {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
-    ],
-    "mesh": {"size": 0.6, "size_body": 0.2},
-    "time": {"step": 0.02, "end": 0.1},
-    "output": {"every": 0.1},
-}
+    mesh={"size": 0.6, "size_body": 0.2},
+)
 
 
 def three_dimensional(**fluid):

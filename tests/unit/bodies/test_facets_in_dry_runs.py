@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
 from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
+from scenes import dry_tables
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
@@ -121,15 +122,7 @@ def test_a_square_dropped_flat_onto_an_obstacle_of_facets_does_not_turn() -> Non
     table = {"type": "polygon", "points": (0.25 * np.array(L_SHAPE)).tolist(), "position": [0.5, 0.3]}
     domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [table]}
     scene = scene_from_dict(
-        {
-            "scene": {"name": "ledge", "dimension": 2},
-            "fluid": {"backend": "dry", "gravity": [0.0, -1.0]},
-            "domain": domain,
-            "body": [block(BOX, [0.65, 0.55])],
-            "contact": ELASTIC,
-            "time": {"end": 0.8, "step": 0.01},
-            "output": {"every": 0.8},
-        }
+        dry_tables(block(BOX, [0.65, 0.55]), end=0.8, fluid={"gravity": [0.0, -1.0]}, domain=domain, contact=ELASTIC)
     )
     simulation, energy, most = energies(scene)
     assert simulation.system.detector.name == "facets"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid.reports import report
@@ -101,14 +102,12 @@ def tumbling(dimension: int) -> dict[str, Any]:
     spin = [2.0] if dimension == 2 else [0.0, 0.0, 2.0]
     ellipsoid = {"type": "ellipsoid", "semi_axes": [0.3, *[0.1] * (dimension - 1)], "angular_velocity": spin}
     ball = {"type": "sphere", "radius": 0.1, "position": [2.0, *still[1:]]}
-    return {
-        "scene": {"name": "tumbling", "dimension": dimension},
-        "fluid": {"backend": "dry"},
-        "domain": {"type": "box", "lower": [-3.0] * dimension, "upper": [3.0] * dimension},
-        "body": [{"density": 1.0} | ellipsoid | {"position": still}, {"density": 1.0} | ball],
-        "time": {"end": 1.0, "step": 0.1},
-        "output": {"every": 1.0},
-    }
+    return dry_tables(
+        {"density": 1.0} | ellipsoid | {"position": still},
+        {"density": 1.0} | ball,
+        step=0.1,
+        domain={"lower": [-3.0] * dimension, "upper": [3.0] * dimension},
+    )
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid import registry
@@ -128,16 +129,7 @@ def test_bodies_too_many_to_tell_apart(tmp_path: Path) -> None:
     places = [(x, y) for x in np.linspace(0.1, 0.9, 5) for y in np.linspace(0.1, 0.9, 5)]
     body = [{"type": "sphere", "radius": 0.05, "density": 1.0, "position": list(map(float, place))} for place in places]
     rigidfluid.run(
-        rigidfluid.scene_from_dict(
-            {
-                "scene": {"name": "many", "dimension": 2},
-                "fluid": {"backend": "dry", "gravity": [0.0, -1.0]},
-                "domain": {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-                "body": body,
-                "time": {"end": 0.02, "step": 0.01},
-                "output": {"every": 0.01},
-            }
-        ),
+        rigidfluid.scene_from_dict(dry_tables(*body, end=0.02, fluid={"gravity": [0.0, -1.0]}, output={"every": 0.01})),
         tmp_path,
     )
     written = report(tmp_path)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from falling import falling_disk
+from scenes import wet_tables
 from scipy import sparse
 from throat import SLIPPERY, throat
 
@@ -14,18 +15,15 @@ from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import projection as module
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
 
-BALL = {
-    "scene": {"name": "ball", "dimension": 3},
-    "fluid": {"density": 1.0, "viscosity": 0.1},
-    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
-    "boundary": [{"on": "left", "type": "periodic", "pressure_drop": 3.0}, {"on": "right", "type": "periodic"}],
-    "body": [
-        {"type": "sphere", "radius": 0.4, "density": 1.5, "position": [1.0, 1.1, 1.0], "velocity": [1.0, 0.5, 0.0]}
-    ],
-    "mesh": {"size": 0.8, "size_body": 0.3},
-    "time": {"step": 0.02, "end": 0.1},
-    "output": {"every": 0.02},
-}
+BALL = wet_tables(
+    {"type": "sphere", "radius": 0.4, "density": 1.5, "position": [1.0, 1.1, 1.0], "velocity": [1.0, 0.5, 0.0]},
+    end=0.1,
+    step=0.02,
+    domain={"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
+    boundary=[{"on": "left", "type": "periodic", "pressure_drop": 3.0}, {"on": "right", "type": "periodic"}],
+    mesh={"size": 0.8, "size_body": 0.3},
+    output={"every": 0.02},
+)
 COARSE = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 SCENES = {
     "closed": lambda: falling_disk(body={"angular_velocity": 30.0, "velocity": [0.0, -4.0]}, **COARSE),

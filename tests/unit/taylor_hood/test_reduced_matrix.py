@@ -3,24 +3,22 @@
 import numpy as np
 import pytest
 from falling import falling_disk
+from scenes import wet_tables
 from scipy import sparse
 
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
-BALLS = {
-    "scene": {"name": "two_balls", "dimension": 3},
-    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0, 0.0]},
-    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
-    "body": [
-        {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
-        {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
-    ],
-    "mesh": {"size": 0.6, "size_body": 0.2},
-    "time": {"step": 0.02, "end": 0.1},
-    "output": {"every": 0.1},
-}
+BALLS = wet_tables(
+    {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
+    {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
+    end=0.1,
+    step=0.02,
+    fluid={"gravity": [0.0, -10.0, 0.0]},
+    domain={"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
+    mesh={"size": 0.6, "size_body": 0.2},
+)
 
 
 def disk():

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid import Scene, scene_from_dict
@@ -27,15 +28,13 @@ def ball(height: float, velocity: float | None = None, **keys: Any) -> dict[str,
 def scene(law: str, dimension: int, gravity: float, *bodies: dict[str, Any], **contact: Any) -> Scene:
     """Balls in a box without a fluid, in steps that are small beside the impact."""
     return scene_from_dict(
-        {
-            "scene": {"name": "drop", "dimension": dimension},
-            "fluid": {"backend": "dry", "gravity": _up(-gravity, 0.0, dimension)},
-            "domain": {"lower": [0.0] * dimension, "upper": [2.0] * dimension},
-            "body": [_placed(body, dimension) for body in bodies],
-            "contact": {"law": law, "range": RANGE, "epsilon": "auto", "smallest_gap": SMALLEST} | contact,
-            "time": {"end": 1.0, "step": 1.0},
-            "output": {"every": 1.0},
-        }
+        dry_tables(
+            *[_placed(body, dimension) for body in bodies],
+            step=1.0,
+            fluid={"gravity": _up(-gravity, 0.0, dimension)},
+            domain={"lower": [0.0] * dimension, "upper": [2.0] * dimension},
+            contact={"law": law, "range": RANGE, "epsilon": "auto", "smallest_gap": SMALLEST} | contact,
+        )
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import wet_tables
 from scipy.spatial.transform import Rotation
 
 from rigidfluid.core.contact.look_ahead import near_contacts
@@ -37,16 +38,13 @@ def moving(dimension: int, gravity: float = 0.0) -> System:
     """An ellipse or ellipsoid aslant, far from all walls."""
     return build_system(
         scene_from_dict(
-            {
-                "scene": {"name": "outside", "dimension": dimension},
-                "fluid": {"density": 2.0, "viscosity": 0.1, "gravity": [gravity] + [0.0] * (dimension - 1)},
-                "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
-                "body": [{"type": "ellipsoid", "density": 3.0, "position": [0.5] * dimension} | BODY[dimension]],
-                "contact": {"law": "normal", "range": 0.02, "epsilon": 1e-6},
-                "mesh": {"size": 0.2, "size_body": 0.05},
-                "time": {"end": 1.0, "step": STEP},
-                "output": {"every": 1.0},
-            }
+            wet_tables(
+                {"type": "ellipsoid", "density": 3.0, "position": [0.5] * dimension} | BODY[dimension],
+                step=STEP,
+                fluid={"density": 2.0, "gravity": [gravity] + [0.0] * (dimension - 1)},
+                contact={"law": "normal", "range": 0.02, "epsilon": 1e-6},
+                mesh={"size_body": 0.05},
+            )
         )
     )
 

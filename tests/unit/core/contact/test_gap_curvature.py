@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid.core.contact.proximity import detect
@@ -19,15 +20,12 @@ FILM = {"law": "lubrication", "range": 1.0, "viscosity": 0.7, "cutoff": 1e-6}
 def system_tables(*bodies: dict[str, Any]) -> dict[str, Any]:
     """Of bodies in a dry box of side 10 about the origin."""
     dimension = len(bodies[0]["position"])
-    return {
-        "scene": {"name": "film", "dimension": dimension},
-        "fluid": {"backend": "dry"},
-        "domain": {"lower": [-5.0] * dimension, "upper": [5.0] * dimension},
-        "body": [{"name": f"body_{number}", "density": 1.0} | table for number, table in enumerate(bodies)],
-        "contact": FILM,
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 0.01},
-    }
+    return dry_tables(
+        *[{"name": f"body_{number}", "density": 1.0} | table for number, table in enumerate(bodies)],
+        domain={"lower": [-5.0] * dimension, "upper": [5.0] * dimension},
+        contact=FILM,
+        output={"every": 0.01},
+    )
 
 
 def system(*bodies: dict[str, Any]) -> System:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 from scipy.special import ellipj, ellipkinc
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
@@ -66,16 +67,7 @@ def test_round_and_planar_bodies_turn_evenly():
 def test_a_thousand_periods_keep_energy_and_momentum():
     """Through the loop and its differences of momentum, at four steps a period."""
     body = {"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "density": 1.0, "position": [0.5, 0.5, 0.5]}
-    scene = scene_from_dict(
-        {
-            "scene": {"name": "tumble", "dimension": 3},
-            "fluid": {"backend": "dry"},
-            "domain": {"lower": [0.0] * 3, "upper": [1.0] * 3},
-            "body": [body | {"angular_velocity": START.tolist()}],
-            "time": {"step": PERIOD / 4, "end": 1000 * PERIOD},
-            "output": {"every": 1000 * PERIOD},
-        }
-    )
+    scene = scene_from_dict(dry_tables(body | {"angular_velocity": START.tolist()}, end=1000 * PERIOD, step=PERIOD / 4))
     run = Simulation(scene, None, False)
     run.stepper.system = replace(run.system, inertia=np.diag(INERTIA)[None])
     run.go()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 
 from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
@@ -28,19 +29,10 @@ def chain(name, dimension, position, **keys):
 
 
 def simulation(*chains, end, step, **contact):
-    dimension = len(chains[0]["position"])
     law = {"law": "normal", "range": 0.01, "epsilon": 1e-6}
     return Simulation(
         scene_from_dict(
-            {
-                "scene": {"name": "momentum", "dimension": dimension},
-                "fluid": {"backend": "dry"},
-                "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
-                "mechanism": list(chains),
-                "contact": law | contact if contact else {},
-                "time": {"end": end, "step": step},
-                "output": {"every": end},
-            }
+            dry_tables(end=end, step=step, mechanism=list(chains), contact=law | contact if contact else {})
         )
     )
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
+from scenes import wet_tables
 from throat import SLIPPERY, throat
 
 import rigidfluid
@@ -81,16 +82,13 @@ def test_a_body_that_rests_on_a_wall_is_no_impact() -> None:
     """Its contact pushes all the time, and its box of fluid is shaken."""
     disk = {"type": "sphere", "radius": 0.2, "density": 2.0, "position": [0.5, 0.2499]}
     shaken = disk | {"position": [0.5, 0.75], "radius": 0.1, "prescribed": {"amplitude": [0.1, 0.0], "frequency": 2.0}}
-    tables = {
-        "scene": {"name": "rest", "dimension": 2},
-        "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -1.0]},
-        "domain": {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "body": [disk | {"name": "resting"}, shaken | {"name": "shaken"}],
-        "contact": {"law": "normal", "range": 0.1, "epsilon": 1e-3},
-        "mesh": {"size": 0.2, "size_body": 0.1},
-        "time": {"end": 0.3, "step": 0.01},
-        "output": {"every": 0.3},
-    }
+    tables = wet_tables(
+        disk | {"name": "resting"},
+        shaken | {"name": "shaken"},
+        end=0.3,
+        fluid={"gravity": [0.0, -1.0]},
+        contact={"law": "normal", "range": 0.1, "epsilon": 1e-3},
+    )
     history = rigidfluid.run(rigidfluid.scene_from_dict(tables))
     late = history.energy["time"] > 0.05
     assert (history.bodies["cfy"].reshape(-1, 2)[1:, 0] > 0.1).all()
@@ -119,24 +117,22 @@ def test_coarse_curved_slip_walls_leak_by_the_mesh_alone() -> None:
 def gust(step: float) -> Scene:
     """A vortex that a stream takes out of a box of coarse cells."""
     return rigidfluid.scene_from_dict(
-        {
-            "scene": {"name": "gust", "dimension": 2},
-            "fluid": {
-                "density": 1.0,
+        wet_tables(
+            {"type": "sphere", "radius": 0.3, "density": 1.0, "position": [-1.0, 2.0], "fixed": True},
+            end=8.0,
+            step=step,
+            fluid={
                 "viscosity": 0.005,
                 "initial": ["1.0 - 2*y*exp(-(x-1.5)**2-y**2)", "2*(x-1.5)*exp(-(x-1.5)**2-y**2)"],
             },
-            "domain": {"type": "box", "lower": [-3.0, -3.0], "upper": [5.0, 3.0]},
-            "boundary": [
+            domain={"lower": [-3.0, -3.0], "upper": [5.0, 3.0]},
+            boundary=[
                 {"on": "all", "type": "slip"},
                 {"on": "left", "type": "velocity", "velocity": [1.0, 0.0]},
                 {"on": "right", "type": "pressure", "pressure": 0.0},
             ],
-            "body": [{"type": "sphere", "radius": 0.3, "density": 1.0, "position": [-1.0, 2.0], "fixed": True}],
-            "mesh": {"size": 0.8, "size_body": 0.15},
-            "time": {"end": 8.0, "step": step},
-            "output": {"every": 8.0},
-        }
+            mesh={"size": 0.8, "size_body": 0.15},
+        )
     )
 
 

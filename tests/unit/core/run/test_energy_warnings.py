@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 from starts import DISK, INFLOW, disk_in_box
 
 import rigidfluid
@@ -32,15 +33,13 @@ class Pair(NamedTuple):
 
 def thrown(contact: dict[str, Any], **tables: Any) -> Scene:
     """A disk between walls, without a fluid."""
-    tables = {
-        "scene": {"name": "thrown", "dimension": 2},
-        "fluid": {"backend": "dry"},
-        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "body": [DISK | {"radius": 0.1, "position": [0.5, 0.4], "velocity": [1.0, 0.3]}],
-        "contact": {"law": "normal", "range": 0.05, "epsilon": 1e-5} | contact,
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 1.0},
-    } | tables
+    tables = (
+        dry_tables(
+            DISK | {"radius": 0.1, "position": [0.5, 0.4], "velocity": [1.0, 0.3]},
+            contact={"law": "normal", "range": 0.05, "epsilon": 1e-5} | contact,
+        )
+        | tables
+    )
     return scene_from_dict(tables)
 
 

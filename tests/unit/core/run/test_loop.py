@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid.core.output.checkpoint import read_checkpoint
@@ -13,14 +14,14 @@ BALL = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [5.0, 5.0]}
 
 
 def dry(*bodies, gravity=(0.0, -10.0), **tables):
-    data = {
-        "scene": {"name": "t", "dimension": 2},
-        "fluid": {"backend": "dry", "gravity": list(gravity)},
-        "domain": {"lower": [0.0, 0.0], "upper": [10.0, 10.0]},
-        "body": [BALL | body for body in bodies],
-        "time": {"step": 0.01, "end": 0.25},
-        "output": {"every": 0.1},
-    }
+    data = dry_tables(
+        *[BALL | body for body in bodies],
+        end=0.25,
+        scene={"name": "t"},
+        fluid={"gravity": list(gravity)},
+        domain={"lower": [0.0, 0.0], "upper": [10.0, 10.0]},
+        output={"every": 0.1},
+    )
     return scene_from_dict(data | tables)
 
 
@@ -82,22 +83,20 @@ def test_all_levels_are_tried(monkeypatch):
 
 def test_a_tumbling_ellipsoid_keeps_its_energy_in_a_run():
     scene = scene_from_dict(
-        {
-            "scene": {"name": "t", "dimension": 3},
-            "fluid": {"backend": "dry"},
-            "domain": {"lower": [0.0] * 3, "upper": [10.0] * 3},
-            "time": {"step": 0.005, "end": 0.3},
-            "output": {"every": 1.0},
-            "body": [
-                {
-                    "type": "ellipsoid",
-                    "semi_axes": [0.5, 0.3, 0.2],
-                    "density": 1.0,
-                    "position": [5.0] * 3,
-                    "angular_velocity": [0.3, 2.0, 1.5],
-                }
-            ],
-        }
+        dry_tables(
+            {
+                "type": "ellipsoid",
+                "semi_axes": [0.5, 0.3, 0.2],
+                "density": 1.0,
+                "position": [5.0] * 3,
+                "angular_velocity": [0.3, 2.0, 1.5],
+            },
+            end=0.3,
+            step=0.005,
+            scene={"name": "t"},
+            domain={"lower": [0.0] * 3, "upper": [10.0] * 3},
+            output={"every": 1.0},
+        )
     )
     e = rigidfluid.run(scene).summary["energy"]
     assert abs(e["relative_residual"]) < 1e-3

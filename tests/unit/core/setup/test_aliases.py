@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from scenes import dry_tables
 
 import rigidfluid
 from rigidfluid.api import SceneError, scene_from_dict
@@ -39,14 +40,7 @@ def rigidfluid_bodies():
 
 def tables(**body: Any) -> dict[str, Any]:
     own = {"name": "it", "type": "round", "density": 1.0, "position": [0.5, 0.5]} | body
-    return {
-        "scene": {"name": "aliases", "dimension": 2},
-        "fluid": {"backend": "dry"},
-        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "body": [own],
-        "time": {"end": 0.02, "step": 0.01},
-        "output": {"every": 0.02},
-    }
+    return dry_tables(own, end=0.02)
 
 
 @pytest.fixture(autouse=True)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import wet_tables
 
 import rigidfluid
 from rigidfluid import scene_from_dict
@@ -15,15 +16,12 @@ from rigidfluid.errors import SceneError
 
 def run(changes: dict[str, dict[str, Any]] | None = None, **tables: Any) -> History:
     """A disk of radius .2 in the unit square, with keys of its tables changed, and tables replaced."""
-    scene: dict[str, Any] = {
-        "scene": {"name": "initial_flow", "dimension": 2},
-        "fluid": {"density": 1.0, "viscosity": 0.1},
-        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "body": [{"type": "sphere", "radius": 0.2, "density": 1.0, "position": [0.5, 0.5], "fixed": True}],
-        "mesh": {"size": 0.2, "size_body": 0.1},
-        "time": {"end": 0.5, "step": 0.05},
-        "output": {"every": 0.5},
-    } | tables
+    scene: dict[str, Any] = (
+        wet_tables(
+            {"type": "sphere", "radius": 0.2, "density": 1.0, "position": [0.5, 0.5], "fixed": True}, end=0.5, step=0.05
+        )
+        | tables
+    )
     for table, keys in (changes or {}).items():
         scene[table] = scene[table] | keys
     return rigidfluid.run(scene_from_dict(scene))

@@ -1,6 +1,7 @@
 """Strokes and drives that take no longer than a step are refused: a step would not meet what they do."""
 
 import pytest
+from scenes import dry_tables
 
 from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.load import scene_from_dict
@@ -19,16 +20,14 @@ def built(step, stroke=None, drive=None, **time):
     joint = {"name": "pin", "type": "hinge", "between": ["arm"], "at": [0.7, 0.5], "drive": drive}
     return build_system(
         scene_from_dict(
-            {
-                "scene": {"name": "quick", "dimension": 2},
-                "fluid": {"backend": "dry"},
-                "domain": {"lower": [0.0, 0.0], "upper": [2.0, 2.0]},
-                "body": [arm] if drive else [],
-                "joint": [joint] if drive else [],
-                "mechanism": [mechanism] if stroke else [],
-                "time": {"end": 1.0, "step": step} | time,
-                "output": {"every": 1.0},
-            }
+            dry_tables(
+                *([arm] if drive else []),
+                step=step,
+                time=time,
+                domain={"lower": [0.0, 0.0], "upper": [2.0, 2.0]},
+                joint=[joint] if drive else [],
+                mechanism=[mechanism] if stroke else [],
+            )
         )
     )
 
@@ -60,16 +59,11 @@ def test_what_turns_to_and_fro_many_times_in_a_period_is_seen():
 
 
 def test_a_step_that_meets_only_ends_of_a_prescribed_sine_is_refused():
-    data = {
-        "scene": {"name": "sine", "dimension": 2},
-        "fluid": {"backend": "dry"},
-        "domain": {"lower": [0.0, 0.0], "upper": [2.0, 2.0]},
-        "body": [
-            BALL | {"name": "it", "position": [1.0, 1.0], "prescribed": {"amplitude": [0.5, 0.0], "frequency": 50.0}}
-        ],
-        "time": {"end": 1.0, "step": 0.02},
-        "output": {"every": 1.0},
-    }
+    data = dry_tables(
+        BALL | {"name": "it", "position": [1.0, 1.0], "prescribed": {"amplitude": [0.5, 0.0], "frequency": 50.0}},
+        step=0.02,
+        domain={"lower": [0.0, 0.0], "upper": [2.0, 2.0]},
+    )
     with pytest.raises(SceneError, match=r"time.step: found 0.02, 1 periods of body 'it'; allowed is at most 0.00637"):
         scene_from_dict(data)
     assert scene_from_dict(data | {"time": {"end": 1.0, "step": 0.006}})

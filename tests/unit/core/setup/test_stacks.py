@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import wet_tables
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.build import build_system
@@ -65,16 +66,14 @@ AREA = np.pi * 0.1**2
 
 
 def loads(*bodies: dict[str, Any]) -> Any:
-    data = {
-        "scene": {"name": "stack", "dimension": 2},
-        "fluid": {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.01, "gravity": [0.0, -10.0]},
-        "mesh": {"size": 0.08, "size_body": 0.03},
-        "domain": {"lower": [0.0, 0.0], "upper": [0.8, 0.8]},
-        "body": [BALL | body for body in bodies],
-        "contact": {"law": "normal", "range": 0.03, "epsilon": 1e-7},
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 0.5},
-    }
+    data = wet_tables(
+        *[BALL | body for body in bodies],
+        fluid={"viscosity": 0.01, "gravity": [0.0, -10.0]},
+        domain={"lower": [0.0, 0.0], "upper": [0.8, 0.8]},
+        mesh={"size": 0.08, "size_body": 0.03},
+        contact={"law": "normal", "range": 0.03, "epsilon": 1e-7},
+        output={"every": 0.5},
+    )
     return build_system(scene_from_dict(data)).loads
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
+from scenes import dry_tables
 from typer.testing import CliRunner, Result
 
 import rigidfluid
@@ -137,14 +138,11 @@ def history(time: list[float], energy: list[float] | None = None, count: int = 2
     dimension = 3 if any(name.startswith("q") for name in values) else 2
     body = {"type": "sphere", "radius": 0.1, "density": 1.0}
     scene = rigidfluid.scene_from_dict(
-        {
-            "scene": {"name": "hand_made", "dimension": dimension},
-            "fluid": {"backend": "dry"},
-            "domain": {"lower": [0.0] * dimension, "upper": [float(count)] * dimension},
-            "body": [body | {"position": [i + 0.5] * dimension} for i in range(count)],
-            "time": {"end": 1.0, "step": 0.1},
-            "output": {"every": 1.0},
-        }
+        dry_tables(
+            *[body | {"position": [i + 0.5] * dimension} for i in range(count)],
+            step=0.1,
+            domain={"lower": [0.0] * dimension, "upper": [float(count)] * dimension},
+        )
     )
     bodies = {}
     for name in columns(dimension)["bodies"]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scenes import wet_tables
 from scipy import sparse
 from throat import SLIPPERY, throat
 
@@ -15,18 +16,16 @@ from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
 
-BALLS = {
-    "scene": {"name": "two_balls", "dimension": 3},
-    "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0, 0.0]},
-    "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
-    "body": [
-        {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
-        {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
-    ],
-    "mesh": {"size": 0.8, "size_body": 0.25},
-    "time": {"step": 0.02, "end": 0.1},
-    "output": {"every": 0.02},
-}
+BALLS = wet_tables(
+    {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},
+    {"type": "sphere", "radius": 0.25, "density": 1.5, "position": [1.0, 0.5, 1.0]},
+    end=0.1,
+    step=0.02,
+    fluid={"gravity": [0.0, -10.0, 0.0]},
+    domain={"lower": [0.0, 0.0, 0.0], "upper": [2.0, 2.0, 2.0]},
+    mesh={"size": 0.8, "size_body": 0.25},
+    output={"every": 0.02},
+)
 MIXED = [
     {"on": "left", "type": "velocity", "velocity": [0.2, 0.0, 0.0], "profile": "parabolic"},
     {"on": "right", "type": "pressure", "pressure": 0.3},
