@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from threading import BrokenBarrierError
 
 import gathered_backend
@@ -55,6 +56,12 @@ def shared(count, out=None, resume=False, **tables):
     return on_ranks(count, work)
 
 
+@cache
+def uninterrupted(count):
+    """The histories of all ranks of a run from start to end."""
+    return shared(count)
+
+
 def refused_by_all(count, match, out=None, resume=False, error=OutputError, **tables):
     """Every rank raises the same error, and none waits."""
     scene = fall(fluid=GATHERED, **tables)
@@ -105,7 +112,7 @@ def test_steps_by_a_tolerance_are_those_of_one_process():
 
 
 def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
-    expected = shared(2)
+    expected = uninterrupted(2)
     shared(2, tmp_path, end=0.02)
     for history, wanted in zip(shared(2, tmp_path, resume=True), expected, strict=True):
         assert_same_tables(history, wanted)
@@ -157,7 +164,7 @@ def test_a_report_is_made_of_a_shared_run(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("before", "after"), [(1, 2), (2, 1), (2, 3), (3, 2)])
 def test_another_number_of_ranks_goes_on_as_those_before(tmp_path, before, after):
     """A new mesh is made before the checkpoint, and after it."""
-    expected, *_ = shared(before)
+    expected, *_ = uninterrupted(before)
     shared(before, tmp_path, end=0.04)
     assert 0 < json.loads((tmp_path / "summary.json").read_text())["remeshes"] < expected.summary["remeshes"]
     for history in shared(after, tmp_path, resume=True):
@@ -178,7 +185,7 @@ def test_a_backend_that_cannot_cut_its_state_is_resumed_by_as_many_ranks(tmp_pat
 
 
 def test_a_kill_between_checkpoints_of_fewer_ranks_than_before_loses_nothing(tmp_path):
-    expected, *_ = shared(2)
+    expected, *_ = uninterrupted(2)
     shared(3, tmp_path, end=0.02)
     names = ("state.h5", "state.1.h5", "state.2.h5")
     before = [(tmp_path / name).read_bytes() for name in names]
@@ -199,7 +206,7 @@ def test_checkpoints_of_different_times_are_refused(tmp_path):
 
 
 def test_a_kill_between_the_replacements_of_two_checkpoints_loses_nothing(tmp_path):
-    expected = shared(2)
+    expected = uninterrupted(2)
     shared(2, tmp_path, end=0.02)
     own, staged = tmp_path / "state.1.h5", tmp_path / "state.1.h5.part"
     before = own.read_bytes()
