@@ -4,8 +4,15 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 PLUGINS := $(wildcard plugins/*)
+# Each test file runs on one of two processes, and whichever is done takes from the other. A test that hangs ends its
+# process, which names it.
+PYTEST := $(BIN)/pytest -n 2 --dist worksteal --timeout-method thread
+# Files in which some tests need plug-ins or optional packages, and some DOLFINx; the rest of them runs in `make test`.
+WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
+WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py tests/unit/benchmarks \
+	tests/unit/evaluation/bench/test_parallel_benchmark.py tests/mpi
 
-.PHONY: run test test-plugins test-dolfinx install lint validate stale bench clean
+.PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -13,15 +20,19 @@ run: install
 install: .venv/.installed
 
 test: .venv/.installed-test
-	$(BIN)/pytest -n 2 --dist loadfile
+	$(PYTEST) --timeout 300 --durations 40
+
+test-long: .venv/.installed-test
+	$(PYTEST) --timeout 1800 --durations 40 -m 'long and not validation'
 
 test-plugins: .venv/.installed-plugins
-	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest) || exit 1; done
+	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest --timeout 600) || exit 1; done
+	$(PYTEST) --timeout 600 -m 'not validation' $(WITH_PLUGINS)
 
 # In Debian 13's packages, in a folder; see tools/dolfinx.
 test-dolfinx:
 	tools/dolfinx make
-	tools/dolfinx run python3 -m pytest tests/contract/test_fluid_backends.py tests/unit/test_dolfinx.py tests/mpi
+	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
 
 validate: .venv/.installed-plugins
 	$(BIN)/pytest -m validation
@@ -55,7 +66,7 @@ clean:
 	touch $@
 
 .venv/.installed-plugins: $(PLUGINS:%=%/pyproject.toml) | .venv/.installed-test
-	$(BIN)/python -m pip install --quiet $(PLUGINS:%=--editable %)
+	$(BIN)/python -m pip install --quiet --editable '.[pictures]' $(PLUGINS:%=--editable %)
 	touch $@
 
 .venv/.installed-%: pyproject.toml | .venv/.created

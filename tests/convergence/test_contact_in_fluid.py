@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from scenes import wet_tables
 
 import rigidfluid
 from rigidfluid.core.setup.load import scene_from_dict
+
+pytestmark = pytest.mark.long
 
 UNCHANGED = {"size": 0.1, "size_body": 0.03, "quality": 0.01, "refinements": 0, "cells_per_gap": 1}
 """A mesh that serves for the whole bounce."""
@@ -12,19 +15,15 @@ UNCHANGED = {"size": 0.1, "size_body": 0.03, "quality": 0.01, "refinements": 0, 
 
 def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
     return scene_from_dict(
-        {
-            "scene": {"name": "bounce", "dimension": 2},
-            "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -981.0]},
-            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-            "body": [
-                {"type": "sphere", "radius": 0.125, "density": 3.0, "position": [0.5, 0.2], "velocity": [0.0, -5.0]}
-                | changes
-            ],
-            "contact": {"law": "centre", "range": 0.05, "epsilon": epsilon} | (contact or {}),
-            "mesh": {"size": 0.1, "size_body": 0.05, "quality": 0.01, "refinements": 1, "cells_per_gap": 1},
-            "time": {"end": end, "step": step},
-            "output": {"every": end},
-        }
+        wet_tables(
+            {"type": "sphere", "radius": 0.125, "density": 3.0, "position": [0.5, 0.2], "velocity": [0.0, -5.0]}
+            | changes,
+            end=end,
+            step=step,
+            fluid={"gravity": [0.0, -981.0]},
+            contact={"law": "centre", "range": 0.05, "epsilon": epsilon} | (contact or {}),
+            mesh={"size": 0.1, "size_body": 0.05, "quality": 0.01, "refinements": 1, "cells_per_gap": 1},
+        )
     )
 
 

@@ -16,6 +16,8 @@ from curved_channels import (
     from_within,
 )
 
+pytestmark = pytest.mark.long
+
 
 def test_flux_and_velocity_converge() -> None:
     errors = []

@@ -8,6 +8,8 @@ from extreme_wet import floor_hit
 
 from rigidfluid.core.run.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 MOMENT = 0.032
 
 

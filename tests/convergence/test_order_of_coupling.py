@@ -6,6 +6,8 @@ from falling import falling_disk
 
 from rigidfluid.core.run.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 END, REMESH = 0.16, 0.08
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from periodic_arrays import array_of_balls, exact_array
 
+pytestmark = pytest.mark.long
+
 
 @pytest.mark.parametrize(("dimension", "layers", "allowed"), [(2, 8, 3e-3), (3, 6, 5e-3)])
 def test_the_drag_in_an_array_is_that_of_the_series(dimension: int, layers: int, allowed: float) -> None:

@@ -8,6 +8,8 @@ from starts import INFLOW, disk_in_box
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 
 @pytest.mark.parametrize(
     "tables", [{"boundary": INFLOW}, {"body": {"prescribed": {"velocity": [0.5, 0.0]}}}], ids=["inflow", "body"]

@@ -33,6 +33,8 @@ from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 
+pytestmark = pytest.mark.long
+
 MILLISECOND = 1e-3
 BOTH: tuple[Stepping, Stepping] = ("substeps", "implicit")
 

@@ -15,14 +15,15 @@ from rigidfluid.core.output.records import LEDGER_COLUMNS
 NAMES = {case.name for case in CASES}
 
 
-def is_long(case: Case) -> bool:
+def is_heavy(case: Case) -> bool:
     """Heavy, or a shorter step of a case that is also there with the longest, where most is lost."""
     stem, _, step = case.name.rpartition(", Δt ")
     return case.heavy or (step in ("1 ms", "2 ms") and f"{stem}, Δt 4 ms" in NAMES)
 
 
 LIGHT_AND_HEAVY = [
-    pytest.param(case, id=case.name, marks=[pytest.mark.validation] if is_long(case) else []) for case in CASES
+    pytest.param(case, id=case.name, marks=pytest.mark.validation if is_heavy(case) else pytest.mark.long)
+    for case in CASES
 ]
 GAINED = "energy created"
 KNOWN = Demand(GAINED, at_most=0.03)

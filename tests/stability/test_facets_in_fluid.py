@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
+from scenes import wet_tables
 
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
+
+pytestmark = pytest.mark.long
 
 FALLING = {
     "square": (0.3 * np.array(SQUARE), 0.2, [0.5, 0.3]),
@@ -24,16 +27,13 @@ def test_a_polygon_falls_onto_the_floor(shape: str) -> None:
     """It touches the floor, no corner of it is lost in new meshes, and the energies add up."""
     points, angle, position = FALLING[shape]
     body = {"type": "polygon", "points": points.tolist(), "angle": angle, "position": position, "density": 2.0}
-    tables: dict[str, Any] = {
-        "scene": {"name": shape, "dimension": 2},
-        "fluid": {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.005, "gravity": [0.0, -4.0]},
-        "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]},
-        "mesh": {"size": 0.15, "size_body": 0.06},
-        "body": [body],
-        "contact": {"law": "contact", "range": 0.03, "epsilon": "auto"},
-        "time": {"end": 1.0, "step": 0.01},
-        "output": {"every": 1.0},
-    }
+    tables: dict[str, Any] = wet_tables(
+        body,
+        scene={"name": shape},
+        fluid={"viscosity": 0.005, "gravity": [0.0, -4.0]},
+        mesh={"size": 0.15, "size_body": 0.06},
+        contact={"law": "contact", "range": 0.03, "epsilon": "auto"},
+    )
     simulation = Simulation(scene_from_dict(tables), None, False)
     assert simulation.system.detector.name == "facets"
     smallest = np.inf
@@ -53,16 +53,14 @@ def test_a_cube_from_a_file_sinks(tmp_path: Path) -> None:
     """Its facets stay as they are, so that the mesh has the exact volume."""
     file = binary_stl(tmp_path / "cube.stl", CUBE, TRIANGLES)
     body = {"type": "stl", "file": str(file), "scale": 0.3, "density": 2.0, "orientation": [0.97, 0.1, 0.2, 0.05]}
-    tables: dict[str, Any] = {
-        "scene": {"name": "cube", "dimension": 3},
-        "fluid": {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.02, "gravity": [0.0, 0.0, -4.0]},
-        "domain": {"lower": [0.0, 0.0, 0.0], "upper": [1.0, 1.0, 1.0]},
-        "mesh": {"size": 0.4, "size_body": 0.3},
-        "body": [body | {"position": [0.5, 0.5, 0.4]}],
-        "contact": {"law": "contact", "range": 0.05, "epsilon": "auto"},
-        "time": {"end": 0.1, "step": 0.02},
-        "output": {"every": 0.1},
-    }
+    tables: dict[str, Any] = wet_tables(
+        body | {"position": [0.5, 0.5, 0.4]},
+        end=0.1,
+        step=0.02,
+        fluid={"viscosity": 0.02, "gravity": [0.0, 0.0, -4.0]},
+        mesh={"size": 0.4, "size_body": 0.3},
+        contact={"law": "contact", "range": 0.05, "epsilon": "auto"},
+    )
     simulation = Simulation(scene_from_dict(tables), None, False)
     simulation.go()
     state = simulation.state

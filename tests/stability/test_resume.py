@@ -13,6 +13,8 @@ import rigidfluid
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.setup.load import load_scene
 
+pytestmark = pytest.mark.long
+
 COMMAND = [sys.executable, "-m", "rigidfluid", "run", str(SCENES / "falling_disk.toml")]
 SETTINGS = ["mesh.size_body=0.04", "mesh.size=0.3", "time.step=0.004", "time.end=0.2", "body.0.position=[1.0, 0.6]"]
 FIGURES = ["steps", "rejected_steps", "remeshes", "smallest_gap", "energy", "reynolds", "rest_position"]

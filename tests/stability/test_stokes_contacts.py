@@ -10,6 +10,8 @@ from stokes_contacts import disk_weight, last_fifth, mean_over_time
 import rigidfluid
 from rigidfluid.core.output.history import History
 
+pytestmark = pytest.mark.long
+
 
 def refuse_unrest(history: History, density: float, epsilon: float) -> None:
     """The contact bears the weight at the gap where it does so exactly, and the disk lies still."""

@@ -7,6 +7,8 @@ from fluid_contact_table import track
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 
 def test_three_swimmers_meet_and_never_overlap():
     """The outer two swim towards the middle one; as arms lengthen at the end of a cycle, their balls press on it."""

@@ -8,6 +8,8 @@ from falling import SCENES
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 
 def test_a_fast_disk_falls_as_published_at_a_long_step():
     """Re 330; 13.1 to 13.6 cm/s between .2 and .275 s (Bergmann et al. 2014, fig. 19)."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from wall_drift import wall_drift
+
+pytestmark = pytest.mark.long
 
 
 def test_walls_stay_through_fifty_meshes_of_a_throat() -> None:

@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from rigidfluid import api
 
-ROOT = Path(__file__).parents[2]
 SOURCE = Path(api.__file__).parent
 PUBLIC = ("rigidfluid.api", "rigidfluid.commands", "rigidfluid.testing", "rigidfluid.taylor_hood")
 HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from paths import SCENES
 from typer.testing import CliRunner, Result
 
 import rigidfluid.core.run.run
@@ -19,7 +20,7 @@ from rigidfluid import __version__
 from rigidfluid.cli import app
 from rigidfluid.core.output.history import History
 
-SCENE = Path(__file__).parents[2] / "scenes" / "dry_bounce.toml"
+SCENE = SCENES / "dry_bounce.toml"
 Install = Callable[..., Path]
 
 

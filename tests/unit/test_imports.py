@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "rigidfluid"
 SHARED = {"backends": {"taylor_hood"}, "detectors": {"marching"}, "forces": set(), "bodies": set()}
 """Of each room of parts, the rooms of what they share; those import nothing of any part."""

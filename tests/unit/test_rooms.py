@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 import rigidfluid
 
@@ -94,3 +95,10 @@ def test_no_room_is_more_than_twelve_hundredths_of_all() -> None:
     rooms = {path for roof in roofs for path in roof.iterdir() if path.is_dir()} - set(roofs)
     sizes = {room.name: lines(room) / lines(SOURCE) for room in rooms}
     assert {name: size for name, size in sizes.items() if size > 0.12} == {}
+
+
+def test_a_folder_of_unit_tests_mirrors_a_room_or_a_folder_beside_the_sources() -> None:
+    tests = ROOT / "tests" / "unit"
+    folders = {path.parent.relative_to(tests) for path in tests.rglob("test_*.py")}
+    beside = {Path("docs"), Path("benchmarks"), Path("support")}
+    assert {str(folder) for folder in folders - beside if not (SOURCE / folder).is_dir()} == set()
