@@ -10,7 +10,7 @@ PYTEST := $(BIN)/pytest -n 2 --dist worksteal --timeout-method thread
 # Files in which some tests need plug-ins or optional packages, and some DOLFINx; the rest of them runs in `make test`.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py tests/unit/benchmarks \
-	tests/unit/evaluation/bench/test_parallel_benchmark.py tests/mpi
+	tests/mpi
 
 .PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
 
