@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.model.conditions import BoundaryCondition, PrescribedPressure
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
-from rigidfluid.core.setup.boundary import conditions
+from rigidfluid.core.setup.boundary import condition_of, conditions
 from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
@@ -108,18 +108,23 @@ def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> Non
 
 def _check_conditions(scene: Scene, window: Window) -> None:
     """Conditions at the ends must hold as well wherever the window is."""
-    held, tables = conditions(scene, window.domain), list(placed_tables(scene, window.domain))
-    behind, ahead = (held[end] for end in window.ends)
-    for end in window.ends:
-        if not held[end].holds_along:
-            found = f"{tables[end][0].type!r} on {held[end].name!r}, an end of the window"
+    for number, (table, place) in enumerate(placed_tables(scene, window.domain)):
+        if number in window.ends and not condition_of(table, place).holds_along:
+            found = f"{table.type!r} on {place.piece.name!r}, an end of the window"
             raise SceneError("boundary", found, "'wall', 'velocity' or 'pressure' there", "Change it.")
+    held = conditions(scene, window.domain)
+    behind, ahead = (held[end] for end in window.ends)
     if ahead.is_open and (behind.is_open or behind.is_wall):
         found = f"'pressure' on {ahead.name!r}, ahead of a window that is open behind"
         allowed = "a 'wall' there, or the 'velocity' of the flow far away"
         raise SceneError("boundary", found, allowed, "The flow between two open ends depends on the whole length.")
-    sides = [side for number, side in enumerate(held) if number not in window.ends]
-    sliding = [side.name for side in sides if side.holds_all and not side.rests]
+    sliding = _sliding(held, window)
     if sliding and (behind.is_wall or ahead.is_wall):
         found = f"a velocity on {sliding[0]!r}, along a window with a wall at its end"
         raise SceneError("boundary", found, "sides at rest, as the fluid far away is", "Give the ends a 'velocity'.")
+
+
+def _sliding(held: Sequence[BoundaryCondition], window: Window) -> list[str]:
+    """Names of the sides that move the fluid far away from all bodies."""
+    sides = [side for number, side in enumerate(held) if number not in window.ends]
+    return [side.name for side in sides if side.holds_all and not side.rests]
