@@ -10,6 +10,7 @@ from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.flow import FlowOnMesh, flow_on, vertex_gradient
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
+from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.testing.size_field import Whirl
 
 SLOPES = {2: np.array([[1.0, -2.0], [0.5, -1.0]]), 3: np.array([[1.0, -2.0, 0.3], [0.5, 1.0, 4.0], [-0.2, 3.0, -2.0]])}
@@ -17,7 +18,7 @@ SLOPES = {2: np.array([[1.0, -2.0], [0.5, -1.0]]), 3: np.array([[1.0, -2.0, 0.3]
 
 def mesh_around_a_ball(dimension: int, size: float = 0.4) -> Mesh:
     around = FluidDomain([ball(0.3, dimension)], upright([0.0] * dimension), box([-1] * dimension, [1] * dimension), ())
-    return generate_mesh(around, size, 0.5 * size, 0.5)
+    return generate_mesh(around, Sizes(size, 0.5 * size, 0.5))
 
 
 def twist(dimension: int) -> Twist:
