@@ -4,13 +4,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 PLUGINS := $(wildcard plugins/*)
-# Each test file runs on one of two processes, and whichever is done takes from the other. A test that hangs ends its
-# process, which names it.
+# Two processes have half of the tests each; the first that is done takes half of what the other has left. A test that
+# hangs ends its process, and the other goes on and names it.
 PYTEST := $(BIN)/pytest -n 2 --dist worksteal --timeout-method thread
-# Files in which some tests need plug-ins or optional packages, and some DOLFINx; the rest of them runs in `make test`.
+# Files in which tests need plug-ins or PyVista, and files in which they need DOLFINx.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
-WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py tests/unit/benchmarks \
-	tests/mpi
+WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
+	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
 .PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
 

@@ -13,6 +13,7 @@ import rigidfluid
 from rigidfluid import Scene, scene_from_dict
 
 RANGE, SMALLEST, RADIUS = 0.02, 0.006, 0.25
+DIMENSIONS = [2, pytest.param(3, marks=pytest.mark.long)]
 LAWS = ["centre", "normal", "contact", "barrier"]
 START = 1.3 * RANGE
 LOADS = [(0.0, 1e-2), (0.0, 1e2), (1e-1, 0.0), (1e3, 0.0), (1e-1, 1e-2), (1e3, 1e1)]
@@ -59,7 +60,7 @@ def smallest_gap(scene: Scene, speed: float, gravity: float) -> float:
     return float(history.bodies["gap"].min())
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize(("gravity", "speed"), LOADS)
 @pytest.mark.parametrize("law", LAWS)
 def test_drop_onto_the_floor_ends_at_the_smallest_gap(law: str, gravity: float, speed: float, dimension: int) -> None:
@@ -67,7 +68,7 @@ def test_drop_onto_the_floor_ends_at_the_smallest_gap(law: str, gravity: float, 
     assert smallest_gap(drop, speed, gravity) == pytest.approx(SMALLEST, rel=0.02)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("speed", [1e-2, 1e2])
 @pytest.mark.parametrize("law", LAWS)
 def test_head_on_impact_of_unequal_balls_ends_at_the_smallest_gap(law: str, speed: float, dimension: int) -> None:
@@ -109,7 +110,7 @@ def test_the_summary_is_silent_where_the_scene_gives_numbers() -> None:
     assert rigidfluid.run(scene_from_dict(data)).summary["auto_epsilon"] == []
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("densities", [(2.0, 2.0, 2.0), (2.0, 200.0, 200.0), (200.0, 2.0, 2.0)])
 def test_a_stack_that_comes_down_keeps_its_smallest_gap(law: str, densities: Sequence[float], dimension: int) -> None:

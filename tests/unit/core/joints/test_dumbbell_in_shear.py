@@ -9,6 +9,8 @@ from scipy.interpolate import CubicSpline
 
 from rigidfluid.api import Simulation, scene_from_dict
 
+pytestmark = pytest.mark.long
+
 
 def dumbbell(angle, density, end, step):
     """Centres 2.4 radii apart, walls 5 from the middle, and the channel's ends too far to be felt."""

@@ -1,6 +1,5 @@
 """Sliders in a fluid, with contacts: they stay on their axis and give no energy."""
 
-
 import numpy as np
 import pytest
 from linked_runs import linked_scene, misfit
@@ -9,6 +8,8 @@ from paths import SCENES
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import load_scene
+
+pytestmark = pytest.mark.long
 
 SCENE = SCENES / "slider.toml"
 

@@ -14,6 +14,8 @@ from rigidfluid.core.mesh.inserter import Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.size_field import Sizes
 
+pytestmark = pytest.mark.long
+
 
 def assert_fits(found: Outcome, quality: float) -> None:
     """Good cells, vertices on the shapes, and walls that are as they were."""

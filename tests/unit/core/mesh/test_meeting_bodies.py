@@ -11,6 +11,8 @@ from rigidfluid.api import scene_from_dict
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.run.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 TABLES = {
     "scene": {"name": "meeting", "dimension": 3},
     "fluid": {"density": 1.0, "viscosity": 1.0},

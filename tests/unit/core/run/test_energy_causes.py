@@ -105,6 +105,7 @@ def leaky(step: float, size: float) -> History:
     return rigidfluid.run(rigidfluid.scene_from_dict(tables))
 
 
+@pytest.mark.long
 def test_coarse_curved_slip_walls_leak_by_the_mesh_alone() -> None:
     coarse, fine, fine_mesh = (shares(leaky(step, size)) for step, size in ((0.04, 0.8), (0.02, 0.8), (0.04, 0.12)))
     assert abs(coarse["mesh"]) > 1e-5
