@@ -107,6 +107,7 @@ class Pardiso:
         self._iparm[[_SCALED, _MATCHED]] = settings.matched
         self._iparm[_SINGLE] = settings.precision is np.float32
         self._iparm[[_ENTRIES, _MFLOP]] = -1  # to be counted
+        self._threads = threads()
         self._take(matrix)
         self.free = weakref.finalize(self, _call, self._instance, _FREE)
         """Gives PARDISO's memory back."""
@@ -129,8 +130,10 @@ class Pardiso:
         return 1 + round(renewal / (1.1 * factors + 2.5 * matrix))
 
     def has_pattern_of(self, matrix: sparse.csr_array) -> bool:
-        """Whether the analysis serves this matrix."""
-        return np.array_equal(self._rows, matrix.indptr) and np.array_equal(self._columns, matrix.indices)
+        """Whether the analysis serves this matrix: factors by more threads or fewer than it knew end the process."""
+        rows, columns = matrix.indptr, matrix.indices
+        alike = np.array_equal(self._rows, rows) and np.array_equal(self._columns, columns)
+        return alike and self._threads == threads()
 
     def factorise(self, matrix: sparse.csr_array) -> None:
         """Factors of a matrix of this pattern; raises PardisoError where it is singular."""
@@ -184,6 +187,11 @@ def _library() -> Any:
     library = _search_by_pypardiso() if path is None else ctypes.CDLL(str(path))
     library.MKL_CBWR_Set(ctypes.c_int(_SAME_BITS))
     return library
+
+
+def threads() -> int:
+    """Number of threads that MKL takes now."""
+    return int(_library().MKL_Get_Max_Threads())
 
 
 def _search_by_pypardiso() -> Any:

@@ -76,6 +76,16 @@ def test_another_pattern_is_analysed_anew(phases):
 
 
 @with_pardiso
+def test_another_number_of_threads_has_the_pattern_analysed_anew(phases, monkeypatch):
+    """PARDISO ends the process where it is given fewer than its analysis has seen."""
+    factors = factorise(matrix(0))
+    now = pardiso.threads()
+    monkeypatch.setattr(pardiso, "threads", lambda: now + 1)
+    np.testing.assert_allclose(matrix(1) @ factorise(matrix(1), factors).solve(RIGHT), RIGHT, atol=SINGLE)
+    assert phases == [ANALYSE, FACTORISE] * 2
+
+
+@with_pardiso
 def test_a_known_order_of_elimination_gives_the_same_bits():
     orderings = Orderings()
     one, other = (factorise(matrix(0), None, orderings) for _ in range(2))
