@@ -21,7 +21,8 @@ import ngsolve as ngs
 import numpy as np
 from ngsolve.krylovspace import GMRESSolver
 
-from rigidfluid.core.model.types import FloatArray, FluidProblem, Mesh
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.types import FloatArray, Mesh
 
 WAYS = ("umfpack", "imex", "reuse")
 RENEWED_EVERY = 20  # steps

@@ -130,8 +130,8 @@ def test_a_mesh_with_a_bad_cell_is_refused_and_the_place_named():
 def test_a_body_that_the_mesher_takes_for_touching_is_told_how_far_to_go():
     """The floor is named, and with the gap that is asked for there is a mesh."""
     gap, least = 0.1 * 3e-7 * 3.0 / 8.0, 3e-7 * 3.0 / 8.0
+    sizes, fine = Sizes(0.2, 0.05, growth=0.2), [(np.array([1.0, 0.0]), 1e-5)]
     with pytest.raises(MeshError, match=rf"contact with 'bottom'; allowed is a gap of more than {least:.2g} "):
-        generate_mesh(FluidDomain([DISK], upright([1, 0.125 + gap]), BOX, ()), 0.2, 0.05, 0.2)
-    fine = [(np.array([1.0, 0.0]), 1e-5)]
-    made = generate_mesh(FluidDomain([DISK], upright([1, 0.125 + 1.1 * least]), BOX, ()), 0.2, 0.05, 0.2, fine)
+        generate_mesh(FluidDomain([DISK], upright([1, 0.125 + gap]), BOX, ()), sizes)
+    made = generate_mesh(FluidDomain([DISK], upright([1, 0.125 + 1.1 * least]), BOX, ()), sizes, fine)
     assert made.points[np.unique(made.facets[made.markers == 0]), 1].min() > 0.0
