@@ -297,6 +297,7 @@ def test_a_disk_bounces_in_a_dry_dish_and_keeps_its_energy() -> None:
     assert residual.max() < 1e-3 * fallen  # within a contact
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("body", "detector"),
     [(DISK, "auto"), (DISK, "narrow_band"), (ELLIPSE, "auto")],

@@ -255,6 +255,7 @@ def test_relative_motion_keeps_the_angular_momentum_and_the_ledger_has_its_work(
     assert np.linalg.norm(ends[2] - ends[1]) < 0.3 * np.linalg.norm(ends[1] - ends[0])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stepping", ["substeps", "implicit"])
 def test_one_that_pushes_itself_off_the_walls_takes_the_energy_from_its_drive(stepping):
     table = pair("stroke", length=0.7, stroke=0.2, position=[0.52, 0.5], angle=0.1)
