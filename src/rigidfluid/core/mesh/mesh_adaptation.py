@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
@@ -39,14 +39,26 @@ NEARLY_TANGLED = 2.0 * TANGLED
 """A moved mesh is made anew before a cell tangles, however low a quality is asked for."""
 
 
+@dataclass(frozen=True)
+class Renewal:
+    """Conditions on which a mesh is made anew.
+
+    Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
+    ``oldest`` ticks old, None for any age. For ``pause`` ticks after a mesh could not be made, none is tried unless a
+    cell is nearly tangled.
+    """
+
+    quality: float
+    pause: int
+    oldest: int | None = None
+
+
 class MeshUpdater:
     """Moves the mesh of a run, and re-makes it where its quality, its cells' sizes, a gap or its age asks for that.
 
-    Without a fluid ``sizes`` is None and there is no mesh. A moved mesh is re-made when its worst cell falls below
-    ``quality``, or is nearly tangled, and below half of what it was when made; and after ``oldest`` ticks, None for any
-    age. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly tangled. Each
-    mesh has the cells that ``fields`` ask for, by the flow on the mesh before; the first one, which ``inserter`` makes,
-    by a fluid and bodies at rest. ``watch`` times a stage by its name; the carrying over of the fluid is the stage
+    Without a fluid ``sizes`` is None and there is no mesh. Each mesh has the cells that ``fields`` ask for, by the flow
+    on the mesh before; the first one, which ``inserter`` makes, by a fluid and bodies at rest. All others are made on
+    the conditions of ``renewal``. ``watch`` times a stage by its name; the carrying over of the fluid is the stage
     "transfer".
     """
 
@@ -54,18 +66,14 @@ class MeshUpdater:
         self,
         system: System,
         sizes: Sizes | None,
-        quality: float,
-        pause: int,
-        oldest: int | None = None,
+        renewal: Renewal,
         fields: Sequence[SizeField] = (),
         inserter: Inserter = BY_SHAPE,
         watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
     ) -> None:
         self._system = system
         self._sizes = sizes
-        self._quality = quality
-        self._pause = pause
-        self._oldest = oldest
+        self._renewal = renewal
         self._fields = tuple(fields)
         self._inserter = inserter
         self._watch = watch
@@ -153,7 +161,7 @@ class MeshUpdater:
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
         """Whether a mesh that could not be made shortly before is not worth another try."""
         failed = state.remesh_failed
-        if failed is None or state.tick >= failed.tick + self._pause:
+        if failed is None or state.tick >= failed.tick + self._renewal.pause:
             return False
         return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
@@ -162,12 +170,12 @@ class MeshUpdater:
         reference, sizes = state.reference, self._sizes
         assert reference is not None
         assert sizes is not None
-        if self._oldest is not None and state.tick >= reference.tick + self._oldest:
+        if self._renewal.oldest is not None and state.tick >= reference.tick + self._renewal.oldest:
             return True
         if _gap_changed(reference.gaps, state.gaps, sizes).any():
             return True
         points, worst = self._placed(reference, pose)
-        if worst < min(max(self._quality, NEARLY_TANGLED), 0.5 * reference.quality):
+        if worst < min(max(self._renewal.quality, NEARLY_TANGLED), 0.5 * reference.quality):
             return True
         if not is_due(reference.pose, state.pose, pose, sizes):
             return False

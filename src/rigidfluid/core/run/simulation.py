@@ -29,7 +29,7 @@ from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
-from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of, wakes_of
+from rigidfluid.core.run.mesh_keys import inserter_of, renewal_of, sizes_of, wakes_of
 from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
@@ -114,18 +114,10 @@ class Simulation:
         earlier = _earlier(scene, out, system.backend) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
         sizes = _sizes(scene, system)
-        every = scene.mesh.remesh_every if scene.mesh else None
         self.watch = Stopwatch()
-        self.mesh_updater = MeshUpdater(
-            system,
-            sizes,
-            scene.mesh.quality if scene.mesh else 0.0,
-            pause=self.clock.ticks(0),
-            oldest=None if every is None else self.clock.tick_from(every),
-            fields=(*wakes_of(scene.mesh, scene.dimension), *known_parts(scene).size_fields, *size_fields),
-            inserter=inserter_of(scene.mesh),
-            watch=self.watch,
-        )
+        renewal = renewal_of(scene.mesh, self.clock)
+        fields = (*wakes_of(scene.mesh, scene.dimension), *known_parts(scene).size_fields, *size_fields)
+        self.mesh_updater = MeshUpdater(system, sizes, renewal, fields, inserter_of(scene.mesh), self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
         self.history = History(scene.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))

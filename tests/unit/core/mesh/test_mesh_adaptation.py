@@ -13,7 +13,7 @@ from falling import falling_disk
 import rigidfluid
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.mesh import mesh_adaptation
-from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater
+from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater, Renewal
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.run import stepper as loop
@@ -34,7 +34,7 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))
     monkeypatch.setattr(mesh_adaptation, "is_due", lambda *arguments: False)
     system: Any = None
-    mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), asked, 1)
+    mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), Renewal(asked, 1))
     monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
     reference = SimpleNamespace(gaps=None, mesh=None, pose=None, quality=made)
     state: Any = SimpleNamespace(reference=reference, gaps=None, pose=None)
