@@ -57,6 +57,7 @@ class CarriedBodies:
         self.driven = bool(self.driven_motions.any())
         self._own_mass, self._own_inertia = mass, inertia
         self._latest: tuple[float, Relative] = 0.0, self._placed(0.0)
+        self._arms = np.linalg.norm(self.poses(pose, 0.0).position - pose.position[self.carrier], axis=1)
 
     def starting_with(self, twist: Twist) -> CarriedBodies:
         """The same bodies with another ``twist`` of the motions at the start."""
@@ -118,10 +119,9 @@ class CarriedBodies:
 
     def reaches(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Largest radius, and greatest sum of arm and radius at the start."""
-        arm = np.linalg.norm(self.poses(self.pose, 0.0).position - self.pose.position[self.carrier], axis=1)
         largest, farthest = np.zeros((2, len(self.mass)))
         np.maximum.at(largest, self.carrier, radii)
-        np.maximum.at(farthest, self.carrier, arm + radii)
+        np.maximum.at(farthest, self.carrier, self._arms + radii)
         return largest, farthest
 
     def dry_dynamics(
