@@ -40,7 +40,7 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 
 MOST_BODIES = 20
-"""More are not printed."""
+"""Largest number of bodies or surfaces that a table shows."""
 
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
@@ -288,8 +288,8 @@ def schema() -> None:
 def _reported(on_interrupt: str = "") -> Iterator[None]:
     """Turn an expected error into one paragraph on stderr and an exit code.
 
-    Expected errors are those of all processes, and so is a SharedInterrupt. Another interrupt or error may be of one,
-    and then ends the others.
+    Expected errors are raised on all processes of a run, and so is a SharedInterrupt. Any other interrupt or error may
+    be that of one process alone, which then ends the others.
     """
     try:
         yield
@@ -334,6 +334,7 @@ def _compilation_told() -> Iterator[None]:
 
 @contextmanager
 def _progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
+    """Yield a function that shows the progress of a run in a bar, on the first process's terminal alone."""
     console = _console(stderr=True)
     if LAUNCH.rank > 0 or not console.is_terminal:
         yield lambda _: None
@@ -377,7 +378,7 @@ def _compare_bar() -> Iterator[Callable[[CompareProgress], None]]:
 
 @contextmanager
 def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
-    """A bar over several runs: of ``done`` of ``total``, and a word about the present one."""
+    """Yield a function that shows in a bar how many runs are done, out of how many, and a word on the present one."""
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -401,7 +402,7 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
 
 @contextmanager
 def _movie_bar() -> Iterator[Callable[[int, int], None]]:
-    """A bar over the pictures of a movie."""
+    """Yield a function that shows in a bar how many pictures of a movie are done, out of how many."""
     from rich.progress import Progress as Bar
 
     console = _console(stderr=True)
@@ -435,7 +436,7 @@ def _print_study(results: Results) -> None:
 
 
 def _print_end(history: History, folder: Path) -> None:
-    """The figures of a run, complete or not, and where it has written."""
+    """Print the figures of a run, complete or not, and where it has written."""
     summary = history.summary
     if summary["reynolds"]:
         solid, fluid = _figure(summary["reynolds_solid_density"]), _figure(summary["reynolds"])
@@ -554,7 +555,7 @@ def _print_backends(comparison: Comparison) -> None:
 
 
 def _figure(value: Any) -> str:
-    """A number, or a list or table of them, to four digits."""
+    """Format a number, or a list or table of them, to four digits."""
     if value is None:
         return "none"
     if isinstance(value, dict):
@@ -565,26 +566,29 @@ def _figure(value: Any) -> str:
 
 
 def _refusal(reason: object) -> typer.Exit:
+    """Print the reason once, wait for all processes, and return the exit to raise."""
     _complain(f"Error: {reason}")
     LAUNCH.meet()
     return typer.Exit(BAD_INPUT)
 
 
 def _print(text: str, style: str = "") -> None:
+    """Print on the first process."""
     if LAUNCH.rank == 0:
         _console().print(Text(text, style=style), soft_wrap=True)
 
 
 def _complain(text: str) -> None:
+    """Print in red on stderr."""
     _print_aside(text, "red")
 
 
 def _print_aside(text: str, style: str = "") -> None:
-    """On stderr, where it is no result."""
+    """Print on stderr what is no result."""
     if LAUNCH.rank == 0:
         _console(stderr=True).print(Text(text, style=style), soft_wrap=True)
 
 
 def _console(stderr: bool = False) -> Console:
-    """Names and values are shown as they are: brackets in them are no markup."""
+    """Console that shows names and values as they are: brackets in them are no markup."""
     return Console(stderr=stderr, markup=False)

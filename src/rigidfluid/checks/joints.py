@@ -25,8 +25,13 @@ _WELL_RESOLVED = 0.2
 """Greatest frequency times step at which a spring's period errs by less than 0.2 % [1]."""
 
 _SCAN = np.linspace(0.0, 1.0, 73)[1:]
+"""Parts of the farthest value of a coordinate at which bodies are looked at until two touch."""
+
 _BISECTIONS = 10
-_STROKE_SAMPLES = 400
+"""Bisections of the interval in which they first touch."""
+
+_DRIVE_SAMPLES = 400
+"""Times at which a drive is evaluated for its range."""
 
 
 def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
@@ -48,6 +53,7 @@ def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
 
 
 def _freedom_finding(scene: Scene, system: System) -> Finding:
+    """Count the velocities of free motions, and those that rigid links leave."""
     links = system.joints.links(system.motions.pose, 0.0)
     width = links.rows.shape[2]
     free = width * int(np.count_nonzero(~system.motions.controlled))
@@ -58,8 +64,8 @@ def _freedom_finding(scene: Scene, system: System) -> Finding:
 
 
 def _spring_finding(scene: Scene, system: System) -> Finding:
-    """Compare the frequency of the stiffest spring with the step; added mass slows it, by the mean of all that is
-    linked."""
+    """Compare the frequency of the stiffest spring with the step; the frequency with added mass is a guess by the sums
+    of masses over all linked bodies."""
     frequency, step = system.joints.frequency, scene.time.step
     linked = system.joints.linked[system.motions.carrier]
     added = np.trace(system.added_mass, axis1=1, axis2=2)[linked].sum() / system.dimension
@@ -107,13 +113,13 @@ def _drive_range(scene: Scene, joint: PlacedJoint) -> tuple[float, float]:
     """Least and greatest value of a joint's drive; 0 without one."""
     if joint.kind.drive is None:
         return 0.0, 0.0
-    values = [joint.kind.drive.value(time) for time in np.linspace(0.0, scene.time.end, _STROKE_SAMPLES)]
+    values = [joint.kind.drive.value(time) for time in np.linspace(0.0, scene.time.end, _DRIVE_SAMPLES)]
     return min(values), max(values)
 
 
 def _touching_value(gap: Callable[[float], float], farthest: float) -> float:
-    """How far the coordinate goes towards the value ``farthest`` until the two bodies touch, infinite where they do
-    not [length | rad]."""
+    """Distance that the coordinate goes towards the value ``farthest`` until the two bodies touch, infinite where they
+    do not [length | rad]."""
     before = 0.0
     for value in _SCAN:
         if gap(value * farthest) <= 0.0:
@@ -129,12 +135,12 @@ def _touching_value(gap: Callable[[float], float], farthest: float) -> float:
 
 
 def _path(system: System, joint: PlacedJoint) -> Callable[[float], Pose]:
-    """Pose of the first body, one row, by the value of the joint's coordinate: it goes along the directions of that at
-    the start."""
+    """Pose of the first body, one row, as a function of the joint's coordinate: it moves along the directions that the
+    coordinate has at the start."""
     coordinate, first, pair = joint.kind.coordinate, joint.first, joint_markers(joint, system.pose)
     assert coordinate is not None
-    at = Markers([pair], system.dimension).placed(system.pose)[0]
-    along, about = coordinate.directions(at)
+    placed = Markers([pair], system.dimension).placed(system.pose)[0]
+    along, about = coordinate.directions(placed)
     position, orientation = system.pose.position[first], system.pose.orientation[first : first + 1]
     zero = np.zeros((1, 1)) if system.dimension == 2 else np.eye(1, 4)
 

@@ -28,8 +28,8 @@ _HALVINGS = 50
 
 def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the rebound that a law without losses gives with that expected at the Stokes number of the impact: a
-    warning where nothing should come back and something does, else a note. A fluid without inertia lets nothing
-    rebound, and nothing is said.
+    warning where nothing should come back and something does, else a note. In a fluid without inertia nothing rebounds,
+    and there is no finding.
 
     Gondret, Lance and Petit, Phys. Fluids 14 (2002) 643, doi:10.1063/1.1427920; Joseph, Zenit, Hunt and Rosenwinkel, J.
     Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470; β: Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005)
@@ -41,7 +41,7 @@ def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterat
     struck = (met.speed > 0.0) & (met.inverse_mass > 0.0)
     stokes = np.where(struck, met.speed * stokes_number(met.contacts, film, system.loads), np.inf)
     curved = with_effective_radii(met.contacts, system.bodies, system.walls, system.pose).effective_radius
-    resolved = resolved_gap(mesh, curved)  # NaN is not: no film of facets is known
+    resolved = resolved_gap(mesh, curved)  # NaN for facets, whose film is not known
     back = np.where(np.isnan(resolved), 1.0, _given_back(met, film, stokes))
     for row in met.worst(-stokes):
         if struck[row]:
@@ -49,7 +49,8 @@ def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterat
 
 
 def _given_back(met: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
-    """The part of its speed (m,) with which a body leaves range, by the film that the mesh resolves alone [1]."""
+    """Speed at which a body leaves the law's range, over that of its impact (m,), if the resolved film takes its share
+    alone [1]."""
     mass = np.divide(1.0, met.inverse_mass, out=np.ones_like(stokes), where=met.inverse_mass > 0.0)
     brakes = braking(met.law, met.contacts, mass, film, met.system.loads)
     left = np.maximum(1.0 - brakes.outside / stokes, 0.0)
@@ -72,6 +73,8 @@ class _Rebound(NamedTuple):
 
 
 def _finding(met: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Finding:
+    """Note or warning of the contact ``row``; the remedy is a restitution, or a range before which the film stops the
+    body."""
     (stokes, resolved, back), share = rebound, rebound.expected
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
     lossless = next(one for one in met.interactions if one.law.conservative)
@@ -97,8 +100,8 @@ def _finding(met: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Fi
 
 
 def _range_that_stops(contacts: Contacts, film: Film, stokes: float) -> float | None:
-    """The widest range [length] before which the film takes so much that COMES_BACK of the speed is left; None where
-    the mesh does not resolve it."""
+    """Widest range before which the film takes so much that COMES_BACK of the speed is left; None if there is none
+    [length]."""
     wanted = (1.0 - COMES_BACK) * stokes
     low, high = np.log(film.radius.max()) - 50.0, float(np.log(film.radius.max()))
     if stokes_number_taken(contacts, film, float(np.exp(low)))[0] < wanted:

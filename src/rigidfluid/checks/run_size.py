@@ -90,7 +90,7 @@ def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
 
 
 def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
-    """The least of those that a law holds or ends an impact at, None where there is none [length]."""
+    """Least gap at which a law holds a body or ends its impact, None where there is none [length]."""
     found = [float(gap) for met, mine in gaps for gap in mine if gap > _HELD * met.law.range]
     return min(found, default=None)
 
@@ -102,9 +102,9 @@ def _count(system: System, pose: Pose, sizes: Sizes, fields: Sequence[SizeField]
 
 
 def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: float) -> int:
-    """Number of meshes after the first: one for each two diameters of a body's way, of the body with the most, and one
-    for each time that a gap halves. A free body that is not settled goes on at its expected speed, through the domain
-    at the most."""
+    """Number of meshes after the first: one for each two diameters that a body goes, for the body with the most, and
+    one for each time that its gap halves from where cells of the bodies' size resolve it. A body that does not fall
+    goes at its prescribed or expected speed, through the domain at the most."""
     diameter = 2.0 * np.array([equal_volume_radius(body) for body in system.bodies])
     fallen = np.linalg.norm(settled.position - system.pose.position, axis=1)
     speed = np.linalg.norm(system.twist.velocity, axis=1)

@@ -11,7 +11,8 @@ QUESTION = "shape"
 
 
 def facet_findings(system: System) -> Iterator[Finding]:
-    """Report the sizes of bodies of facets, and the point of the facets that `position` places, once for each shape."""
+    """Report the sizes of bodies of facets, and the centre of mass in the coordinates of the facets, which `position`
+    places; once for each shape."""
     seen: list[object] = []
     for name, body in zip(system.surfaces, system.bodies, strict=False):
         if body.facets is None or (body.name, body.options) in seen:
@@ -21,7 +22,7 @@ def facet_findings(system: System) -> Iterator[Finding]:
         found = {
             "facets": count,
             "volume": body.volume,
-            **{f"centre_{x}": at for x, at in zip("xyz", centre, strict=False)},
+            **{f"centre_{axis}": value for axis, value in zip("xyz", centre, strict=False)},
         }
         text = f"{name} has {count} facets and a volume of {figure(body.volume)}; `position` is where the point "
         text += f"({', '.join(map(figure, centre))}) of its facets is put, its centre of mass"

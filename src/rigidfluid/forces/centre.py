@@ -20,8 +20,8 @@ class CentreLaw(Repulsion):
     """F = (1/ε)(x_i - x_j)(range - gap)² for gap ≤ range, of length (R + gap)(range - gap)²/ε, R = r_i + r_j.
 
     For a wall x_j is the centre of the tangent imaginary ball, so that R = 2r. The energy, with w = range - gap, is
-    U = [(R + range) w³/3 - w⁴/4]/ε, the stiffness [2 (R + gap) w - w²]/ε. All hold for overlap as well, up to a common
-    centre.
+    U = [(R + range) w³/3 - w⁴/4]/ε, the stiffness [2 (R + gap) w - w²]/ε. All hold for overlap as well, until the
+    centres meet.
 
     A surface that is neither round nor flat raises SceneError.
 
@@ -36,20 +36,20 @@ class CentreLaw(Repulsion):
 
     def unit_force(self, contacts: Contacts) -> FloatArray:
         """(R + gap) w², (m,) [length³]."""
-        return (_reach(contacts) + contacts.gap) * self.closeness(contacts) ** 2
+        return (_touching_distance(contacts) + contacts.gap) * self.closeness(contacts) ** 2
 
     def unit_energy(self, contacts: Contacts) -> FloatArray:
         """(R + range) w³/3 - w⁴/4, (m,) [length⁴]."""
         closeness = self.closeness(contacts)
-        return (_reach(contacts) + self.range) * closeness**3 / 3 - closeness**4 / 4
+        return (_touching_distance(contacts) + self.range) * closeness**3 / 3 - closeness**4 / 4
 
     def unit_stiffness(self, contacts: Contacts) -> FloatArray:
         """2 (R + gap) w - w², (m,) [length²]."""
         closeness = self.closeness(contacts)
-        return closeness * (2.0 * (_reach(contacts) + contacts.gap) - closeness)
+        return closeness * (2.0 * (_touching_distance(contacts) + contacts.gap) - closeness)
 
 
-def _reach(contacts: Contacts) -> FloatArray:
-    """R, the distance of the centres where the surfaces touch (m,) [length]."""
+def _touching_distance(contacts: Contacts) -> FloatArray:
+    """R = r_i + r_j, the distance of the centres where the surfaces touch, (m,) [length]."""
     require_balls(contacts, CentreLaw.name)
     return contacts.radius_a + np.where(contacts.at_wall, contacts.radius_a, contacts.radius_b)

@@ -1,4 +1,4 @@
-"""Which vertices belong to a band around a surface. Arrays in, answers out."""
+"""Which vertices belong to a band around a surface; kernels on arrays."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False

@@ -1,4 +1,4 @@
-"""Whether a surface is that of one convex body, seen from outside. Arrays in, answers out."""
+"""Convexity of a surface, seen from the fluid; kernels on arrays."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
@@ -11,9 +11,10 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def is_convex(points, surfaces, seeds):
-    """Whether no facet of ``seeds`` has a neighbour that rises above its plane into the fluid.
+    """Whether no facet of ``seeds``, a surface closed and in one piece, has a neighbour that rises above its plane into
+    the fluid.
 
-    A closed surface in one piece that is convex at each of its ridges is that of a convex body.
+    Convex at each of its ridges, it is the surface of a convex body.
     """
     normal = np.empty(points.shape[1])
     for facet in seeds:
@@ -22,7 +23,7 @@ def is_convex(points, surfaces, seeds):
         _towards_fluid(points, surfaces, facet, normal)
         corners = surfaces.facets[facet]
         for i in range(len(corners)):
-            # the corner of the facet beyond the ridge that is not on the ridge
+            # the corner off the ridge of the facet beyond it: those on the ridge cancel in the sum
             vertex = corners[i]
             for k in range(len(corners)):
                 vertex += surfaces.facets[surfaces.beside[facet, i], k] - corners[k]
@@ -50,6 +51,7 @@ def _towards_fluid(points, surfaces, facet, normal):
 
 @njit(cache=True, nogil=True)
 def _height(points, vertex, origin, normal):
+    """Height of a vertex above the plane through ``origin``, times the length of ``normal``."""
     total = 0.0
     for k in range(len(normal)):
         total += (points[vertex, k] - points[origin, k]) * normal[k]

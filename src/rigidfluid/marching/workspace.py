@@ -17,11 +17,11 @@ FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
 
 
 class Workspace(NamedTuple):
-    """Arrays with a value for each vertex: ``state``, ``key`` (squared distance, or distance to first order), ``facet``
-    nearest so far.
+    """Arrays with a value for each vertex: ``state``, ``key`` (squared distance in exact marches, distance in those of
+    first order), and the ``facet`` nearest so far.
 
-    ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band and from its end
-    those that are BEYOND.
+    ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band from its front,
+    and those that are BEYOND from its back.
     """
 
     state: NDArray[np.int8]

@@ -8,10 +8,10 @@ from petsc4py import PETSc
 
 
 def projected(matrix: Any, basis: Any, before: Any = None) -> Any:
-    """basisᵀ matrix basis, in the place of one that was made ``before`` with the same patterns, if there is one.
+    """Product basisᵀ matrix basis, written into ``before``, an earlier one with the same sparsity, if there is one.
 
-    Two products serve: PETSc's PtAP takes seconds where a row is long, as a body's is, which joins all nodes on it. The
-    result is a copy, since a product holds its factors as long as it lives.
+    It is formed by two products, as PETSc's PtAP takes seconds where a row is long, and a body's row has all nodes on
+    the body. The result is a copy, since a product holds its factors as long as it lives.
     """
     image = matrix.matMult(basis)
     product = basis.transposeMatMult(image)

@@ -1,4 +1,4 @@
-"""Way of the bodies through one step, and what contacts gave them on it."""
+"""Result of following the bodies through one step: where they are at its end, impulse and work of contacts."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ from rigidfluid.core.model.types import Pose, Twist, Wrench
 class BodyStep:
     """Result of a path: the bodies at the end of a step, and the contacts' impulse and work in it.
 
-    ``pose`` and ``twist`` at the end, and ``motions`` that carry the bodies; ``impulse`` of the contacts [force·time |
-    force·length·time], ``dissipated`` by them, ``friction`` unresolved by the fluid solves, and ``actuator_work``
-    against contacts of prescribed bodies and walls [energy]; the number of ``substeps``, and the ``coupling`` with the
-    fluid that led here, None without contacts. ``link``: mean loads of joints; zero in a fluid, whose solution has
-    them. ``drag_loss``: in a fluid without inertia ``friction`` is known for certain, and is given here instead.
+    ``pose`` and ``twist`` of the bodies at the end, and there the ``motions`` that carry them; ``impulse`` of the
+    contacts on the bodies [force·time | force·length·time]; ``dissipated``, the energy that contacts and dampers of
+    joints take, and ``actuator_work``, that of what moves prescribed bodies, walls and drives [energy]; the number of
+    ``substeps``; ``link``, the mean loads of joints, zero in a fluid, whose solution has them.
+
+    In a fluid ``friction`` is the energy that drag takes in substeps, unresolved by the fluid solves, and ``coupling``
+    the one with which the bodies were followed, None where nothing can touch. Without inertia of the fluid that energy
+    is known for certain: it is ``drag_loss`` then, and ``friction`` zero.
     """
 
     pose: Pose
@@ -41,23 +44,24 @@ class BodyStep:
 def arrived(
     movement: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int, friction: float = 0.0
 ) -> BodyStep:
-    """Result at the end of a step, or of a part of it."""
-    end = movement.pose, movement.twist, movement.motions(impulse), impulse
-    return BodyStep(*end, dissipated, actuator_work, count, unloaded(end[2].pose), friction)
+    """Result where ``movement`` is at the end of a step, or of a part of it, after ``count`` substeps."""
+    motions = movement.motions(impulse)
+    work = dissipated, actuator_work
+    return BodyStep(movement.pose, movement.twist, motions, impulse, *work, count, unloaded(motions.pose), friction)
 
 
 def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:
-    """First step of bodies that touch nothing, repeated with the mean of the motions' twists at its start and its
-    ``end`` [time]."""
+    """First step of bodies that touch nothing, repeated with the mean of the motions' twists at its start and at its
+    ``end`` [time], where a first solution has found ``end_twist``."""
     pose = start_pose(state.motions.pose, state.motions.twist, end_twist, size)
     return undisturbed(system, pose, end_twist, end)
 
 
 def undisturbed(system: System, pose: Pose, twist: Twist, end: float) -> BodyStep:
-    """Result of a step of the motions alone, without contacts."""
+    """Result of a step without contacts, by the motions' ``pose`` and ``twist`` at its ``end`` [time]."""
     motions = MotionState(pose, twist, nothing(pose), nothing(pose))
-    bodies = carried_bodies(system, pose, twist, end)
-    return BodyStep(*bodies, motions, nothing(bodies[0]), 0.0, 0.0, 1, unloaded(pose))
+    body_pose, body_twist = carried_bodies(system, pose, twist, end)
+    return BodyStep(body_pose, body_twist, motions, nothing(body_pose), 0.0, 0.0, 1, unloaded(pose))
 
 
 def add_wrench(total: Wrench, wrench: Wrench, factor: float) -> Wrench:

@@ -16,8 +16,9 @@ from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Wrench
 
 
 class ContactLoad(NamedTuple):
-    """Loads of the contacts at one moment: their ``wrench``, the forces of ``damping`` (m, d) in it, None without
-    dampers, the power ``loss`` of these, and the power ``actuator_work`` of prescribed bodies and walls."""
+    """Loads of the contacts at one moment: their ``wrench`` on the bodies, the forces of ``damping`` (m, d) in it, None
+    without dampers, the ``loss`` to these, and ``actuator_work``, done on prescribed bodies and walls to move them
+    against contacts [energy/time]."""
 
     wrench: Wrench
     damping: FloatArray | None
@@ -26,7 +27,7 @@ class ContactLoad(NamedTuple):
 
 
 def contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> ContactLoad:
-    """Loads of the contacts on the bodies, by law and dampers."""
+    """Loads of the ``contacts`` on the bodies, by the ``law`` and its dampers."""
     if len(contacts) == 0:
         return ContactLoad(nothing(movement.pose), None, 0.0, 0.0)
     force, damping, loss = law.force(contacts), None, 0.0
@@ -44,12 +45,14 @@ def contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: Bo
 
 
 def damping_loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: FloatArray | None) -> float:
-    """Power of the dampers half-way through their kick: times the substep it is the loss of the whole kick."""
+    """Power that the dampers take, with the velocities half-way through their kick, of which each of two substeps has a
+    half: times the substep it is the loss in the whole kick [energy/time]."""
     if damping is None:
         return 0.0
     return -float(np.sum(damping * relative_motion(contacts, movement, system.wall_velocity).velocity))
 
 
 def driven_bodies(system: System) -> BoolArray:
-    """Whether the motion of a body is prescribed, in space or relatively to other bodies (n,)."""
+    """Whether a body's twist may have a prescribed part (n,): any body's where something moves relatively in a
+    mechanism, as that part is zero in all others."""
     return np.ones_like(system.controlled) if system.motions.driven else system.controlled

@@ -26,7 +26,7 @@ IMPLICIT_PARTS = 8
 
 
 def implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
-    """Advance by one implicit step, or as many as springs need; return also the movement at the end."""
+    """Advance without a fluid, by one implicit step or as many as springs need; return also the movement at the end."""
     parts = spring_parts(system, size)
     path, movement = _implicit_or_free(system, law, movement, size / parts)
     for _ in range(1, parts):
@@ -47,6 +47,8 @@ def implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: f
 def _implicit_or_free(
     system: System, law: ForceLaw, movement: BodyDynamics, size: float
 ) -> tuple[BodyStep, BodyDynamics]:
+    """Advance by one implicit step, or freely where nothing may come into range; return also the movement at its
+    end."""
     contacts = foreseen(system, law, movement, size, 0.0)
     if len(contacts.start) == 0:
         return fly_freely(system, movement, size), movement
@@ -54,11 +56,11 @@ def _implicit_or_free(
 
 
 def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
-    """Advance by several implicit steps in one of the fluid's: an impact takes no time, and friction acts before and
-    after it.
+    """Advance in a fluid, by several implicit steps in one of the fluid's: an impact is then short beside that, and
+    drag acts before and after it.
 
-    The impact in a single one would last as long as the fluid's step and meet friction all the while, and the impulse
-    be too great for the fluid's mass.
+    In a single implicit step an impact would last as long as the fluid's step and work against drag all the while, and
+    its impulse would be greater than the reduced mass alone asks for.
     """
     part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
     on_mesh = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
@@ -83,7 +85,8 @@ def _implicit_step(
     followed: TrackedPairs | ExtrapolatedContacts,
     size: float,
 ) -> tuple[BodyStep, M]:
-    """Advance by one implicit step; return also the movement at its end."""
+    """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the movement at
+    its end."""
     crossing = implicit_contact_step(law, movement, start, followed.extrapolate, size, system.wall_velocity)
     end, wrench, lost, driven, stored = crossing
     if isinstance(followed, TrackedPairs):
@@ -99,7 +102,7 @@ def _implicit_step(
 
 
 def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: float) -> None:
-    """Raise StepRejected if contacts that came or went untracked hold more energy than ``allowed``."""
+    """Raise StepRejected if contacts that came or went untracked hold more than the ``allowed`` energy."""
     missed = followed.missed(law, end)
     if abs(missed) > allowed:
         found = f"contacts of a pair that came or went within it, with an energy of {missed:.1e}"

@@ -20,49 +20,51 @@ from rigidfluid.core.model.types import Contacts, Pose
 
 
 def near_contacts(system: System, state: State, start: float, size: float) -> Contacts:
-    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on: by twice the present
-    speed of their surfaces and the greatest acceleration."""
+    """Contacts in range, or that may come into it in a step of this ``size`` from ``start`` on [time]: by twice the
+    relative speed of their surfaces at its end, with the accelerations of both bodies added up."""
     contacts = state.contacts
     if system.law is None or len(contacts) == 0:
         return select(contacts, np.zeros(len(contacts), dtype=bool))
     speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
     rate, d = body_accelerations(system, state, start, size), system.dimension
-    pull = np.linalg.norm(rate[:, :d], axis=1) + arms(system) * np.linalg.norm(rate[:, d:], axis=1)
-    pull = np.append(pull, 0.0)
-    both = pull[contacts.body_a] + pull[np.minimum(contacts.body_b, len(pull) - 1)]
+    acceleration = np.linalg.norm(rate[:, :d], axis=1) + arms(system) * np.linalg.norm(rate[:, d:], axis=1)
+    acceleration = np.append(acceleration, 0.0)  # of walls
+    both = acceleration[contacts.body_a] + acceleration[np.minimum(contacts.body_b, len(acceleration) - 1)]
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
 @dataclass(frozen=True)
 class Sight:
-    """Contacts at any pose, ``contacts_at``: all up to a gap ``reach`` [length], enough for a ``span`` [time] at the
-    speeds that it was made for."""
+    """Contacts at any pose, by ``contacts_at``: all up to a gap ``reach`` [length], enough for a ``span`` [time] at the
+    speeds that it was made for. Contacts that are not detected anew but move with their bodies have an infinite
+    reach."""
 
     contacts_at: Callable[[Pose], Contacts]
     reach: float
     span: float
 
     def widened(self, system: System, movement: BodyDynamics, size: float) -> Sight:
-        """Sight for the present speeds where these ask for a longer reach: contacts at a turning point hold energy that
-        no speed shows."""
+        """Sight for the present speeds if that reaches farther, else this one: speeds at the start of a step do not
+        show the energy that contacts store at a turning point."""
         now = look_ahead(system, movement, size) if np.isfinite(self.reach) else self
         return now if now.reach > self.reach else self
 
 
 def look_ahead(system: System, movement: BodyDynamics, size: float) -> Sight:
-    """Sight for a step of this ``size`` [time] at the present speeds, by a detector that needs no mesh."""
+    """Sight for a step of this ``size`` [time] at the present speeds, by a detector that needs no mesh; no farther than
+    the law where a scene fixes the number of substeps, which are then not planned by contacts to come."""
     law_range = system.law.range if system.law else 0.0
     if system.substeps:
-        return Sight(_detected(system, law_range), law_range, size)
+        return Sight(_detection(system, law_range), law_range, size)
     largest = max(body.bounding_radius for body in system.bodies)
     fastest = fastest_speed(system, movement, size)
     ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
     reach = law_range + ahead
-    return Sight(_detected(system, reach), reach, 0.5 * ahead / fastest if fastest > 0 else size)
+    return Sight(_detection(system, reach), reach, 0.5 * ahead / fastest if fastest > 0 else size)
 
 
-def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
-    """Function of the pose that detects the contacts, by a detector that needs no mesh."""
+def _detection(system: System, reach: float) -> Callable[[Pose], Contacts]:
+    """Function that detects the contacts up to a gap ``reach`` [length] at a pose, without a mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:
         near = detect(system, pose, None, reach)
@@ -73,7 +75,7 @@ def _detected(system: System, reach: float) -> Callable[[Pose], Contacts]:
 
 
 def foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float, reach: float) -> TrackedPairs:
-    """Contacts that a step of this ``size`` may bring into range, and at least those in ``reach`` [length].
+    """Pairs that a step of this ``size`` [time] may bring into range, and at least those within ``reach`` [length].
 
     The speed allowed for is four times the fastest, as impacts may double that of both bodies, and twice the speed that
     bodies at rest, pressed together, may get from the energy of their contacts.
@@ -87,17 +89,17 @@ def foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float,
 
 
 def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
-    """Greatest speed of a surface if a body had all energy that its contacts store [length/time]."""
+    """Greatest speed of a surface point if a body got all energy that its contacts store [length/time]."""
     energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
     straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
-    lightness = straight + arms(system) ** 2 * turning
-    return float(np.sqrt(2.0 * np.max(stored[: len(lightness)] * lightness)))
+    inverse_mass = straight + arms(system) ** 2 * turning
+    return float(np.sqrt(2.0 * np.max(stored[: len(inverse_mass)] * inverse_mass)))
 
 
 def fastest_speed(system: System, movement: BodyDynamics, size: float) -> float:
-    """Bound of the speed at which any surface can move in the step, contacts apart [length/time]."""
+    """Bound of the speed of any surface point in a step of this ``size`` [time], contacts apart [length/time]."""
     twist = movement.twist
     turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
     return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.max_acceleration(size)))

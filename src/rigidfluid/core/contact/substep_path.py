@@ -30,14 +30,14 @@ MOST_ALIKE = 1_000
 """Re-plan the substep length after this many equal substeps; separating bodies need fewer."""
 
 SPRING_RESOLUTION = 0.2
-"""A substep times the highest frequency of springs in joints: some thirty substeps in a period."""
+"""Substep times the highest frequency of springs in joints: some thirty substeps in a period."""
 
 ROUNDING = 1e-9
 """Remainder of a step, over the step, that is taken for the rounding of sums."""
 
 
 def fly_freely(system: System, movement: BodyDynamics, size: float) -> BodyStep:
-    """Advance without contacts, in as many parts as springs need."""
+    """Advance without contacts, in as many substeps as springs of joints need; ``movement`` changes in place."""
     none, parts = nothing(movement.pose), spring_parts(system, size)
     for _ in range(parts):
         movement.kick(none, 0.5 * size / parts)
@@ -53,8 +53,8 @@ def spring_parts(system: System, size: float) -> int:
 
 @dataclass(frozen=True)
 class SubstepPath:
-    """Bodies that a ``law`` kicks on their path through one step of this ``size`` [time]: ``movement`` changes in
-    place."""
+    """Path of bodies through one step of this ``size`` [time], on which a ``law`` kicks them; their ``movement``
+    changes in place."""
 
     system: System
     law: ForceLaw
@@ -64,13 +64,13 @@ class SubstepPath:
     def advance(self, sight: Sight) -> BodyStep:
         """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
 
-        Substeps are planned for a span of the ``sight`` at a time, and anew when the contacts are over. The sight is
+        Substeps are planned for a span of the ``sight`` at a time, and anew while nothing is in range. The sight is
         widened then for bodies that contacts have made faster.
         """
         system, movement, size = self.system, self.movement, self.size
         contacts = sight.contacts_at(movement.pose)
         impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
-        push = contact_load(system, self.law, contacts, movement)
+        load = contact_load(system, self.law, contacts, movement)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
@@ -78,19 +78,19 @@ class SubstepPath:
                 if wider is not sight:
                     sight, contacts = wider, wider.contacts_at(movement.pose)
                 planned = min(left, sight.span)
-                free_flight, substep = self._plan(contacts, planned)
+                free_flight, substep = self._next_plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
             part = min(free_flight or substep, left, longest)
-            movement.kick(push.wrench, 0.5 * part)
+            movement.kick(load.wrench, 0.5 * part)
             movement.drift(part)
             contacts = sight.contacts_at(movement.pose)
-            _refuse_overlap(system, contacts)
-            before, push = push, contact_load(system, self.law, contacts, movement)
-            movement.kick(push.wrench, 0.5 * part)
-            push = push._replace(loss=damping_loss(system, contacts, movement, push.damping))
-            impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), push.wrench, 0.5 * part)
-            dissipated += 0.5 * part * (before.loss + push.loss)
-            actuator_work += 0.5 * part * (before.actuator_work + push.actuator_work)
+            _refuse_overlaps(system, contacts)
+            before, load = load, contact_load(system, self.law, contacts, movement)
+            movement.kick(load.wrench, 0.5 * part)
+            load = load._replace(loss=damping_loss(system, contacts, movement, load.damping))
+            impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), load.wrench, 0.5 * part)
+            dissipated += 0.5 * part * (before.loss + load.loss)
+            actuator_work += 0.5 * part * (before.actuator_work + load.actuator_work)
             count, planned = count + 1, planned - part
             free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
             left = left - part if left - part > ROUNDING * size else 0.0
@@ -99,12 +99,13 @@ class SubstepPath:
         return arrived(movement, impulse, dissipated, actuator_work, count)
 
     def planned(self, contacts: Contacts, span: float) -> Plan:
-        """Free flight and substep of the next ``span`` [time]."""
-        reach = _surfaces(self.system)
+        """Free flight and substep of the next ``span`` [time], as the contacts need them."""
+        reach = _surface_reach(self.system)
         return plan(self.law, contacts, self.movement, reach, self.size, span, self.system.quasi_steady)
 
-    def _plan(self, contacts: Contacts, span: float) -> Plan:
-        """The scene's substeps, or those that contacts need."""
+    def _next_plan(self, contacts: Contacts, span: float) -> Plan:
+        """Substeps of the scene where it fixes their number, else as planned; raises StepRejected if they are far too
+        many."""
         if self.system.substeps:
             return Plan(0.0, self.size / self.system.substeps)
         planned = self.planned(contacts, span)
@@ -114,14 +115,15 @@ class SubstepPath:
         return planned
 
 
-def _surfaces(system: System) -> Reach:
-    """Reach of the surfaces: balls turn in their place, but not as components of a mechanism."""
+def _surface_reach(system: System) -> Reach:
+    """Reach of the bodies' surface points: balls turn in their place, but not as components of a mechanism."""
     radii = np.array([body.bounding_radius for body in system.bodies])
     alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
     return Reach(np.where(alone, arms(system), radii), system.leverage)
 
 
-def _refuse_overlap(system: System, contacts: Contacts) -> None:
+def _refuse_overlaps(system: System, contacts: Contacts) -> None:
+    """Raise StepRejected if the surfaces of a contact touch or overlap."""
     if len(contacts) == 0 or contacts.gap.min() > 0.0:
         return
     worst = int(np.argmin(contacts.gap))
@@ -129,6 +131,7 @@ def _refuse_overlap(system: System, contacts: Contacts) -> None:
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
+    """Error of contacts that need substeps as short as ``part`` [time]; it names the body with the least gap."""
     subject = "the bodies"
     if len(contacts):
         subject = f"body {system.surfaces[contacts.body_a[int(np.argmin(contacts.gap))]]}"

@@ -36,9 +36,9 @@ class DryScheme:
         else:
             sight = look_ahead(system, movement, size)
             path = SubstepPath(system, system.law, movement, size).advance(sight)
-        done = movement.link_work
-        dissipated, actuator_work = path.dissipated + done.damped, path.actuator_work + done.driven
-        return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=done.load(size))
+        by_joints = movement.link_work
+        dissipated, actuator_work = path.dissipated + by_joints.damped, path.actuator_work + by_joints.driven
+        return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=by_joints.load(size))
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
         return step
@@ -59,15 +59,16 @@ class DryScheme:
         return self._system.motions.carry(self._motions(state, time), time)
 
     def _dynamics(self, state: State, start: float) -> BodyDynamics:
-        """Dynamics of the bodies, on motions that joints may link."""
+        """Dynamics of the bodies, on motions with their joints."""
         system = self._system
         linked = system.joints.over(self._motions(state, start), start)
         return system.motions.carry(linked, start, body_load(system, state))
 
     def _motions(self, state: State, start: float) -> PushedDynamics:
+        """Dynamics of the motions, without joints."""
         system, now = self._system, state.motions
 
-        def given(elapsed: float) -> FloatArray:
+        def controlled_twist(elapsed: float) -> FloatArray:
             return system.controlled_twist(start + elapsed)
 
-        return system.motions.dry_dynamics(now, body_load(system, state), arms(system), start, given)
+        return system.motions.dry_dynamics(now, body_load(system, state), arms(system), start, controlled_twist)

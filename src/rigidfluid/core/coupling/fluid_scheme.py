@@ -1,4 +1,4 @@
-"""Steps of bodies in a fluid: near contacts their path follows a reduced model, which the solutions show."""
+"""Steps of bodies in a fluid: near contacts their path follows a reduced model, whose terms the fluid solves give."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SETTLED = 1e-3
 """Relative change of the bodies' velocities below which the iteration of a step has converged."""
 
 SETTLED_SHARED = 1e-2
-"""Relative change of velocities for convergence where bodies share questions, whose responses are no better."""
+"""The same where bodies share right sides in the solve for impulse responses, which are no more exact then."""
 
 STEADY = 1e-2
 """Relative change of the contacts' impulses below which one fluid solve may be enough."""
@@ -44,15 +44,16 @@ STEADY = 1e-2
 class FluidScheme(ABC):
     """`Scheme` of bodies in a fluid.
 
-    Substeps take the place of the fluid's own small steps: the bodies near contacts respond with the mass and the
-    friction of the coupling, and the fluid then responds to the impulse.
+    Substeps take the place of small steps of the fluid: in them bodies near contacts have the mass and the resistance
+    of the reduced model, and the fluid is then solved once with the impulse of their contacts.
     """
 
     def __init__(self, system: System) -> None:
         self._system = system
 
     def expect(self, state: State, time: float, size: float) -> Coupling | None:
-        """Coupling with the present mesh and the latest step's loads, and the state's own model where it has one."""
+        """Coupling expected by the present mesh and the latest step's loads; the state's own model serves
+        where it still holds."""
         system, near = self._system, near_contacts(self._system, state, time, size)
         if len(near) == 0:
             return None
@@ -64,14 +65,14 @@ class FluidScheme(ABC):
         return Coupling(model, expected, before, np.zeros(len(velocities)))
 
     def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
-        """Follow the bodies by Adams–Bashforth 2 as one formula where nothing can touch, else through contacts."""
+        """Follow the bodies by Adams–Bashforth 2 in one formula where nothing can touch, else through contacts."""
         system, motions = self._system, state.motions
         if coupling is None or system.law is None:
             pose = predict_pose(motions.pose, motions.twist, state.past_twist, size, state.past_step)
             return undisturbed(system, pose, motions.twist, start + size)
-        alone, near = self._motions(state, coupling), near_contacts(system, state, start, size)
-        movement = system.motions.carry(system.joints.over(alone, start), start)
-        self._vary_load(alone, movement, near, size)
+        unlinked, near = self._motions(state, coupling), near_contacts(system, state, start, size)
+        movement = system.motions.carry(system.joints.over(unlinked, start), start)
+        self._vary_load(unlinked, movement, near, size)
         if system.implicit:
             path = implicit_coupled(system, system.law, movement, near, size)
         else:
@@ -83,11 +84,11 @@ class FluidScheme(ABC):
         return replace(self._with_friction(path), coupling=coupling)
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
-        """Add the correction of the load, and what makes the advecting velocity follow contacts."""
+        """Add the correction of the load, in place, and the impulses that correct the advecting velocity."""
         if path.coupling is None:
             return step
         step.load.flat[path.coupling.model.velocities] += path.coupling.correction
-        return self._convected(step, state, path)
+        return self._with_turning(step, state, path)
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
         """Whether contact impulses changed by more than STEADY."""
@@ -121,7 +122,7 @@ class FluidScheme(ABC):
             return candidate, True
         found = self._shown(state, candidate, path, path.coupling, step)
         agree = self._agree(path.coupling, found, path, state, candidate)
-        return self._stirred(state, replace(candidate, coupling=found), path), agree
+        return self._with_impact(state, replace(candidate, coupling=found), path), agree
 
     def bodies_now(self, state: State, time: float) -> BodyDynamics:
         """Dynamics by the coupling that the state's solution has shown."""
@@ -133,31 +134,32 @@ class FluidScheme(ABC):
 
     @abstractmethod
     def _known_load(self, state: State, coupling: Coupling) -> FloatArray | None:
-        """Load (c,) besides the fluid's friction, where all else of Φ is that; None where it is not."""
+        """Weight and applied wrenches (c,) in a fluid without inertia, as all else of Φ is its drag; None in others."""
 
     @abstractmethod
     def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ grow within a step of this ``size`` [time] where that serves contacts ``near`` the ``bodies``."""
+        """Let Φ vary linearly in a step of this ``size`` [time], if the step resolves its contacts ``near`` or
+        the fluid has no inertia."""
 
     @abstractmethod
     def _with_friction(self, path: BodyStep) -> BodyStep:
-        """The path with its friction where the ledger wants it."""
+        """The path with its friction in the field from which the ledger takes it."""
 
     @abstractmethod
-    def _convected(self, step: Step, state: State, path: BodyStep) -> Step:
-        """The step with what its advecting velocity has to know of contacts."""
+    def _with_turning(self, step: Step, state: State, path: BodyStep) -> Step:
+        """The step with the impulses that correct its advecting velocity near contacts."""
 
     @abstractmethod
-    def _stirred(self, state: State, candidate: State, path: BodyStep) -> State:
-        """The candidate with the latest impact that stirred the fluid."""
+    def _with_impact(self, state: State, candidate: State, path: BodyStep) -> State:
+        """The candidate with the tick of the latest impact that stirred the fluid."""
 
     @abstractmethod
     def _correction(self, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
-        """Force (c,) of the velocities ``missed`` (c,) by the solution of a step."""
+        """Load (c,) to be added, where the solution of a step has missed the path's end by these velocities (c,)."""
 
     @abstractmethod
-    def _response(self, model: ReducedModel, d0: float, force: FloatArray) -> FloatArray:
-        """Velocities (c,) that a force (c,) gives over time, of the path's end."""
+    def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
+        """Velocities (c,) at the end of a step by an ``impulse`` (c,) in it."""
 
     def _motions(self, state: State, coupling: Coupling) -> CoupledDynamics:
         """Dynamics of the motions; those outside the model keep their acceleration, and respond with mass and added
@@ -168,8 +170,8 @@ class FluidScheme(ABC):
         return CoupledDynamics(now.pose, now.twist, rate, linear, angular, coupling, known)
 
     def _shown(self, state: State, candidate: State, path: BodyStep, used: Coupling, step: Step) -> Coupling:
-        """Coupling by the solution of a ``step`` from ``state`` to ``candidate`` along ``path``: responses on the mesh
-        at its end, and loads in it, of the same velocities."""
+        """Coupling that the solution of a ``step`` from ``state`` to ``candidate`` along ``path`` has shown: responses
+        on the mesh at its end, and loads in it, of the velocities of the coupling that was ``used``."""
         twist, velocities = flat(candidate.motions.twist), used.model.velocities
         model = updated_model(self._system, state, step, candidate.contacts, twist, velocities, used.model)
         past = state.past_twist or state.motions.twist
@@ -184,7 +186,7 @@ class FluidScheme(ABC):
         return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
 
     def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
-        """Whether path and solution agree: changes are those of velocities."""
+        """Whether path and solution agree: changes of load and responses count by those of velocities at the end."""
         model, size = found.model, (candidate.past_step or 0.0)
         if len(model.velocities) == 0:
             return True
@@ -192,18 +194,19 @@ class FluidScheme(ABC):
         gained = self._response(model, d0, impulse)
         before, after = (components(model, flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
         by_load = size * (self._response(model, d0, found.load) - self._response(used.model, d0, used.load))
-        by_answer = gained - self._response(used.model, d0, impulse)
+        by_response = gained - self._response(used.model, d0, impulse)
         missed = model.answer(d0, found.correction - used.correction) / d0
         arm = components(model, twist_arms(self._system))
         scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
         enough = SETTLED_SHARED if model.shared else SETTLED
-        return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_answer, missed)) <= enough * scale
+        return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_response, missed)) <= enough * scale
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:
-    """Numbers of the velocity components of free motions that contacts can change: balls turn by friction alone.
+    """Numbers of the velocity components (N, d+k) of free motions that contacts can change: balls turn only where a law
+    has dampers.
 
-    Motions that joints hold are always among them, as joint forces are found from the responses of all.
+    Motions with joints are always among them, as joint forces are found from the responses of all.
     """
     count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
     width = d + (1 if d == 2 else 3)
@@ -218,8 +221,8 @@ def _velocities(system: System, near: Contacts) -> IntArray:
 
 
 def load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
-    """Load Φ (c,) at the start of a step: at the end of the one before, less the friction that came up in that step;
-    NaN where unknown."""
+    """Load Φ (c,) at the start of a step: that at the end of the one before, less R (Uⁿ - Uⁿ⁻¹), since drag counts from
+    the velocities at the start of a step; NaN where unknown."""
     before = np.full(len(model.velocities), np.nan)
     if state.coupling is None or state.past is None:
         return before
@@ -233,7 +236,7 @@ def load_before(system: System, state: State, model: ReducedModel) -> FloatArray
 
 
 def expected_load_of(system: System, state: State, model: ReducedModel) -> FloatArray:
-    """Load Φ (c,) at the end of a step as the latest one lets expect it."""
+    """Load Φ (c,) expected at the end of a step: as in the latest one, or weight and applied wrenches in the first."""
     if state.past is None:
         return components(model, flat(outer_load(system, state)))
     change = components(model, flat(state.motions.twist) - flat(state.past.twist))
@@ -244,12 +247,12 @@ def expected_load_of(system: System, state: State, model: ReducedModel) -> Float
 
 
 def _applied(state: State) -> FloatArray:
-    """Mean applied wrench on the motions in the step that led to a ``state``, (N, d+k)."""
+    """Mean applied wrench on the motions (N, d+k) in the step that led to a ``state``."""
     if state.past is None or state.past.applied is None:
         return np.zeros_like(flat(state.motions.contact))
     return flat(state.past.applied)
 
 
 def components(model: ReducedModel, field: FloatArray) -> FloatArray:
-    """Components (c,) of a field (n, d+k) that the model has."""
+    """Components (c,) that the model has of a ``field`` (N, d+k) of the motions."""
     return np.asarray(field.ravel()[model.velocities])

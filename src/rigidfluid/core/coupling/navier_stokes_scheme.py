@@ -18,11 +18,11 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Contacts, FloatArray, Step
 
 RESOLVED = 8.0
-"""Largest number of substeps with which a step resolves its contacts: all forces then vary within it."""
+"""Largest number of substeps with which a step resolves its contacts: Φ then varies linearly in it."""
 
 
 class NavierStokesScheme(FluidScheme):
-    """`Scheme` of bodies in a fluid with inertia: it resists contacts by added mass at once, and remembers them."""
+    """`Scheme` of bodies in a fluid with inertia: added mass acts in contacts at once, and the flow remembers them."""
 
     def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
         return load_before(self._system, state, model), expected_load_of(self._system, state, model)
@@ -31,7 +31,7 @@ class NavierStokesScheme(FluidScheme):
         return None
 
     def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ grow where the step resolves its contacts."""
+        """Let Φ vary linearly where the step resolves its contacts."""
         system = self._system
         if system.law and size <= RESOLVED * SubstepPath(system, system.law, bodies, size).planned(near, size).substep:
             motions.vary_load(size)
@@ -39,16 +39,16 @@ class NavierStokesScheme(FluidScheme):
     def _with_friction(self, path: BodyStep) -> BodyStep:
         return path
 
-    def _convected(self, step: Step, state: State, path: BodyStep) -> Step:
+    def _with_turning(self, step: Step, state: State, path: BodyStep) -> Step:
         return replace(step, turning=turning(self._system, state, path, step))
 
-    def _stirred(self, state: State, candidate: State, path: BodyStep) -> State:
+    def _with_impact(self, state: State, candidate: State, path: BodyStep) -> State:
         return replace(candidate, impact=impact_tick(state, path, candidate))
 
     def _correction(self, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
-        """Zero: the solution has the inertia of what the path missed."""
+        """Zero: a fluid with inertia takes the impulse of the path as it is."""
         return np.zeros_like(missed)
 
-    def _response(self, model: ReducedModel, d0: float, force: FloatArray) -> FloatArray:
-        """Response by the masses alone."""
-        return np.asarray(model.mobility @ force)
+    def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
+        """Response M⁻¹ J by the masses alone."""
+        return np.asarray(model.mobility @ impulse)

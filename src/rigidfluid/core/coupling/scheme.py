@@ -12,27 +12,32 @@ from rigidfluid.core.model.types import Step
 
 
 class Scheme(Protocol):
-    """Scheme of one system's steps."""
+    """Scheme of one system's steps.
+
+    A step expects a coupling, follows the bodies with it, prepares what the backend solves, and converges; until path
+    and solution agree, it follows the bodies again with the coupling that the solution has shown.
+    """
 
     def expect(self, state: State, time: float, size: float) -> Coupling | None:
-        """Coupling of a step from ``time`` over ``size`` [time] that its start lets expect; None where nothing can
-        touch."""
+        """Expected coupling of bodies and fluid in a step from ``time`` over ``size`` [time], by what is known at its
+        start; None where nothing can touch, and without a fluid."""
 
     def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
-        """Follow the bodies from ``start`` over ``size`` [time]; raises StepRejected if bodies overlap on the way, or a
-        contact is too stiff to be followed."""
+        """Follow the bodies from ``start`` over ``size`` [time]; raises StepRejected if bodies overlap on their path,
+        or a contact is too stiff to be followed."""
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
-        """Add to a step what its solution has to know of contacts on the bodies' ``path``."""
+        """Add to a step what its solution has to know of contacts on the bodies' ``path``; its load may be changed in
+        place."""
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
         """Whether contact impulses changed so much that a second solution of the step is certain."""
 
     def repeats_start(self, state: State, path: BodyStep) -> bool:
-        """Whether a first step is solved again along the path that its solution has shown."""
+        """Whether a step without a past, as the first one, is solved again along the path that its solution shows."""
 
     def missed_contacts(self, state: State, candidate: State) -> bool:
-        """Whether a contact came into range that nobody followed."""
+        """Whether a contact is in range at the end of a step that its path did not follow."""
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
         """The ``candidate`` with the coupling that its solution has shown, and whether path and solution agree."""

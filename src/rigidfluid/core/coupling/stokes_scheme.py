@@ -18,10 +18,10 @@ from rigidfluid.core.model.types import Contacts, FloatArray, Step
 
 
 class StokesScheme(FluidScheme):
-    """`Scheme` of bodies in a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
+    """`Scheme` of bodies in a fluid without inertia: its drag follows from the present velocities alone."""
 
     def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
-        """Force of the fluid on the bodies now, and what pulls them, unless more is known."""
+        """Load at the start, for both ends; where that is unknown, the fluid's present wrench and all outer ones."""
         before = load_before(self._system, state, model)
         now = components(model, flat(outer_load(self._system, state)) + flat(state.motions.hydrodynamic))
         load = np.where(np.isnan(before), now, before)
@@ -32,23 +32,23 @@ class StokesScheme(FluidScheme):
         return components(coupling.model, flat(outer_load(self._system, state)))
 
     def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ grow in any case."""
+        """Let Φ vary linearly in all steps."""
         motions.vary_load(size)
 
     def _with_friction(self, path: BodyStep) -> BodyStep:
-        """The path's friction is known for certain."""
+        """The path with its friction as ``drag_loss``: it is known for certain."""
         return replace(path, friction=0.0, drag_loss=path.friction)
 
-    def _convected(self, step: Step, state: State, path: BodyStep) -> Step:
+    def _with_turning(self, step: Step, state: State, path: BodyStep) -> Step:
         return step
 
-    def _stirred(self, state: State, candidate: State, path: BodyStep) -> State:
+    def _with_impact(self, state: State, candidate: State, path: BodyStep) -> State:
         return replace(candidate, impact=None)
 
     def _correction(self, model: ReducedModel, step: Step, missed: FloatArray) -> FloatArray:
-        """Force (d₀M + R) U of the velocities missed."""
+        """Load (d₀M + R) U of velocities U missed: the solution takes the force at the end, not that in the mean."""
         return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
-    def _response(self, model: ReducedModel, d0: float, force: FloatArray) -> FloatArray:
-        """Response over the step: by its end friction has damped the response of the masses alone."""
-        return model.answer(d0, force)
+    def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
+        """Response d₀ (d₀M + R)⁻¹ J: by the end of the step drag has damped that of the masses alone."""
+        return model.answer(d0, impulse)

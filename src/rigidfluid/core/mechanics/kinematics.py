@@ -53,6 +53,7 @@ class CarriedKinematics:
         return np.swapaxes(carried_sum(self.carrier, np.swapaxes(whole, 0, 1), len(self.centre)), 0, 1)
 
     def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
+        """Whether the prescribed part is not zero, be it by a controlled motion or by relative motion."""
         return np.asarray(np.any(twist.velocity, axis=1) | np.any(twist.angular_velocity, axis=1))
 
     def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
@@ -65,10 +66,10 @@ class CarriedKinematics:
 
 
 def given_twist(step: Step) -> tuple[Twist, BoolArray]:
-    """Prescribed part of the body twists, n rows, and whether a body has one (n,)."""
+    """Prescribed part of the bodies' twists in a step, n rows, and whether a body has one (n,)."""
     d = step.pose.position.shape[1]
-    held = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
-    given = step.kinematics.component_twist(Twist(held[:, :d], held[:, d:]))
+    controlled = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
+    given = step.kinematics.component_twist(Twist(controlled[:, :d], controlled[:, d:]))
     return given, step.kinematics.prescribed(step.controlled, given)
 
 

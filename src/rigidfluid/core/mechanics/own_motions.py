@@ -1,4 +1,4 @@
-"""Dynamics of bodies that are each its own motion."""
+"""Members of dynamics that are trivial where each body is a motion of its own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rigidfluid.core.model.types import BoolArray, Twist, Wrench
 
 
 class OwnMotions:
-    """Dynamics whose bodies are its motions, without joints."""
+    """Base of dynamics whose bodies are its motions, without joints: it completes what is to be a `BodyDynamics`."""
 
     kinematics: Kinematics = EACH_ITS_OWN
 

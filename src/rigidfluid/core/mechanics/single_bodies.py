@@ -1,4 +1,4 @@
-"""Bodies that are each its own motion."""
+"""Motions of bodies that each are a motion of their own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, T
 
 
 class SingleBodies:
-    """Motions of n bodies without mechanisms, the bodies themselves; see `CarriedBodies`."""
+    """`Motions` of n bodies without mechanisms: the bodies themselves. With mechanisms they are `CarriedBodies`."""
 
     names: tuple[str, ...] = ()
     driven: bool = False

@@ -1,4 +1,4 @@
-"""Takes vertices off bodies whose facets are much finer than wanted: the reverse of `refine_surface`.
+"""Takes vertices off bodies whose facets are much finer than wanted, by edge collapses: undoes `refine_surface`.
 
 Facets that were bisected for a gap stay when it has opened, as MMG keeps all facets of bodies. In 3D a single contact
 leaves twice the cells behind, and every contact adds its own.
@@ -24,10 +24,10 @@ PER_RADIUS = 2.0
 """Edges as long as a body's least radius of curvature over this are wanted anyway, as Netgen makes them."""
 
 LEAST_QUALITY = 0.1
-"""Quality that a cell must keep whose vertex is taken off, or the worst that the cells there have, if that is less."""
+"""Least quality of the cells that a collapse has changed, or that of the worst of them before, if it is less."""
 
 MOST_TURNED = 0.5
-"""Least cosine of the angle by which a facet may turn when a vertex is taken off."""
+"""Cosine of the largest angle by which a facet may turn in a collapse."""
 
 
 def coarsen_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
@@ -51,7 +51,7 @@ def coarsen_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh
         pairs, wanted = pairs[left], wanted[left]
         apart = share_no_cell(mesh.cells, pairs[:, 0], len(mesh.points))
         pairs, wanted = pairs[apart], wanted[apart]
-        fits = _spares(mesh, pairs, wanted)
+        fits = _can_collapse(mesh, pairs, wanted)
         refused |= {(a, b) for a, b in pairs[~fits].tolist()}
         if fits.any():
             mesh, number = _collapsed(mesh, pairs[fits])
@@ -66,8 +66,8 @@ def coarsen_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh
 def _short_edges(
     mesh: Mesh, longest: FloatArray, fluid_domain: FluidDomain, sizes: Sizes
 ) -> tuple[IntArray, FloatArray]:
-    """Short edges as pairs (E, 2) of the vertex to take off and the one that stays, both ways, and the wanted size
-    (E,), no more than the ``longest`` (n,) of their body; the shortest over that first."""
+    """Short edges as pairs (E, 2) of the vertex to take off and the one that stays, each edge in both directions, and
+    the wanted size (E,), at most ``longest`` (n,) on their body; sorted by length over wanted size."""
     on_smooth = np.zeros(mesh.markers.max() + 1, dtype=bool)
     on_smooth[: len(longest)] = longest > 0.0
     edges, body = edges_of_facets(mesh, on_smooth[mesh.markers])
@@ -82,28 +82,28 @@ def _short_edges(
     return np.stack([edges, edges[:, ::-1]], axis=1).reshape(-1, 2), np.repeat(wanted[chosen], 2)
 
 
-def _spares(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
-    """Whether each of the ``pairs`` (E, 2), whose cells are apart, can be collapsed, (E,); edges are to be ``wanted``
-    (E,) long."""
-    at = np.full(len(mesh.points), -1)
-    at[pairs[:, 0]] = np.arange(len(pairs))
+def _can_collapse(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
+    """Whether each of the ``pairs`` (E, 2), which change no cell twice, can be collapsed, (E,); edges are to be
+    ``wanted`` (E,) long."""
+    pair_of = np.full(len(mesh.points), -1)
+    pair_of[pairs[:, 0]] = np.arange(len(pairs))
     target = _targets(mesh, pairs)
-    spares = np.ones(len(pairs), dtype=bool)
-    cell, number = _changed(mesh.cells, at)
+    can_collapse = np.ones(len(pairs), dtype=bool)
+    cell, number = _changed(mesh.cells, pair_of)
     drawn = target[mesh.cells[cell]]
     stays = ~_degenerate(drawn)
     least = np.full(len(pairs), LEAST_QUALITY)
     np.minimum.at(least, number, cell_quality(mesh.points, mesh.cells[cell]))
-    spares[number[stays][cell_quality(mesh.points, drawn[stays]) < least[number[stays]]]] = False
-    facet, number = _changed(mesh.facets, at)
+    can_collapse[number[stays][cell_quality(mesh.points, drawn[stays]) < least[number[stays]]]] = False
+    facet, number = _changed(mesh.facets, pair_of)
     drawn = target[mesh.facets[facet]]
     gone = _degenerate(drawn)
-    spares &= np.bincount(number[gone], minlength=len(pairs)) == 2
+    can_collapse &= np.bincount(number[gone], minlength=len(pairs)) == 2  # with more the surface would fold
     before, after, number = mesh.points[mesh.facets[facet[~gone]]], mesh.points[drawn[~gone]], number[~gone]
     turned = np.sum(_normals(before) * _normals(after), axis=1) < MOST_TURNED
     longest = np.linalg.norm(after - np.roll(after, 1, axis=1), axis=2).max(axis=1)
-    spares[number[turned | (longest > LONGEST * wanted[number])]] = False
-    return spares
+    can_collapse[number[turned | (longest > LONGEST * wanted[number])]] = False
+    return can_collapse
 
 
 def _collapsed(mesh: Mesh, pairs: IntArray) -> tuple[Mesh, IntArray]:
@@ -124,9 +124,10 @@ def _targets(mesh: Mesh, pairs: IntArray) -> IntArray:
     return target
 
 
-def _changed(simplices: IntArray, at: IntArray) -> tuple[IntArray, IntArray]:
-    """The simplices that have a vertex taken off, and the number of its pair; no simplex has two."""
-    number = at[simplices].max(axis=1)
+def _changed(simplices: IntArray, pair_of: IntArray) -> tuple[IntArray, IntArray]:
+    """Simplices with a vertex that is taken off, and the number of its pair, which ``pair_of`` (N,) gives for each
+    vertex, -1 for those that stay; no simplex has two."""
+    number = pair_of[simplices].max(axis=1)
     changed = np.flatnonzero(number >= 0)
     return changed, number[changed]
 

@@ -83,7 +83,7 @@ class BodyDynamics(Protocol):
         are prescribed."""
 
     def copied(self) -> Self:
-        """Copy of the motion, for a trial."""
+        """Copy, for a trial."""
 
     def max_acceleration(self, time: float) -> FloatArray:
         """Greatest acceleration of each body (n,) within ``time`` from now, contacts apart [length/time²]."""
@@ -106,11 +106,11 @@ class MotionDynamics(BodyDynamics, Protocol):
 
 
 class PushedDynamics(MotionDynamics, Protocol):
-    """Motions that take impulses."""
+    """Dynamics of motions that impulses can change at once, as those of rigid joints do."""
 
     def begin(self, ahead: float) -> None:
-        """Use, until the first drift, the twist after a corner that may be at the start: rates are read ``ahead`` later
-        [time]."""
+        """Read prescribed rates no earlier than ``ahead`` after the start [time], so that a jump of them at the start
+        is in the twist before the first drift."""
 
     def push(self, impulse: FloatArray) -> None:
-        """Change the twist as impulses (N, d+k) at once do [force·time | force·length·time]."""
+        """Change the twist at once by impulses (N, d+k) [force·time | force·length·time]."""

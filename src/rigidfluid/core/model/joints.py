@@ -14,7 +14,7 @@ from rigidfluid.core.model.state import LinkLoad, unloaded
 from rigidfluid.core.model.types import NO_LINKS, BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
 
 COORDINATES: Mapping[str, str] = {"angle": "rad"}
-"""Coordinates of joints that have a column in any case, with their units."""
+"""Coordinates of joints that always have a column in joints.csv, with their units."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,8 +22,8 @@ class GroundLink:
     """Link of one ``body`` to its place at the start: its velocities (d+k,) that are ``held`` are zero.
 
     On the others act springs, -``stiffness`` · displacement, and dampers, -``damping`` · velocity, along fixed axes.
-    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): where the
-    springs do not pull, None where that is at the start [length].
+    Rotations in 3D are those about the axes: their displacement is the rotation vector. ``rest`` (d,): the position
+    where the springs are relaxed, None for that at the start [length].
     """
 
     name: str
@@ -52,11 +52,11 @@ class LinkReading:
 class Joints(Protocol):
     """The joints of a system on its N motions.
 
-    ``linked`` (N,): which motions have links at all; ``clusters`` (N,): equal for motions that joints link, directly or
-    over others. ``frequency``: of the stiffest spring with the masses that it
-    moves, without a fluid, or its rate against a fluid without inertia; 0 without springs [rad/time]. ``driven``:
-    whether anything moves as it is told, so that rates and the power of springs may not be zero.
-    ``coordinates``: units of the joints' coordinates by name, angles before all others and in any case.
+    ``linked`` (N,): whether a motion has links at all; ``clusters`` (N,): equal for motions that joints link, directly
+    or over others. ``frequency``: that of the stiffest spring with the masses that it moves, without a fluid, or the
+    rate at which it relaxes against a fluid without inertia; 0 without springs [rad/time]. ``driven``: whether motions
+    or drives are prescribed, so that rates of links and the power of springs may not be zero. ``coordinates``: units of
+    the joints' coordinates by name, that of angles first and always.
     """
 
     linked: BoolArray
@@ -69,7 +69,7 @@ class Joints(Protocol):
         """The first time after this at which rates of links jump; infinite if there is none [time]."""
 
     def links(self, motions: Pose, time: float) -> Links:
-        """C, rates and compliances, where the ``motions`` are there."""
+        """C, rates and compliances, with the ``motions`` at this pose."""
 
     def unloaded(self, motions: Pose) -> LinkLoad:
         """Load of the links before the first step."""
@@ -78,13 +78,13 @@ class Joints(Protocol):
         """The nearest poses at which the joints fit exactly, each motion moved the less the more mass it has."""
 
     def fitting(self, motions: Pose, twist: Twist, time: float) -> Twist:
-        """The ``twist``, N rows, after the impulses of rigid joints that take out of it what they do not allow."""
+        """The ``twist``, N rows, after impulses of the rigid joints that make it satisfy their constraints."""
 
     def over(self, motions: PushedDynamics, start: float) -> MotionDynamics:
         """Dynamics of the motions with their joints from ``start`` on [time]."""
 
     def load(self, links: Links, force: FloatArray, motions: Pose, time: float) -> LinkLoad:
-        """Load of ``links`` with forces (c,) and of springs, where the ``motions`` are there."""
+        """Load of the ``links`` with these forces (c,), and of springs, with the ``motions`` at this pose."""
 
     def with_springs(self, wrench: Wrench, motions: Pose, time: float) -> Wrench:
         """The ``wrench`` on the motions with that of springs, N rows."""
@@ -96,11 +96,11 @@ class Joints(Protocol):
         """Power of prescribed motion against springs [energy/time]."""
 
     def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray) -> list[LinkReading]:
-        """Readings of all joints and then of all ground links; ``bodies``, ``twist``: of the n bodies; ``force`` (c,):
-        of the rows."""
+        """Readings of all joints and then of all ground links, with the n ``bodies`` at this pose and ``twist`` and the
+        forces (c,) of links."""
 
     def following(self, controlled_twist: Callable[[float], FloatArray]) -> Joints:
-        """The same joints where given motions are other ones from now on, (N, d+k) at a time."""
+        """The same joints with other prescribed twists (N, d+k) at a time."""
 
 
 class NoJoints:

@@ -18,7 +18,7 @@ class Kinematics(Protocol):
         """Twist g that relative motion adds, (n, d+k), or () where there is none [length/time | rad/time]."""
 
     def centres(self, bodies: Pose) -> FloatArray:
-        """Centres of mass of the motions (N, d), with the ``bodies`` there [length]."""
+        """Centres of mass of the motions (N, d), with the ``bodies`` at this pose [length]."""
 
     def component_twist(self, motion: Twist) -> Twist:
         """Twists G u + g of the bodies, n rows, by those of the motions, N rows."""
@@ -33,14 +33,16 @@ class Kinematics(Protocol):
         """Rows C G (c, N, d+k) on the motions of rows C (c, n, d+k) on the bodies."""
 
     def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
-        """Whether a body has a prescribed ``twist`` (n,), with the motions ``controlled`` (N,)."""
+        """Whether a body has a prescribed part of its twist (n,), given that ``twist`` and the motions ``controlled``
+        (N,)."""
 
     def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
-        """Accelerations of the bodies (n, d+k) by the ``rate`` of the motions' twists (N, d+k) and that of g."""
+        """Accelerations of the bodies (n, d+k) by the ``rate`` (N, d+k) of the motions' twists, these twists, and the
+        rate of g (n, d+k)."""
 
 
 class EachItsOwn:
-    """Bodies that move each by itself: G = 1, g = 0; arguments are returned unchanged."""
+    """Kinematics of bodies that each are a motion of their own: G = 1, g = 0; arguments are returned unchanged."""
 
     given: FloatArray = np.zeros(())
 

@@ -14,9 +14,10 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, T
 class Motions(Protocol):
     """The N motions of a system, and how they carry its n bodies.
 
-    ``names``: of the mechanisms, the last of the motions. ``carrier`` (n,): the motion of each body. ``controlled``
-    (N,): which motions are given. ``mass`` (N,) of all that a motion carries. ``pose``, ``twist``: of the motions at
-    the start. ``driven_motions`` (N,): in which something moves relatively; ``driven``: whether there is any.
+    ``names``: those of the mechanisms, which are the last of the motions. ``carrier`` (n,): the motion of each body.
+    ``controlled`` (N,): whether a motion's twist is prescribed. ``mass`` (N,): sum over all that a motion carries.
+    ``pose``, ``twist``: those of the motions at the start. ``driven_motions`` (N,): whether a motion's bodies move
+    relatively to each other; ``driven``: whether any do.
     """
 
     names: tuple[str, ...]
@@ -29,13 +30,13 @@ class Motions(Protocol):
     driven: bool
 
     def poses(self, motions: Pose, time: float) -> Pose:
-        """Pose of the bodies, where the ``motions`` are there."""
+        """Pose of the bodies, with the ``motions`` at this pose."""
 
     def kinematics(self, motions: Pose, time: float) -> Kinematics:
-        """G and g, where the ``motions`` are there."""
+        """G and g, with the ``motions`` at this pose."""
 
     def kinematics_between(self, motions: Pose, bodies: Pose, motion: Twist, body: Twist) -> Kinematics:
-        """G and g of motions and bodies at these poses and with these twists."""
+        """G and g, read from the poses of motions and bodies, and from the twists ``motion`` and ``body`` of these."""
 
     def inertia(self, time: float) -> FloatArray:
         """Inertia of all that a motion carries, about its centre of mass and in its frame, (N, k, k) [mass·length²]."""
@@ -69,12 +70,12 @@ class Motions(Protocol):
         controlled_twist: Callable[[float], FloatArray],
     ) -> PushedDynamics:
         """Dynamics of the motions from ``now`` on without a fluid, with a constant ``load`` on the bodies, whose
-        farthest points are ``arms`` (n,) away [length]; ``controlled_twist`` (N, d+k) from a time since the
-        ``start``."""
+        farthest points are ``arms`` (n,) from their centres [length]; ``controlled_twist`` gives the twist (N, d+k) of
+        prescribed motions from a time since the ``start`` [time]."""
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> BodyDynamics:
-        """Dynamics of the bodies on these ``motions`` from ``start`` on [time]; ``load``: that of `dry_dynamics`, None
-        where the motions know all of it."""
+        """Dynamics of the bodies on these ``motions`` from ``start`` on [time]; ``load``: that of `dry_dynamics`, whose
+        torque about the motions' centres may change, None where the motions know all of it."""
 
     def starting_with(self, twist: Twist) -> Motions:
-        """The same bodies with another ``twist`` of the motions at the start."""
+        """The same motions with another ``twist`` at the start."""

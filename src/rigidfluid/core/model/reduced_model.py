@@ -30,8 +30,8 @@ class ReducedModel:
 
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
-    ``velocities`` (c,): their numbers among the components (n, d+k) of all twists. ``asked``: how it was when their
-    bodies were asked. ``shared``: whether far bodies shared questions.
+    ``velocities`` (c,): their numbers among the components (N, d+k) of all motions' twists. ``asked``: conditions when
+    their responses were evaluated. ``shared``: whether far bodies shared right sides in that.
     """
 
     velocities: IntArray
