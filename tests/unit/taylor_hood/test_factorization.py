@@ -177,10 +177,10 @@ def test_renewals_by_wasted_iterations_analyse_once_until_all_is_forgotten(phase
 def test_renewals_need_no_more_memory_each_time(keeps_pattern):
     others = [PATTERN, sparse.csr_array(PATTERN + PATTERN.T)]
     factors, used = None, []
+    gc.collect()
     for seed in range(20):
         pattern = sparse.csr_array(others[0 if keeps_pattern else seed % 2])
         factors = factorise(matrix(seed, pattern), factors)
-        gc.collect()
         used.append(allocated_by_mkl())
     assert used[2:] == used[:2] * 9
 

@@ -9,6 +9,7 @@ from scipy.special import ellipj, ellipkinc
 
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepRejected
@@ -69,7 +70,9 @@ def test_a_thousand_periods_keep_energy_and_momentum():
     body = {"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "density": 1.0, "position": [0.5, 0.5, 0.5]}
     scene = scene_from_dict(dry_tables(body | {"angular_velocity": START.tolist()}, end=1000 * PERIOD, step=PERIOD / 4))
     run = Simulation(scene, None, False)
-    run.stepper.system = replace(run.system, inertia=np.diag(INERTIA)[None])
+    system, inertia = run.system, np.diag(INERTIA)[None]
+    motions = SingleBodies(system.mass, inertia, system.controlled, system.pose, system.twist)
+    run.stepper.system = replace(system, inertia=inertia, motions=motions)
     run.go()
     history, momentum = run.history.bodies, INERTIA * START
     orientation = np.column_stack([history[name] for name in ("qw", "qx", "qy", "qz")])

@@ -37,12 +37,13 @@ def at(run: Simulation, time: float, step: float, previous: float, force: float 
             np.array([[0.0], [5.0 * then**2], [0.0]]),
         )
 
-    zero = np.zeros((3, 1))
+    pushed = Wrench(np.array([[0.0, 0.0], [0.0, force], [0.0, 0.0]]), np.zeros((3, 1)))
     return replace(
         run.state,
         twist=twist(time),
+        motions=replace(run.state.motions, twist=twist(time), contact=pushed),
         past=Past(run.state.pose, twist(time - step), previous),
-        contact_wrench=Wrench(np.array([[0.0, 0.0], [0.0, force], [0.0, 0.0]]), zero),
+        contact_wrench=pushed,
         estimate=ErrorEstimate(7, 3, 0.0, 0.0, SPEED, ENERGY),
         reference=None,
     )
