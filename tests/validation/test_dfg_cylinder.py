@@ -6,6 +6,8 @@ from falling import SCENES
 import rigidfluid
 from rigidfluid.errors import PluginError
 
+pytestmark = pytest.mark.long
+
 # Force 2 F / (ρ Ū² D) with mean inflow Ū = 0.2 and diameter D = 0.1; converged values of John & Matthies 2001.
 FORCE_TO_COEFFICIENT = 2.0 / (0.2**2 * 0.1)
 DRAG, LIFT, PRESSURE_DIFFERENCE = 5.57953523384, 0.010618948146, 0.11752016697

@@ -10,6 +10,8 @@ from falling import SCENES
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 COARSE = ["mesh.size_body=0.0049", "mesh.size=0.04", "mesh.growth=0.2", "time.step=0.01", "time.end=4.2"]
 FORCE_TO_COEFFICIENT = 2.0 / (1.0**2 * 0.1)
 DRAG, AT = 2.950921575, 3.93625

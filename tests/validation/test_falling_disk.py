@@ -9,6 +9,8 @@ from published import GLOWINSKI_2001, HIGHEST_REYNOLDS, KOBLITZ_2017, TERMINAL_S
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 MESHES = [
     pytest.param((0.025, 0.004, 0.02), id="coarse"),
     pytest.param((0.01, 0.001, 0.01), id="fine", marks=pytest.mark.validation),

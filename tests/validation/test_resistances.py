@@ -8,6 +8,8 @@ from two_spheres import drag_across
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 SPEED, GAP = 1e-4, 0.1
 WIDE = ["mesh.size_body=0.4"]
 PAIR = [f"body.{number}.position=[0.0, 0.0, {sign * (1.0 + 0.5 * GAP)}]" for number, sign in enumerate((-1, 1))]

@@ -6,6 +6,8 @@ from falling import SCENES
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 LATE = ("mesh.size_body=2e-4", "time.step=8e-5", "time.end=0.002", "output.every=0.01")
 """From half the way to the throat, on the paper's paths, but for one disk that is d/50 farther out."""
 INNER, OUTER = 0.00115, 0.001167

@@ -9,6 +9,8 @@ import pytest
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 VISCOSITY, SPEED, FAR = 0.7, 0.3, 60.0
 
 

@@ -11,6 +11,8 @@ import rigidfluid
 from rigidfluid.reports.coefficients import figures, reference
 from rigidfluid.reports.results import read_results
 
+pytestmark = pytest.mark.long
+
 SCENE = Path(__file__).parents[2] / "scenes" / "vortex_induced.toml"
 
 

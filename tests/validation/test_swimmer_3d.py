@@ -8,6 +8,8 @@ from spheres_on_a_line import cycle, drag, velocities
 import rigidfluid
 from rigidfluid.core.run.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 ARM, STROKE = 10.0, 4.0
 
 

@@ -9,6 +9,8 @@ from vortex_induced import PUBLISHED, growth, measured
 
 import rigidfluid
 
+pytestmark = pytest.mark.long
+
 COARSE = ["mesh.size_body=0.1", "mesh.growth=0.2", "mesh.refine.0.size=0.4", "time.step=0.1", "time.end=80.0"]
 
 

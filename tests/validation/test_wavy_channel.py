@@ -10,6 +10,8 @@ import pytest
 import rigidfluid
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 
+pytestmark = pytest.mark.long
+
 SCENE = Path(__file__).parents[2] / "scenes" / "wavy_channel.toml"
 
 

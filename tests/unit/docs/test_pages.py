@@ -25,6 +25,8 @@ from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
 
+pytestmark = pytest.mark.long
+
 ROOT = SCENES.parent
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 Install = Callable[..., Path]

@@ -20,6 +20,8 @@ from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Film, Loads, Motion
 from rigidfluid.forces.normal import NormalLaw
 
+pytestmark = pytest.mark.long
+
 DRY, DECAY, RADIUS, VISCOSITY = 0.97, 35.0, 0.1, 0.1
 EDGE = FILM_EDGE * RADIUS
 LOADS = unstacked(np.array([2.0]), np.zeros(1), np.zeros(1), 1e-3)

@@ -16,6 +16,8 @@ from rigidfluid.core.model.state import ErrorEstimate, State
 from rigidfluid.core.run.impacts import HALVINGS, TOLERATED, is_unresolved, level_after_impact
 from rigidfluid.core.run.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 STEP = 4e-3
 PUT_IN = 2.0
 

@@ -65,6 +65,7 @@ def test_round_and_planar_bodies_turn_evenly():
     np.testing.assert_allclose(disk, [[31.0]])
 
 
+@pytest.mark.long
 def test_a_thousand_periods_keep_energy_and_momentum():
     """Through the loop and its differences of momentum, at four steps a period."""
     body = {"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "density": 1.0, "position": [0.5, 0.5, 0.5]}

@@ -386,6 +386,7 @@ def test_a_contact_in_the_fluid_turns_the_whole(stepping):
     assert account.lost < 0.1
 
 
+@pytest.mark.long
 def test_three_dimensions_in_a_fluid():
     table = pair("hammer", 3, radius=0.1, length=0.4, density=2.0, ratio=1.5, angular_velocity=[1.0, 0.5, 2.0])
     it = run(wet(table, gravity=[0.0, 0.0, -9.81], end=0.02, step=0.01, size_body=0.08))

@@ -8,6 +8,8 @@ from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.output.energy_account import energy_account
 
+pytestmark = pytest.mark.long
+
 
 def chain(name, dimension, position, **keys):
     """A tail and a head turn on hinges, about different axes in 3D, and the head moves to and fro besides."""

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from extreme_wet import floor_hit
 
 import rigidfluid
 from rigidfluid.core.output.history import History
+
+pytestmark = pytest.mark.long
 
 SPIN = 1e4
 

@@ -26,6 +26,8 @@ from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.mesh import MeshDomain, MeshOptions
 
+pytestmark = pytest.mark.long
+
 NANO, GIGA, MICRO = Units(length=1e-9), Units(length=1e9), Units(length=1e-6, mass=1e-3, time=1e-3)
 BINARY = Units(length=2.0**-30, mass=2.0**-10, time=2.0**-5)
 NAMES = {NANO: "1e-9", GIGA: "1e9", MICRO: "micrometres", BINARY: "powers of two"}

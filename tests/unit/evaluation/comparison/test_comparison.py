@@ -32,6 +32,8 @@ from rigidfluid.evaluation.comparison.tables import meaning
 from rigidfluid.reports import report
 from rigidfluid.reports.results import Results
 
+pytestmark = pytest.mark.long
+
 BOUNCE, FALL = SCENES / "dry_bounce.toml", SCENES / "falling_disk.toml"
 SHORT = ("time.end=4e-5", "time.step=1e-5", "output.every=1e-5")
 PUSH = 0.25

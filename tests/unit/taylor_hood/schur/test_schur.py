@@ -111,6 +111,7 @@ def test_blocks_know_slip_on_curved_walls_of_a_plane_domain(iterations):
     assert max(iterations) < 60
 
 
+@pytest.mark.long
 def test_iterations_depend_neither_on_the_cells_nor_on_the_step(iterations):
     most = []
     for size in (0.25, 0.125):
