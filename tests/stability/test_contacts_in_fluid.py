@@ -23,7 +23,7 @@ from fluid_contacts import (
 )
 
 import rigidfluid
-from rigidfluid.core.contact.proximity import arms, travel
+from rigidfluid.core.contact.proximity import travel
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
@@ -195,7 +195,7 @@ def test_turning_alone_brings_surfaces_near():
     start = system.pose
     turned = Pose(start.position, start.orientation + 0.3)
     np.testing.assert_allclose(travel(system, start, turned), 0.12 * 0.3)
-    np.testing.assert_array_equal(arms(system), 0.12)
+    np.testing.assert_array_equal(system.arms, 0.12)
     disk = build_system(scenes.dropped(MILLISECOND))
     spun = Pose(disk.pose.position, disk.pose.orientation + 0.3)
     np.testing.assert_array_equal(travel(disk, disk.pose, spun), 0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.contact.proximity import arms, detect, interacting
+from rigidfluid.core.contact.proximity import detect, interacting
 from rigidfluid.core.contact.substep import relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.motions import body_accelerations
@@ -27,7 +27,7 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
         return select(contacts, np.zeros(len(contacts), dtype=bool))
     speed = np.linalg.norm(relative_velocity(contacts, state.pose, state.twist), axis=1)
     rate, d = body_accelerations(system, state, start, size), system.dimension
-    acceleration = np.linalg.norm(rate[:, :d], axis=1) + arms(system) * np.linalg.norm(rate[:, d:], axis=1)
+    acceleration = np.linalg.norm(rate[:, :d], axis=1) + system.arms * np.linalg.norm(rate[:, d:], axis=1)
     acceleration = np.append(acceleration, 0.0)  # of walls
     both = acceleration[contacts.body_a] + acceleration[np.minimum(contacts.body_b, len(acceleration) - 1)]
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
@@ -94,12 +94,12 @@ def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: C
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
     straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
-    inverse_mass = straight + arms(system) ** 2 * turning
+    inverse_mass = straight + system.arms ** 2 * turning
     return float(np.sqrt(2.0 * np.max(stored[: len(inverse_mass)] * inverse_mass)))
 
 
 def fastest_speed(system: System, movement: BodyDynamics, size: float) -> float:
     """Bound of the speed of any surface point in a step of this ``size`` [time], contacts apart [length/time]."""
     twist = movement.twist
-    turning = arms(system) * np.linalg.norm(twist.angular_velocity, axis=1)
+    turning = system.arms * np.linalg.norm(twist.angular_velocity, axis=1)
     return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.max_acceleration(size)))

@@ -91,10 +91,4 @@ def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
 def travel(system: System, start: Pose, end: Pose) -> FloatArray:
     """Greatest displacement of any surface point of each body between two poses, |Δx| + R Δθ (n,) [length]."""
     moved = np.linalg.norm(end.position - start.position, axis=1)
-    return np.asarray(moved + arms(system) * angle_between(start.orientation, end.orientation))
-
-
-def arms(system: System) -> FloatArray:
-    """Distance of the farthest surface point of each body from its centre of mass, zero for balls, which turn in their
-    place (n,) [length]."""
-    return np.array([0.0 if body.radius is not None else body.bounding_radius for body in system.bodies])
+    return np.asarray(moved + system.arms * angle_between(start.orientation, end.orientation))

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
 from rigidfluid.core.contact.contact_load import contact_load, damping_loss
 from rigidfluid.core.contact.look_ahead import Sight
-from rigidfluid.core.contact.proximity import arms, refuse_overlap
+from rigidfluid.core.contact.proximity import refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.dynamics import BodyDynamics
@@ -74,7 +74,7 @@ class SubstepPath:
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
-                wider = sight.widened(system, movement, size)
+                wider = sight.widened(system, movement, size) if count else sight
                 if wider is not sight:
                     sight, contacts = wider, wider.contacts_at(movement.pose)
                 planned = min(left, sight.span)
@@ -117,9 +117,11 @@ class SubstepPath:
 
 def _surface_reach(system: System) -> Reach:
     """Reach of the bodies' surface points: balls turn in their place, but not as components of a mechanism."""
+    if not system.motions.names:
+        return Reach(system.arms, system.leverage)
     radii = np.array([body.bounding_radius for body in system.bodies])
     alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
-    return Reach(np.where(alone, arms(system), radii), system.leverage)
+    return Reach(np.where(alone, system.arms, radii), system.leverage)
 
 
 def _refuse_overlaps(system: System, contacts: Contacts) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.proximity import arms, detect, interacting, travel
+from rigidfluid.core.contact.proximity import detect, interacting, travel
 from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
@@ -47,7 +47,7 @@ class TrackedPairs:
     def missed(self, law: ForceLaw, pose: Pose) -> float:
         """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
         untracked."""
-        if _all_different(self._pairs) and not arms(self._system).any():
+        if _all_different(self._pairs) and not self._system.arms.any():
             return 0.0  # two balls have one contact, and others are refused
         return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.extrapolate(pose)).sum())
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.implicit_path import implicit_free
 from rigidfluid.core.contact.look_ahead import look_ahead
-from rigidfluid.core.contact.proximity import arms
 from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.mechanics.motions import body_load
 from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
@@ -71,4 +70,4 @@ class DryScheme:
         def controlled_twist(elapsed: float) -> FloatArray:
             return system.controlled_twist(start + elapsed)
 
-        return system.motions.dry_dynamics(now, body_load(system, state), arms(system), start, controlled_twist)
+        return system.motions.dry_dynamics(now, body_load(system, state), system.arms, start, controlled_twist)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from rigidfluid.core.mechanics.motions import kinematics_now
@@ -10,10 +12,18 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
 
 
-def actuator_work(system: System, state: State, end: State, kinematics: Kinematics) -> float:
+class BodiesAfter(NamedTuple):
+    """Pose and twist of the bodies after a step of this ``size`` [time]."""
+
+    pose: Pose
+    twist: Twist
+    size: float
+
+
+def actuator_work(system: System, state: State, end: BodiesAfter, kinematics: Kinematics) -> float:
     """Work ∫ g · (dP - W dt) over a step by the mean of g, P the bodies' momenta, W weight and applied wrenches
     [energy].
 
@@ -23,11 +33,10 @@ def actuator_work(system: System, state: State, end: State, kinematics: Kinemati
     """
     if not system.motions.driven:
         return 0.0
-    size = end.past_step or 0.0
     before = kinematics_now(system, state)
     gained: FloatArray = momentum(system.mass, system.inertia, end.pose, end.twist)
     gained = gained - momentum(system.mass, system.inertia, state.pose, state.twist)
-    gained[:, : system.dimension] -= size * system.weight
+    gained[:, : system.dimension] -= end.size * system.weight
     if state.applied is not None:
-        gained -= size * flat(state.applied)
+        gained -= end.size * flat(state.applied)
     return 0.5 * float(np.sum((before.given + kinematics.given) * gained))

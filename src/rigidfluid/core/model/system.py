@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -86,7 +87,13 @@ class System:
         """Whether there is a fluid around the bodies."""
         return self.fluid is not None
 
-    @property
+    @cached_property
+    def arms(self) -> FloatArray:
+        """Distance of the farthest surface point of each body from its centre of mass, zero for balls, which turn in
+        their place (n,) [length]."""
+        return np.array([0.0 if body.radius is not None else body.bounding_radius for body in self.bodies])
+
+    @cached_property
     def solved_joints(self) -> Joints:
         """Joints that the fluid's solution holds: without a fluid none, as the bodies' path holds them."""
         return self.joints if self.has_fluid else NoJoints(len(self.motions.mass))

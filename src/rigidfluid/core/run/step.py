@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.coupling.scheme import Scheme
-from rigidfluid.core.mechanics.actuators import actuator_work
+from rigidfluid.core.mechanics.actuators import BodiesAfter, actuator_work
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.kinematics import given_twist
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
@@ -70,16 +70,18 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
     )
     with tools.watch("advance"), system.backend.ranks.raise_on_all():
         step = tools.scheme.prepare(step_to(system, state, end, place.mesh), state, path)
-        step = replace(step, provisional=provisional)
+        step = replace(step, provisional=True) if provisional else step
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))
+    twist = step.kinematics.component_twist(advance.twist)
+    after = BodiesAfter(path.pose, twist, end.size)
     candidate = replace(
         state,
         tick=state.tick + clock.ticks(level),
         count=state.count + 1,
         level=level,
         pose=path.pose,
-        twist=step.kinematics.component_twist(advance.twist),
+        twist=twist,
         past=Past(state.motions.pose, state.motions.twist, end.size, _applied(system, state, step)),
         mesh=place.mesh,
         fluid=advance.fluid,
@@ -90,9 +92,10 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         contact_wrench=_mean(path.impulse, end.size),
         motions=_motions(path, step, advance, end.size),
         link=_link_load(system, path, step, advance),
+        ledger=_ledger_after(system, state, path, _Solved(step, advance, after, place.contacts)),
         estimate=None,
     )
-    return replace(candidate, ledger=_ledger_after(system, state, candidate, path, (step, advance))), step
+    return candidate, step
 
 
 def _placed(tools: Tools, state: State, pose: Pose) -> _Place:
@@ -106,23 +109,29 @@ def _placed(tools: Tools, state: State, pose: Pose) -> _Place:
     return _Place(mesh, contacts, gaps)
 
 
-def _ledger_after(
-    system: System, state: State, candidate: State, path: BodyStep, solved: tuple[Step, Advance]
-) -> Ledger:
-    """Ledger of the candidate, by the path and the solution that led there."""
-    step, advance = solved
-    size = candidate.past_step or 0.0
-    ledger = _ledger_at_start(system, state, advance, step, step.time - size)
+class _Solved(NamedTuple):
+    """A step and its solution, the bodies ``after`` it and their contacts."""
+
+    step: Step
+    advance: Advance
+    after: BodiesAfter
+    contacts: Contacts
+
+
+def _ledger_after(system: System, state: State, path: BodyStep, solved: _Solved) -> Ledger:
+    """Ledger after the step along a ``path``."""
+    step, advance, after, contacts = solved
+    ledger = _ledger_at_start(system, state, advance, step, step.time - after.size)
     power = _power(system, advance, step, path.motions.pose)
     if system.quasi_steady:
-        midway = _dissipation_midway(state, ledger.power, advance, candidate.twist, power)
+        midway = _dissipation_midway(state, ledger.power, advance, after.twist, power)
         power = replace(power, dissipation_midway=midway)
     return ledger.after(
-        size,
+        after.size,
         power,
-        _work(system, state, path, actuator_work(system, state, candidate, step.kinematics)),
-        advance.kinetic_energy + bodies_energy(system, candidate.pose, candidate.twist),
-        stored_energy(system, candidate.contacts, path.motions.pose, step.time),
+        _work(system, state, path, actuator_work(system, state, after, step.kinematics)),
+        advance.kinetic_energy + bodies_energy(system, after.pose, after.twist),
+        stored_energy(system, contacts, path.motions.pose, step.time),
     )
 
 
