@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from extreme_cases import CASES, ENDS, Case, Demand, Finding, findings, held_against, surprises
 from extreme_scenes import three_disks
@@ -46,11 +44,8 @@ def test_a_mark_of_failure_is_for_what_fails_and_gets_no_worse() -> None:
     assert _surprises(marked, 0.04) == ["energy created at most 0.03 is known; found: 0.04"]
 
 
-def test_a_case_that_stops_does_not_fail_in_another_way() -> None:
-    stopped, other = Finding(ENDS, ENDS, "stops: too much", False), "too little is known; found: stops: too much"
-    assert surprises(_case(KNOWN), [stopped]) != []
-    assert surprises(replace(_case(), fails_by="too little"), [stopped]) == [other]
-    assert surprises(replace(_case(), fails_by="too much"), [replace(stopped, known=True)]) == []
+def test_a_case_that_stops_is_a_surprise() -> None:
+    assert surprises(_case(KNOWN), [Finding(ENDS, ENDS, "stops: too much", False)]) != []
 
 
 def test_what_viscosity_took_hides_nothing() -> None:

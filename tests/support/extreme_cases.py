@@ -66,7 +66,6 @@ class Case:
 
     Some figures are known not to be as demanded; ``fails`` says how far off they may be, so that none gets worse
     unseen.
-    It is known to stop where it should not, if ``fails_by`` is in the error's message.
     """
 
     name: str
@@ -75,7 +74,6 @@ class Case:
     heavy: bool = False
     stops: str = ""
     fails: tuple[Demand, ...] = ()
-    fails_by: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +106,7 @@ def findings(case: Case) -> list[Finding]:
             run.go()
         except (MeshError, StepError) as error:
             expected = bool(case.stops) and case.stops in error.remedy
-            known = bool(case.fails_by) and case.fails_by in str(error)
-            return [Finding(ENDS, _demanded_end(case), f"stops: {error}", expected, known)]
+            return [Finding(ENDS, _demanded_end(case), f"stops: {error}", expected)]
         run.finish("complete")
     if case.stops:
         return [Finding(ENDS, _demanded_end(case), ENDS, False)]
@@ -128,14 +125,13 @@ def surprises(case: Case, found: list[Finding]) -> list[str]:
     wrongly takes for one."""
     failed = {finding.figure: finding for finding in found if not finding.passed}
     limits = {limit.figure: str(limit) for limit in case.fails}
-    marked = [*limits, *([ENDS] if case.fails_by else [])]
-    new = [f"{f.demanded}; found: {f.found}" for figure, f in failed.items() if figure not in marked]
+    new = [f"{f.demanded}; found: {f.found}" for figure, f in failed.items() if figure not in limits]
     worse = [
-        f"{limits.get(figure, case.fails_by)} is known; found: {f.found}"
+        f"{limits[figure]} is known; found: {f.found}"
         for figure, f in failed.items()
-        if figure in marked and not f.known
+        if figure in limits and not f.known
     ]
-    mended = [f"{figure}: holds now, take it out of what fails" for figure in marked if figure not in failed]
+    mended = [f"{figure}: holds now, take it out of what fails" for figure in limits if figure not in failed]
     return new + worse + mended
 
 
