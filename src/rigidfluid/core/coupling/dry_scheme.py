@@ -13,7 +13,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Step
+from rigidfluid.core.model.types import FloatArray, Step, Wrench
 
 
 class DryScheme:
@@ -55,19 +55,19 @@ class DryScheme:
         return candidate, True
 
     def bodies_now(self, state: State, time: float) -> BodyDynamics:
-        return self._system.motions.carry(self._motions(state, time), time)
+        return self._system.motions.carry(self._motions(state, time, body_load(self._system, state)), time)
 
     def _dynamics(self, state: State, start: float) -> BodyDynamics:
         """Dynamics of the bodies, on motions with their joints."""
-        system = self._system
-        linked = system.joints.over(self._motions(state, start), start)
-        return system.motions.carry(linked, start, body_load(system, state))
+        system, load = self._system, body_load(self._system, state)
+        linked = system.joints.over(self._motions(state, start, load), start)
+        return system.motions.carry(linked, start, load)
 
-    def _motions(self, state: State, start: float) -> PushedDynamics:
-        """Dynamics of the motions, without joints."""
+    def _motions(self, state: State, start: float, load: Wrench) -> PushedDynamics:
+        """Dynamics of the motions, with a constant ``load`` on the bodies and without joints."""
         system, now = self._system, state.motions
 
         def controlled_twist(elapsed: float) -> FloatArray:
             return system.controlled_twist(start + elapsed)
 
-        return system.motions.dry_dynamics(now, body_load(system, state), system.arms, start, controlled_twist)
+        return system.motions.dry_dynamics(now, load, system.arms, start, controlled_twist)

@@ -14,13 +14,18 @@ from rigidfluid.core.model.types import BoolArray, FloatArray, Pose, Twist, Wren
 
 def body_load(system: System, state: State) -> Wrench:
     """Weight and applied wrenches on the bodies, n rows."""
-    weight = Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
+    weight = _body_weight(system)
     return weight if state.applied is None else wrench_sum(weight, state.applied)
 
 
 def weights(system: System, kinematics: Kinematics) -> Wrench:
     """Weight of all that each motion carries, and its torque about the centre of mass, N rows."""
-    return kinematics.motion_wrench(Wrench(system.weight, np.zeros_like(system.inertia[:, 0])))
+    return kinematics.motion_wrench(_body_weight(system))
+
+
+def _body_weight(system: System) -> Wrench:
+    """Weight of the bodies, without a torque about their centres, n rows."""
+    return Wrench(system.weight, np.zeros_like(system.inertia[:, 0]))
 
 
 def applied_wrench(system: System, state: State, kinematics: Kinematics) -> Wrench:
