@@ -24,10 +24,10 @@ import fluid_contacts  # noqa: E402
 import numpy as np  # noqa: E402
 from written_page import write_page  # noqa: E402
 
+from rigidfluid.core.case.load import load_scene, scene_from_dict  # noqa: E402
 from rigidfluid.core.run.process import one_openblas_thread  # noqa: E402
 from rigidfluid.core.run.simulation import Simulation  # noqa: E402
 from rigidfluid.core.scene.scene import Scene  # noqa: E402
-from rigidfluid.core.setup.load import load_scene, scene_from_dict  # noqa: E402
 
 HEAD = ("scene", "unknowns", "contacts", "free step [s]", "contact step [s]", "ratio", "steps", "re-meshes")
 PITCH = 0.066

@@ -12,7 +12,7 @@ import numpy as np
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions
 
 RANGE = 0.03

@@ -1,6 +1,6 @@
 """One arrangement of `parallel.py` on the ranks that share this process' run.
 
-    python benchmarks/parallel_child.py DIMENSION BODIES COARSENESS FILE
+python benchmarks/parallel_child.py DIMENSION BODIES COARSENESS FILE
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from collisions import count_contacts
 from grids import RANGE, balls_in_a_box
 from mesh_sizes import mesh_sizes
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.run.process import Launch, one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 STEPS = 10
 """Number of steps, the same as in the paper."""

@@ -21,9 +21,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from settling_sphere import MESHES, SCENE
 
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene
 
 SUMS = ("VecDot", "VecTDot", "VecMDot", "VecNorm")
 EXCHANGES = ("VecScatterBegin", "SFBcastBegin", "SFReduceBegin")

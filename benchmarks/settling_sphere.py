@@ -22,9 +22,9 @@ from pathlib import Path
 import numpy as np
 from written_page import write_page
 
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 
 STORE = Path(__file__).with_suffix(".json")

@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.mesh.coarsening import relative_sizes
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.core.setup.parts import known_parts
 
 DENSE = ["body.0.density=3.0", "time.step=0.0025", "time.end=7.8"]
 COARSE = ["mesh.size_body=0.08", "mesh.size=0.5"]
@@ -63,7 +63,7 @@ def cell_sizes(run: Run) -> np.ndarray:
     """At each output, of all cells the mean factor off the wanted size and the coarsest relative size, (outputs, 2)."""
     mesh, bodies = run.scene.mesh, run.history.bodies
     assert mesh is not None
-    sizes, parts, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), known_parts(run.scene), []
+    sizes, parts, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), model_of(run.scene), []
     for time, path in read_pvd(run.folder / "fields.pvd"):
         now, fields = int(np.argmin(np.abs(bodies["time"] - time))), read_vtu(path)
         pose = Pose(np.array([[bodies["x"][now], bodies["y"][now]]]), np.array([[bodies["angle"][now]]]))

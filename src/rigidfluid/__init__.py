@@ -6,9 +6,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rigidfluid.core.case.load import load_scene, scene_from_dict
     from rigidfluid.core.run.run import run
     from rigidfluid.core.scene.scene import Scene
-    from rigidfluid.core.setup.load import load_scene, scene_from_dict
 
 __version__ = "0.1.0"
 __all__ = ["Scene", "__version__", "load_scene", "run", "scene_from_dict"]
@@ -16,8 +16,8 @@ __all__ = ["Scene", "__version__", "load_scene", "run", "scene_from_dict"]
 _HOMES = {
     "run": "rigidfluid.core.run.run",
     "Scene": "rigidfluid.core.scene.scene",
-    "load_scene": "rigidfluid.core.setup.load",
-    "scene_from_dict": "rigidfluid.core.setup.load",
+    "load_scene": "rigidfluid.core.case.load",
+    "scene_from_dict": "rigidfluid.core.case.load",
 }
 
 

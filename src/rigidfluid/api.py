@@ -14,6 +14,9 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.case.load import load_scene, scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.joints.along_coordinate import CoordinateDamper, CoordinateSpring, DrivenCoordinate
 from rigidfluid.core.joints.constraints import (
     Constraint,
@@ -57,6 +60,7 @@ from rigidfluid.core.model.interfaces import (
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.piece import Piece
+from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
@@ -81,10 +85,22 @@ from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, check_length, tables_by_name
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke
-from rigidfluid.core.scene.scene import Positive, Scene, StrokeTable
+from rigidfluid.core.scene.scene import (
+    MeshTable,
+    OutputTable,
+    Positive,
+    PrescribedTable,
+    Scene,
+    SpringTable,
+    StrokeTable,
+    TimeTable,
+    WindowTable,
+)
 from rigidfluid.core.scene.vectors import Vector
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import load_scene, scene_from_dict
+from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
+from rigidfluid.core.setup.model import ConditionMaker, ContactStepping, Model
+from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.obstacles import Obstacles
 from rigidfluid.errors import (
@@ -143,7 +159,10 @@ __all__ = [
     "BoxOptions",
     "Component",
     "ComponentTable",
+    "ConditionMaker",
     "Constraint",
+    "ContactLaw",
+    "ContactStepping",
     "Contacts",
     "Coordinate",
     "CoordinateDamper",
@@ -160,12 +179,14 @@ __all__ = [
     "Fields",
     "FloatArray",
     "Flow",
+    "Fluid",
     "FluidBackend",
     "FluidDomain",
     "FluidProblem",
     "FluidState",
     "ForceLaw",
     "IntArray",
+    "JoinedBodies",
     "Joint",
     "Kinematics",
     "Loads",
@@ -173,17 +194,22 @@ __all__ = [
     "Mechanism",
     "Mesh",
     "MeshError",
+    "MeshTable",
+    "Model",
     "Motion",
     "MovingComponents",
     "NestedBodyTable",
+    "NoFluid",
     "NoSlip",
     "Obstacles",
     "OnAxis",
     "OutputError",
+    "OutputTable",
     "Part",
     "PartOptions",
     "Periodic",
     "Piece",
+    "PlacedMechanism",
     "PlacedPair",
     "Plane",
     "PluginError",
@@ -194,9 +220,11 @@ __all__ = [
     "Pose",
     "Positive",
     "PrescribedPressure",
+    "PrescribedTable",
     "PrescribedVelocity",
     "Registry",
     "Response",
+    "RigidBody",
     "RigidDisplacement",
     "RigidfluidError",
     "Rotation",
@@ -206,6 +234,7 @@ __all__ = [
     "SamePoint",
     "Scene",
     "SceneError",
+    "Selected",
     "Simulation",
     "SizeField",
     "Slip",
@@ -215,6 +244,7 @@ __all__ = [
     "Spring",
     "SpringDashpotLaw",
     "SpringDashpotOptions",
+    "SpringTable",
     "Step",
     "StepError",
     "StepRejected",
@@ -223,10 +253,12 @@ __all__ = [
     "StrokedMechanism",
     "Surface",
     "System",
+    "TimeTable",
     "Translation",
     "Twist",
     "Vector",
     "Wall",
+    "WindowTable",
     "Wrench",
     "axes_along",
     "build_components",
@@ -239,6 +271,7 @@ __all__ = [
     "initial_pose",
     "load_scene",
     "missing_packages",
+    "model_of",
     "require_plane",
     "rotation_matrices",
     "run",

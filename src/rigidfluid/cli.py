@@ -141,8 +141,8 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
     """Simulate a scene and write the results."""
     with _reported("The same command with --resume goes on from the last checkpoint."):
         with no_collection():
+            from rigidfluid.core.case.load import load_scene
             from rigidfluid.core.run.run import run as simulate
-            from rigidfluid.core.setup.load import load_scene
 
             loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
@@ -160,7 +160,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
     """Say what a scene switches on and off, and whether its contacts can hold; exit code 1 if they cannot."""
     with _reported():
         from rigidfluid.checks import check as ask
-        from rigidfluid.core.setup.load import load_scene
+        from rigidfluid.core.case.load import load_scene
 
         report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
@@ -177,7 +177,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
 def insert(scene: SceneFile, assignments: Assignments = None, out: MeshFolder = None) -> None:
     """Make a scene's first mesh, write it for other programs, and say how well the bodies came into it."""
     with _reported():
-        from rigidfluid.core.setup.load import load_scene
+        from rigidfluid.core.case.load import load_scene
         from rigidfluid.evaluation.insertion import insert as make_mesh
 
         loaded = load_scene(scene, assignments or ())
@@ -279,7 +279,7 @@ def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> N
 def schema() -> None:
     """Print the JSON Schema of scene files, with the keys of every installed part."""
     with _reported():
-        from rigidfluid.core.setup.schema import json_schema
+        from rigidfluid.core.case.schema import json_schema
 
         _print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 

@@ -5,7 +5,7 @@ import pytest
 from scenes import wet_tables
 
 import rigidfluid
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.case.load import scene_from_dict
 
 pytestmark = pytest.mark.long
 

@@ -23,13 +23,13 @@ from fluid_contacts import (
 )
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.proximity import travel
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
 

@@ -10,9 +10,9 @@ import pytest
 from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
 from scenes import wet_tables
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 
 pytestmark = pytest.mark.long
 

@@ -10,8 +10,8 @@ import pytest
 from falling import SCENES
 
 import rigidfluid
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.output.checkpoint import read_checkpoint
-from rigidfluid.core.setup.load import load_scene
 
 pytestmark = pytest.mark.long
 

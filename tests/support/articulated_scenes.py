@@ -1,6 +1,6 @@
 """Scenes of a mechanism with a head, a trunk and a tail."""
 
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.case.load import scene_from_dict
 
 BALL = {"type": "sphere", "radius": 0.05, "density": 1.0}
 WAG = {"moves": ["tail"], "about": [0.6, 0.0], "smooth": [[0.0, 0.0], [0.1, 0.5], [0.3, -0.5], [0.4, 0.0]]}

@@ -105,7 +105,7 @@ def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
     """Steady Stokes flow round a disk that turns with the angular velocity ``inner`` in a round wall that turns with
     ``outer``."""
 
-    def turning(_time: float, at: FloatArray) -> FloatArray:
+    def turning(at: FloatArray) -> FloatArray:
         return outer * np.column_stack([-at[:, 1], at[:, 0]])
 
     wall = NoSlip(1, "outer", None, turning)

@@ -14,7 +14,7 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 
 def ball(position: Sequence[float], velocity: Sequence[float], **keys: Any) -> dict[str, Any]:

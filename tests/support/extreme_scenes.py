@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from dry_scenes import ball, dry_scene
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 Table = dict[str, Any]
 

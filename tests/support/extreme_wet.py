@@ -8,8 +8,8 @@ import fluid_contacts as contacts
 from extreme_scenes import ellipsoid, wet, wet_hit
 from fluid_contacts import Stepping, Table
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 
 def floor_hit(

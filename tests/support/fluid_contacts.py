@@ -11,9 +11,9 @@ from dry_scenes import ball
 from extreme_scenes import dashpot, driven, ellipsoid, law, wet, wet_hit
 from touching import contact as one_contact
 
+from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.output.history import History
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 Table = dict[str, Any]

@@ -26,7 +26,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis
 
 SAG = {2: 1.0 / 8.0, 3: 1.0 / 6.0}

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 Table = dict[str, Any]
 

@@ -13,7 +13,7 @@ from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 
 STEPS, EVERY = 3, 2
 

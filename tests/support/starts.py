@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 DISK: dict[str, Any] = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [0.7, 0.52]}
 INFLOW = [

@@ -26,9 +26,9 @@ from fluid_contacts import (
 )
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.history import History
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError
 
 COARSE = {"size": 0.2, "size_body": 0.06}

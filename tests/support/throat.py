@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 SLIPPERY = [
     {"on": "all", "type": "slip"},

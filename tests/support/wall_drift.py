@@ -15,7 +15,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 
 RADIUS = 3.125

@@ -23,7 +23,8 @@ BELOW = {
     "contact": "mechanics model",
     "coupling": "contact mechanics model",
     "setup": "contact mesh joints mechanics nested scene model",
-    "run": "setup mesh coupling contact output mechanics nested scene model",
+    "case": "setup contact mesh joints mechanics nested scene model",
+    "run": "case setup mesh coupling contact output mechanics nested scene model",
 }
 
 PARTS = {

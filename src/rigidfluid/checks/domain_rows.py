@@ -9,8 +9,7 @@ import numpy as np
 from rigidfluid.checks.finding import figure
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.boundary_tables import placed_tables
+from rigidfluid.core.setup.model import Model
 
 
 @dataclass(frozen=True)
@@ -37,12 +36,13 @@ class DomainRow:
     remarks: tuple[str, ...]
 
 
-def domain_row(scene: Scene, domain: Domain) -> DomainRow:
-    """Description of a scene's domain."""
+def domain_row(model: Model) -> DomainRow:
+    """Description of a model's domain."""
+    domain = model.domain
     lower, upper = (tuple(corner.tolist()) for corner in domain.extent)
     surfaces = tuple(
-        SurfaceRow(place.piece.name, _shape(place.piece.shape, domain), place.piece.area, table.type)
-        for table, place in placed_tables(scene, domain)
+        SurfaceRow(piece.name, _shape(piece.shape, domain), piece.area, condition.type)
+        for piece, condition in zip(domain.pieces, model.conditions, strict=True)
     )
     return DomainRow(
         domain.name, getattr(domain.options, "file", None), domain.volume, lower, upper, surfaces, domain.remarks

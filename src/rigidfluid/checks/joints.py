@@ -15,9 +15,8 @@ from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.joints import joints_of
-from rigidfluid.core.setup.parts import Parts
+from rigidfluid.core.setup.joints import placed_joints
+from rigidfluid.core.setup.model import Model
 
 QUESTION = "joints"
 
@@ -34,7 +33,7 @@ _DRIVE_SAMPLES = 400
 """Times at which a drive is evaluated for its range."""
 
 
-def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
+def joint_findings(model: Model, system: System) -> Iterator[Finding]:
     """Count freedoms, compare springs with the step, and move joints of one coordinate between two bodies until these
     touch.
 
@@ -43,30 +42,29 @@ def joint_findings(parts: Parts, system: System) -> Iterator[Finding]:
     """
     if not system.joints.linked.any():
         return
-    scene = parts.scene
-    yield _freedom_finding(scene, system)
+    yield _freedom_finding(len(model.joints), system)
     if system.joints.frequency > 0.0:
-        yield _spring_finding(scene, system)
-    for joint in joints_of(scene, system.pose):
+        yield _spring_finding(model.time.step, system)
+    for joint in placed_joints(model, system.pose):
         if joint.kind.coordinate is not None and joint.second is not None:
-            yield _clearance_finding(parts, system, joint, joint.second)
+            yield _clearance_finding(model, system, joint, joint.second)
 
 
-def _freedom_finding(scene: Scene, system: System) -> Finding:
+def _freedom_finding(joints: int, system: System) -> Finding:
     """Count the velocities of free motions, and those that rigid links leave."""
     links = system.joints.links(system.motions.pose, 0.0)
     width = links.rows.shape[2]
     free = width * int(np.count_nonzero(~system.motions.controlled))
     held = int(np.count_nonzero(links.compliance == 0.0))
-    found = {"joints": len(scene.joint), "velocities": free, "held": held, "remaining": free - held}
+    found = {"joints": joints, "velocities": free, "held": held, "remaining": free - held}
     text = f"joints and held directions take {held} of the {free} velocities of free motions; {free - held} are left"
     return Finding("note", QUESTION, (), text, found=found)
 
 
-def _spring_finding(scene: Scene, system: System) -> Finding:
+def _spring_finding(step: float, system: System) -> Finding:
     """Compare the frequency of the stiffest spring with the step; the frequency with added mass is a guess by the sums
     of masses over all linked bodies."""
-    frequency, step = system.joints.frequency, scene.time.step
+    frequency = system.joints.frequency
     linked = system.joints.linked[system.motions.carrier]
     added = np.trace(system.added_mass, axis1=1, axis2=2)[linked].sum() / system.dimension
     slowed = frequency / np.sqrt(1.0 + added / system.mass[linked].sum())
@@ -84,13 +82,13 @@ def _spring_finding(scene: Scene, system: System) -> Finding:
     return Finding("warning", QUESTION, (), f"{text}: few steps for that", remedy, found, enough)
 
 
-def _clearance_finding(parts: Parts, system: System, joint: PlacedJoint, second: int) -> Finding:
+def _clearance_finding(model: Model, system: System, joint: PlacedJoint, second: int) -> Finding:
     """Report how far the coordinate can go either way before the first body touches the second."""
     names, coordinate = (system.surfaces[joint.first], system.surfaces[second]), joint.kind.coordinate
     assert coordinate is not None
-    gap = partial(_gap, parts.exact_detector, system, _path(system, joint), (joint.first, second))
+    gap = partial(_gap, model.exact_detector, system, _path(system, joint), (joint.first, second))
     turning = np.isfinite(coordinate.period)
-    farthest = 0.5 * coordinate.period if turning else float(np.linalg.norm(parts.domain.size))
+    farthest = 0.5 * coordinate.period if turning else float(np.linalg.norm(model.domain.size))
     up, down = _touching_value(gap, farthest), _touching_value(gap, -farthest)
     kind, moves = joint.kind.name, "turns" if turning else "moves"
     found = {"gap": gap(0.0), f"least_{coordinate.name}": -down, f"greatest_{coordinate.name}": up}
@@ -99,7 +97,7 @@ def _clearance_finding(parts: Parts, system: System, joint: PlacedJoint, second:
         free = "all around" if turning else "either way without touching"
         return Finding("note", QUESTION, names, text + free, found=found)
     text += f"from {figure(-down)} to {figure(up)} until they touch"
-    least, greatest = _drive_range(parts.scene, joint)
+    least, greatest = _drive_range(model.time.end, joint)
     if least <= -down or greatest >= up:
         text += f", and its drive from {figure(least)} to {figure(greatest)}"
         return Finding("error", QUESTION, names, text, "Move them apart, or drive it less far.", found)
@@ -109,11 +107,11 @@ def _clearance_finding(parts: Parts, system: System, joint: PlacedJoint, second:
     return Finding("warning", QUESTION, names, text, remedy, found)
 
 
-def _drive_range(scene: Scene, joint: PlacedJoint) -> tuple[float, float]:
+def _drive_range(end: float, joint: PlacedJoint) -> tuple[float, float]:
     """Least and greatest value of a joint's drive; 0 without one."""
     if joint.kind.drive is None:
         return 0.0, 0.0
-    values = [joint.kind.drive.value(time) for time in np.linspace(0.0, scene.time.end, _DRIVE_SAMPLES)]
+    values = [joint.kind.drive.value(time) for time in np.linspace(0.0, end, _DRIVE_SAMPLES)]
     return min(values), max(values)
 
 

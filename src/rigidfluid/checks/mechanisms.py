@@ -12,9 +12,8 @@ from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
-from rigidfluid.core.scene.scene import MeshTable
 from rigidfluid.core.setup.along_strokes import corners, nearest_components, times_along
-from rigidfluid.core.setup.parts import Parts
+from rigidfluid.core.setup.model import Model
 
 QUESTION = "stroke"
 
@@ -31,22 +30,21 @@ class _Stroke(NamedTuple):
     motion: int
 
 
-def mechanism_findings(parts: Parts, system: System) -> Iterator[Finding]:
+def mechanism_findings(model: Model, system: System) -> Iterator[Finding]:
     """Follow the strokes of each mechanism from where it starts: a note on its momentum and its cycles.
 
     A warning where components come nearer to each other than the mesh resolves, where a component would reach a wall if
     the whole stayed where it starts, and where corners are within steps.
     """
-    carried, scene = system.motions, parts.scene
+    carried, end = system.motions, model.time.end
     first = len(carried.mass) - len(carried.names)
-    mesh = scene.mesh if system.has_fluid else None
-    for number, (name, mechanism) in enumerate(parts.mechanisms.items()):
+    for number, (name, mechanism) in enumerate(model.mechanisms_by_name.items()):
         if mechanism.driven:
             stroke = _Stroke(name, mechanism, first + number)
-            yield _cycle_finding(stroke, scene.time.end)
-            yield from _component_findings(stroke, scene.time.end, parts, mesh)
-            yield from _wall_findings(stroke, scene.time.end, system, carried, parts)
-            yield from _corner_findings(stroke, scene.time.step, scene.time.end)
+            yield _cycle_finding(stroke, end)
+            yield from _component_findings(stroke, model)
+            yield from _wall_findings(stroke, model, system, carried)
+            yield from _corner_findings(stroke, model.time.step, end)
 
 
 def _cycle_finding(stroke: _Stroke, end: float) -> Finding:
@@ -59,8 +57,8 @@ def _cycle_finding(stroke: _Stroke, end: float) -> Finding:
     return Finding("note", QUESTION, (stroke.name,), text, found={"period": period, "cycles": end / period})
 
 
-def _component_findings(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTable | None) -> Iterator[Finding]:
-    nearest = nearest_components(stroke.mechanism, end, parts.exact_detector)
+def _component_findings(stroke: _Stroke, model: Model) -> Iterator[Finding]:
+    nearest, mesh = nearest_components(stroke.mechanism, model.time.end, model.exact_detector), model.fluid.mesh
     if nearest is None:
         return
     both = [stroke.mechanism.components[number] for number in (nearest.first, nearest.second)]
@@ -77,14 +75,14 @@ def _component_findings(stroke: _Stroke, end: float, parts: Parts, mesh: MeshTab
     yield Finding("warning", QUESTION, names, text, remedy, found, {"size_body": size})
 
 
-def _wall_findings(stroke: _Stroke, end: float, system: System, carried: Motions, parts: Parts) -> Iterator[Finding]:
+def _wall_findings(stroke: _Stroke, model: Model, system: System, carried: Motions) -> Iterator[Finding]:
     """The least gap to a surface of the domain while the whole is where it starts."""
     mine = np.flatnonzero(carried.carrier == stroke.motion)
     shapes = [system.bodies[body] for body in mine]
-    finder = parts.exact_detector(parts.exact_detector.Options(), system.bodies, system.walls)
+    finder = model.exact_detector(model.exact_detector.Options(), system.bodies, system.walls)
     least, when, names = math.inf, 0.0, ("", "")
     reach = max(2.0 * shape.bounding_radius for shape in shapes)
-    for time in times_along(stroke.mechanism, end):
+    for time in times_along(stroke.mechanism, model.time.end):
         contacts = finder.detect(carried.poses(carried.pose, float(time)), None, reach)
         for row in np.flatnonzero(contacts.at_wall & np.isin(contacts.body_a, mine)):
             if contacts.gap[row] < least:

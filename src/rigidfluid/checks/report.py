@@ -29,14 +29,14 @@ from rigidfluid.checks.shapes import facet_findings
 from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.tolerance import tolerance_findings
+from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system, gap_reach
+from rigidfluid.core.setup.assemble import assemble, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
-from rigidfluid.core.setup.parts import Parts, known_parts
+from rigidfluid.core.setup.model import Model
 
 
 @dataclass(frozen=True)
@@ -82,38 +82,35 @@ class Report:
         }
 
 
-def check(scene: Scene) -> Report:
-    """Ask all questions of a validated scene, without making a mesh; raises RigidfluidError if it cannot be built at
+def check(case: Case) -> Report:
+    """Ask all questions of a scene or a model, without making a mesh; raises RigidfluidError if it cannot be built at
     all."""
     with no_exit():
-        system, parts = build_system(scene), known_parts(scene)
-        scene = parts.scene
-        start = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, gap_reach(system))
-        found = sorted(findings(parts, system, start), key=lambda finding: GRADES.index(finding.grade))
-        domain = domain_row(scene, system.domain)
-        return Report(
-            scene.name, domain, tuple(features(system, scene.mesh)), tuple(_rows(scene, system, start)), tuple(found)
-        )
+        model = model_of(case)
+        system = assemble(model)
+        start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))
+        found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
+        rows = tuple(features(system, model.fluid.mesh)), tuple(_rows(system, start))
+        return Report(model.name, domain_row(model), *rows, tuple(found))
 
 
-def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]:
+def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]:
     """The answers to all questions, in the order in which they are asked."""
-    scene = parts.scene
+    mesh, time = model.fluid.mesh, model.time
     yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
-    yield from chain(tolerance_findings(scene.time), facet_findings(system))
-    yield from chain(joint_findings(parts, system), mechanism_findings(parts, system))
-    mesh = scene.mesh if system.has_fluid else None
+    yield from chain(tolerance_findings(time), facet_findings(system))
+    yield from chain(joint_findings(model, system), mechanism_findings(model, system))
     if mesh is not None:
-        size = run_size(parts, system, mesh, scene.time)
+        size = run_size(model, system, mesh)
         if size is not None:
-            yield from chain(memory_findings(size), run_time_findings(size, system, scene.time))
+            yield from chain(memory_findings(size), run_time_findings(size, system, time))
         yield from chain(layer_findings(system, mesh), film_findings(system, mesh))
     for met in design_contacts(system):
-        yield from chain(rest_findings(met), stack_findings(met), impact_findings(met), step_findings(met, scene.time))
+        yield from chain(rest_findings(met), stack_findings(met), impact_findings(met), step_findings(met, time))
         if mesh is not None:
             yield from resolution_findings(met, mesh)
         if mesh is not None and system.fluid is not None:
-            yield from energy_error_findings(met, system.fluid, scene.time.step)
+            yield from energy_error_findings(met, system.fluid, time.step)
         if mesh is not None and system.loads.film is not None:
             yield from rebound_findings(met, system.loads.film, mesh)
     for interaction in system.interactions:
@@ -121,12 +118,12 @@ def findings(parts: Parts, system: System, start: Contacts) -> Iterator[Finding]
         yield from chain(parallel_wall_findings(system, interaction), range_findings(system, interaction, mesh))
 
 
-def _rows(scene: Scene, system: System, start: Contacts) -> Iterator[BodyRow]:
+def _rows(system: System, start: Contacts) -> Iterator[BodyRow]:
     gaps, nearest = _nearest(system, start)
-    for i, table in enumerate(scene.body):
+    for i, body in enumerate(system.bodies):
         yield BodyRow(
-            name=table.name,
-            type=table.type,
+            name=system.surfaces[i],
+            type=body.name,
             mass=float(system.mass[i]),
             added_mass=float(np.trace(system.added_mass[i])) / system.dimension,
             submerged_weight=tuple(system.weight[i].tolist()),

@@ -20,8 +20,8 @@ from rigidfluid.core.mesh.size_interface import SizeField, with_fields_at_rest
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose, SolverCost
 from rigidfluid.core.run.mesh_keys import sizes_of
-from rigidfluid.core.scene.scene import MeshTable, TimeTable
-from rigidfluid.core.setup.parts import Parts
+from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.setup.model import Model
 
 _LATER_OVER_FIRST = 1.05
 """Cells of a mesh made from another one over those of a first mesh, most often."""
@@ -53,18 +53,18 @@ class RunSize:
     memory: float
 
 
-def run_size(parts: Parts, system: System, mesh: MeshTable, time: TimeTable) -> RunSize | None:
+def run_size(model: Model, system: System, mesh: MeshTable) -> RunSize | None:
     """Sizes that a run is expected to have; None where the backend cannot predict its cost."""
     sizes = sizes_of(mesh, system.domain)
-    start = _count(system, system.pose, sizes, parts.size_fields)
+    start = _count(system, system.pose, sizes, model.fluid.size_fields)
     start_cost = system.backend.solver_cost(*start)
     if start_cost is None:
         return None
     gap = least_gap(list(design_contacts(system)), sizes)
-    settled = settled_pose(system, parts.exact_detector, gap)
-    meshes = _later_meshes(system, settled, gap, sizes, time.end)
+    settled = settled_pose(system, model.exact_detector, gap)
+    meshes = _later_meshes(system, settled, gap, sizes, model.time.end)
     falls = bool(np.any(settled.position != system.pose.position))
-    most = max(start, _count(system, settled, sizes, parts.size_fields)) if falls else start
+    most = max(start, _count(system, settled, sizes, model.fluid.size_fields)) if falls else start
     if meshes:
         most = Count(*(_LATER_OVER_FIRST * number for number in most))
     most_cost = system.backend.solver_cost(*most)

@@ -11,7 +11,7 @@ from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body, Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 
 _MOST_BODIES = 60
 """Greatest number of bodies that are followed one by one; with more, all stay where they start."""

@@ -59,7 +59,7 @@ def reference(results: Results) -> Reference | None:
         return Reference(float(np.linalg.norm(stream)), _axes(results, stream), words)
     if speed.max() == 0.0:
         return None
-    gravity = np.asarray(results.scene.fluid.gravity or np.zeros(results.system.dimension), dtype=float)
+    gravity = np.asarray(results.model.gravity or np.zeros(results.system.dimension), dtype=float)
     fastest = results.vectors("v")[np.unravel_index(speed.argmax(), speed.shape)]
     along = -np.sign(fastest @ gravity) * gravity if fastest @ gravity != 0.0 else -fastest
     return Reference(float(speed.max()), _axes(results, along), "the greatest speed of a body")
@@ -72,8 +72,8 @@ def diameters(results: Results) -> FloatArray:
 
 def coefficients(results: Results, by: Reference) -> FloatArray:
     """F/(½ρU²D), in 3D F/(½ρU²πD²/4), along each axis of the reference (s, n, d); not known in the first state."""
-    density = results.scene.fluid.density
-    assert density is not None
+    assert results.system.fluid is not None
+    density = results.system.fluid.density
     width = diameters(results)
     area = width if results.system.dimension == 2 else 0.25 * np.pi * width**2
     found: FloatArray = results.vectors("f") @ by.axes.T / (0.5 * density * by.speed**2 * area[:, None])

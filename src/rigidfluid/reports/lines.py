@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.core.output.records import joint_coordinates
-from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.reports.curves import add_legend, draw_bodies, widen
 from rigidfluid.reports.paths import draw_paths
 from rigidfluid.reports.results import Results
@@ -153,12 +152,12 @@ def step_plot(results: Results) -> Figure:
 
 def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArray]:
     """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R as in the summary."""
-    fluid = results.scene.fluid
-    if not results.system.has_fluid or fluid.viscosity is None or fluid.density is None:
+    fluid = results.system.fluid
+    if fluid is None:
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
-    solid = np.array([body.density for body in append_components(results.scene)[0].body])
-    per_density = 2.0 * radius * speed / fluid.viscosity
+    solid = np.array([body.density for body in results.model.all_bodies])
+    per_density = 2.0 * radius * speed / fluid.dynamic_viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 
 

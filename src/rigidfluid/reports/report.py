@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rigidfluid.core.output.writer import writing
+from rigidfluid.core.setup.model import Model
 from rigidfluid.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.reports.coefficients import Figures, figures, reference
 from rigidfluid.reports.contact_plot import contact_plot
@@ -36,15 +37,16 @@ from rigidfluid.reports.view_plane import PlaneName, ViewPlane, view_plane
 FOLDER, PAGE = "report", "report.html"
 
 
-def report(out: Path, plane: PlaneName = "motion", follow: str | None = None) -> list[Path]:
+def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, model: Model | None = None) -> list[Path]:
     """Make plots and one page from the results in a folder; return the files written, last ``report.html``.
 
     Pictures of a 3D run show the ``plane`` that `view_plane` takes; they ``follow`` a body by name, else that with the
-    least gap. Raises OutputError for missing or unreadable results, an unknown body or plane, or a disk that refuses;
-    SceneError or PluginError if the run's scene cannot be built here, as without one of its plug-ins.
+    least gap. A run of a model made in Python wants the ``model``. Raises OutputError for missing or unreadable
+    results, an unknown body or plane, or a disk that refuses; SceneError or PluginError if the run's scene cannot be
+    built here, as without one of its plug-ins.
     """
     out = Path(out)
-    results = read_results(out)
+    results = read_results(out, model=model)
     seen = view_plane(results, plane)
     body = None if follow is None else results.number_of(follow)
     written: list[Path] = []
@@ -125,7 +127,7 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     if results.joints:
         yield "joints", "How far joints have moved, and what acts in them.", joint_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
-    if results.scene.time.tolerance is not None:
+    if results.model.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both
 
 

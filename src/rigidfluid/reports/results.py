@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.case.load import scene_of_results
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray
@@ -21,9 +23,9 @@ from rigidfluid.core.output.records import Row, columns, joint_coordinates, movi
 from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_of_results
+from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.description import IN_PYTHON
+from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 
 NEEDED = (
@@ -41,14 +43,14 @@ REMEDY = "Run the scene again, or go on with --resume; then make the report."
 class Results:
     """A run read back: s states of n bodies.
 
-    ``summary`` as in summary.json, empty where there is none; ``scene`` and ``system`` as the run built them; ``time``
+    ``summary`` as in summary.json, empty where there is none; ``model`` and ``system`` as the run built them; ``time``
     (s,) [time]; ``bodies`` by column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column
     (s,); ``series`` the times and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column
     (s, mechanisms). ``contact_counts`` (s,): how many contacts there are within the range of the laws.
     """
 
     summary: dict[str, Any]
-    scene: Scene
+    model: Model
     system: System
     time: FloatArray
     bodies: dict[str, FloatArray]
@@ -78,7 +80,7 @@ class Results:
         """Output times and the files of their fields, None without a fluid."""
         if self.series:
             return self.series
-        times = np.arange(self.time[0], self.time[-1] + 1e-9, self.scene.output.every)
+        times = np.arange(self.time[0], self.time[-1] + 1e-9, self.model.output.every)
         return tuple((float(time), None) for time in times)
 
     def state_at(self, time: float) -> int:
@@ -96,31 +98,32 @@ class Results:
         return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)
 
 
-def read_results(folder: Path, *, motion_only: bool = False) -> Results:
+def read_results(folder: Path, *, motion_only: bool = False, model: Model | None = None) -> Results:
     """Read a run's folder, all but the fields themselves, which are read one by one.
 
     With ``motion_only`` energies, joints and contacts are left out, and a run that was killed or goes on, which has no
-    summary, can be read. Raises OutputError that names a missing or unreadable file; SceneError or PluginError if the
-    run's scene cannot be built here, as without one of its plug-ins.
+    summary, can be read. A run of a model made in Python wants the ``model``. Raises OutputError that names a missing
+    or unreadable file; SceneError or PluginError if the run's scene cannot be built here, as without one of its
+    plug-ins.
     """
     complete = not motion_only or (folder / SUMMARY).exists()
     summary = _summary(folder / SUMMARY) if complete else {}
-    scene = scene_of_results(summary["scene"] if complete else read_scene(folder / CHECKPOINT))
-    system = build_system(scene)
-    bodies = _table(folder, "bodies", scene.dimension, complete=complete)
+    model = model or _model(summary["scene"] if complete else read_scene(folder / CHECKPOINT), folder)
+    system = assemble(model)
+    bodies = _table(folder, "bodies", model.dimension, complete=complete)
     if not complete:
         bodies = {name: values[: len(values) - len(values) % len(moving(system))] for name, values in bodies.items()}
-    energy = {} if motion_only else _table(folder, "energy", scene.dimension)
+    energy = {} if motion_only else _table(folder, "energy", model.dimension)
     by_state = {name: _per_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
     count = len(system.bodies)
     links = len(_joint_names(system))
     joints = {}
     if links and not motion_only:
-        joints = _table(folder, "joints", scene.dimension, coordinates=joint_coordinates(system))
+        joints = _table(folder, "joints", model.dimension, coordinates=joint_coordinates(system))
     steps = by_state["step"][:, 0]
     return Results(
         summary=summary,
-        scene=scene,
+        model=model,
         system=system,
         time=by_state["time"][:, 0],
         bodies={name: values[:, :count] for name, values in by_state.items()},
@@ -128,8 +131,16 @@ def read_results(folder: Path, *, motion_only: bool = False) -> Results:
         energy=energy,
         series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
         wholes={name: values[:, count:] for name, values in by_state.items()},
-        contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, scene.dimension, steps),
+        contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, model.dimension, steps),
     )
+
+
+def _model(tables: dict[str, Any], folder: Path) -> Model:
+    if IN_PYTHON in tables:
+        found = f"results of the model {tables['scene']['name']!r}, made in Python"
+        remedy = "Make the report in Python, report(folder, model=model) of rigidfluid.post.reports."
+        raise OutputError(str(folder), found, "results of a scene", remedy)
+    return model_of(scene_of_results(tables))
 
 
 def _summary(path: Path) -> dict[str, Any]:

@@ -12,8 +12,9 @@ from rigidfluid.reports.results import Results
 def prescribed_stream(results: Results) -> FloatArray | None:
     """The greatest mean velocity over a surface that fluid comes in by, at any time (d,); None without any."""
     means: list[FloatArray] = []
-    inlets = sampled_inflows(results.scene, results.system.domain)
-    times = sample_times(results.scene, steady=all(inlet.velocity.is_steady for inlet in inlets))
+    model = results.model
+    inlets = sampled_inflows(model.conditions, model.domain)
+    times = sample_times(model.conditions, model.time.end, steady=all(inlet.velocity.is_steady for inlet in inlets))
     for inlet in inlets:
         for time in times[times <= results.time[-1]]:
             if (inlet.flux(time) or 0.0) > 0.0:

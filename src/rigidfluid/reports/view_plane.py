@@ -89,7 +89,7 @@ def plane_of_motion(results: Results) -> ViewPlane:
     """
     if results.system.dimension == 2:
         return ViewPlane.coordinate_plane(0, 1, 2)
-    gravity = np.asarray(results.scene.fluid.gravity or np.zeros(3), dtype=float)
+    gravity = np.asarray(results.model.gravity or np.zeros(3), dtype=float)
     stream = prescribed_stream(results) if results.system.has_fluid else None
     if gravity.any():
         up = _snapped(-gravity)

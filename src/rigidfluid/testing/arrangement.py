@@ -18,7 +18,7 @@ from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
 from rigidfluid.core.model.wall import Wall
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions
 
 ASPECT = 5.0

@@ -8,8 +8,8 @@ import pytest
 from falling import falling_disk
 from scenes import wet_tables
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
 

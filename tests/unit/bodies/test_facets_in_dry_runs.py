@@ -11,9 +11,9 @@ from dry_scenes import ball, dry_scene
 from facet_shapes import CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl
 from scenes import dry_tables
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 
 ELASTIC = {"law": "contact", "epsilon": "auto", "range": 0.02}
 BOX = (0.2 * np.array(SQUARE)).tolist()
@@ -132,7 +132,7 @@ def test_a_square_dropped_flat_onto_an_obstacle_of_facets_does_not_turn() -> Non
 
 
 def test_a_scene_with_overlapping_polygons_is_refused() -> None:
-    from rigidfluid.core.setup.build import build_system
+    from rigidfluid.core.case.system import build_system
     from rigidfluid.errors import SceneError
 
     bar = (np.array([[-1.0, -0.1], [1.0, -0.1], [1.0, 0.1], [-1.0, 0.1]]) * 0.2).tolist()

@@ -11,12 +11,12 @@ from falling import SCENES, falling_disk
 
 import rigidfluid
 from rigidfluid.checks import Finding, check
+from rigidfluid.core.case.load import load_scene
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
 from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS
 from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import load_scene
 from rigidfluid.errors import SceneError
 from rigidfluid.reports.report import report
 

@@ -16,9 +16,9 @@ from typer.testing import CliRunner
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.checks.finding import round_down, round_up
 from rigidfluid.cli import app
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.representative_contacts import representatives
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 
 RADIUS, RANGE, GRAVITY, HEIGHT = 0.1, 0.02, 10.0, 0.5
 MASS = 3.0 * np.pi * RADIUS**2

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from rigidfluid import load_scene
 from rigidfluid.checks import check
 from rigidfluid.cli import app
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.case.load import scene_from_dict
 
 IN_A_CUBE = """
 [scene]

@@ -11,11 +11,11 @@ from rigidfluid.checks import Finding, check, run_time
 from rigidfluid.checks import memory as asked
 from rigidfluid.checks.machine_speed import machine_speed
 from rigidfluid.checks.run_size import RunSize
+from rigidfluid.core.case.load import load_scene
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.cell_count import Count
 from rigidfluid.core.model.types import SolverCost
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import load_scene
 
 FINE_SPHERE = ["mesh.size=1.0", "mesh.size_body=0.1", "mesh.growth=0.2"]
 LYING = "body.0.orientation=[0.7547,0.0,0.0,0.6561]"

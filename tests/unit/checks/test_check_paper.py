@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from rigidfluid import load_scene
 from rigidfluid.cli import app
-from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.case.system import build_system
 
 NONE = "none"
 # scene, law, against, largest force over submerged weight, rest gap [cm]; computed by hand from 4 range³/(27 ε),

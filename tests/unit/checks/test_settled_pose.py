@@ -7,19 +7,19 @@ import pytest
 from falling import SCENES, falling_disk
 
 from rigidfluid.checks.settled_pose import settled_pose
+from rigidfluid.core.case.load import load_scene, scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import load_scene, scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
 
 GAP = 0.01
 START = "body.0.position=[0.2, 6.0, 0.2]"
 
 
 def positions(scene: Scene) -> FloatArray:
-    return settled_pose(build_system(scene), known_parts(scene).exact_detector, GAP).position
+    return settled_pose(build_system(scene), model_of(scene).exact_detector, GAP).position
 
 
 def test_a_disk_falls_to_the_floor() -> None:
@@ -41,7 +41,7 @@ def test_a_disk_comes_to_lie_on_the_one_below() -> None:
 
 def test_an_ellipsoid_comes_to_lie_on_its_side() -> None:
     scene = load_scene(SCENES / "falling_ellipsoid.toml")
-    found = settled_pose(build_system(scene), known_parts(scene).exact_detector, GAP)
+    found = settled_pose(build_system(scene), model_of(scene).exact_detector, GAP)
     np.testing.assert_allclose(found.position, [[0.5, 0.1 + GAP, 0.2]], atol=0.06 * GAP)
     long_axis = rotation_matrices(found.orientation)[0, :, 1]
     np.testing.assert_allclose(np.abs(long_axis), [1.0, 0.0, 0.0], atol=1e-9)
@@ -50,7 +50,7 @@ def test_an_ellipsoid_comes_to_lie_on_its_side() -> None:
 def test_without_room_it_falls_as_it_is_turned() -> None:
     scene = load_scene(SCENES / "falling_ellipsoid.toml", ["domain.upper=[0.4, 8.0, 0.4]", START])
     system = build_system(scene)
-    found = settled_pose(system, known_parts(scene).exact_detector, GAP)
+    found = settled_pose(system, model_of(scene).exact_detector, GAP)
     assert 0.2 < found.position[0, 1] < 0.2 + 2.0 * GAP
     np.testing.assert_array_equal(found.orientation, system.pose.orientation)
 

@@ -5,11 +5,11 @@ import pytest
 from mesh_tools import ball, box, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import Registry
 

@@ -11,7 +11,9 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,10 +22,11 @@ from linked_runs import body, linked_scene
 from typer.testing import CliRunner
 
 import rigidfluid
-from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.api import OutputError, Simulation, TimeTable, scene_from_dict
 from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
+from rigidfluid.reports.report import report
 
 pytestmark = pytest.mark.long
 
@@ -119,6 +122,23 @@ def test_the_example_of_a_body_runs(install: Install, tmp_path: Path) -> None:
     assert history.bodies["vy"].max() > 0.0
     assert abs(history.summary["energy"]["relative_residual"]) < 1e-3
     refuse_failed_contract(folder, contract, tmp_path / "test_capsule.py")
+
+
+def test_the_example_of_a_model_runs(install: Install, tmp_path: Path) -> None:
+    """Nothing in it is registered but the shape; it goes on from a checkpoint, and its report is made in Python."""
+    (code,) = blocks(text("docs/models.md"), "python")
+    install(blocks(section(text("docs/plugins.md"), "A domain, from nothing"), "python")[0], module="rigidfluid_dish")
+    names: dict[str, Any] = {}
+    exec(code, names)
+    model, whole = names["model"], names["history"]
+    assert whole.bodies["y"][-1] < 0.0
+    assert abs(whole.summary["energy"]["relative_residual"]) < 0.01
+    rigidfluid.run(replace(model, time=TimeTable(end=0.1, step=0.02)), tmp_path)
+    resumed = rigidfluid.run(model, tmp_path, resume=True)
+    np.testing.assert_array_equal(resumed.bodies["y"], whole.bodies["y"])
+    assert report(tmp_path, model=model)[-1].exists()
+    with pytest.raises(OutputError, match="results of the model 'model', made in Python"):
+        report(tmp_path)
 
 
 def test_the_example_of_a_domain_runs(install: Install, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.core.setup.profiles import Disk, Rectangle, section
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.closed_form import Flat, Offset, form_of_face

@@ -12,6 +12,10 @@ from channels import CHANNEL, PIN, THROAT, scene
 from mesh_files import CUBE, TRIANGLES, write_stl
 from mesh_tools import nobody, upright
 
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.meshing import generate_mesh
@@ -19,11 +23,7 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.nested.bodies import NestedBodyTable
-from rigidfluid.core.setup.boundary import surfaces_of
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.schema import json_schema
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.channel import Channel, ChannelOptions
 from rigidfluid.domains.orientation import facing_the_fluid
@@ -89,11 +89,11 @@ def test_keys_of_an_obstacle_are_in_the_schema() -> None:
 
 def test_a_polygon_is_an_obstacle_with_sharp_corners() -> None:
     star = {"type": "polygon", "points": [[0.0, 0.0], [0.3, 0.1], [0.0, 0.2], [0.1, 0.1]], "position": [2.0, 0.5]}
-    parts = known_parts(scene_from_dict(scene(channel(star | {"name": "star", "angle": 0.4}))))
+    parts = model_of(scene_from_dict(scene(channel(star | {"name": "star", "angle": 0.4}))))
     domain, piece = parts.domain, parts.domain.pieces[4]
     assert domain.volume == pytest.approx(4.0 - 0.02, rel=1e-14)
     assert piece.area == pytest.approx(2.0 * np.hypot(0.3, 0.1) + 2.0 * np.hypot(0.1, 0.1), rel=1e-14)
-    body, pose = parts.bodies[0], upright([1.0, 0.5])
+    body, pose = parts.shapes[0], upright([1.0, 0.5])
     mesh = initial_mesh(FluidDomain([body], pose, domain, surfaces_of(domain, 1)), Sizes(0.2, 0.05))
     on_star = mesh.points[np.unique(mesh.facets[mesh.markers == 5])]
     assert np.abs(piece.shape.signed_distance(on_star)).max() < 1e-14
@@ -117,7 +117,7 @@ def test_a_body_in_an_obstacle_is_refused() -> None:
 
 
 def test_conditions_hold_on_obstacles_by_name() -> None:
-    parts = known_parts(scene_from_dict(scene(channel(PIN), boundary=[{"on": "pin", "type": "wall"}])))
+    parts = model_of(scene_from_dict(scene(channel(PIN), boundary=[{"on": "pin", "type": "wall"}])))
     assert parts.domain.names == ("left", "right", "bottom", "top", "pin")
 
 
@@ -161,4 +161,4 @@ def test_beside_a_flat_bump_its_end_is_nearest() -> None:
 
 
 def test_a_channel_without_obstacles_is_a_box() -> None:
-    assert known_parts(scene_from_dict(scene(CHANNEL))).domain.names == ("left", "right", "bottom", "top")
+    assert model_of(scene_from_dict(scene(CHANNEL))).domain.names == ("left", "right", "bottom", "top")

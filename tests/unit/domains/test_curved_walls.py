@@ -15,6 +15,9 @@ from mesh_tools import ball, ellipsoid, upright
 from wedge import wedge
 
 from rigidfluid.checks.report import check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
@@ -29,10 +32,7 @@ from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.boundary import surfaces_of
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.schema import json_schema
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions

@@ -21,7 +21,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import boundary_facets, check_mesh
 from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.errors import SceneError
 
 

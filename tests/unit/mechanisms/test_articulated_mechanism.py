@@ -7,9 +7,9 @@ import pytest
 from articulated_scenes import BALL, OUT, WAG, components, scene
 from paths import ROOT, SCENES
 
+from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene, scene_from_dict
 from rigidfluid.errors import PluginError, SceneError
 
 

@@ -5,8 +5,8 @@ from itertools import pairwise
 import pytest
 from paths import SCENES
 
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene
 
 SCENE = SCENES / "swimmer.toml"
 

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import rigidfluid
 from rigidfluid.cli import app
-from rigidfluid.core.setup.load import load_scene
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.errors import OutputError
 from rigidfluid.movies import Look, movie
 from rigidfluid.movies.picture import Scale, draw_bodies, flow_image

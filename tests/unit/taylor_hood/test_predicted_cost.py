@@ -93,8 +93,8 @@ import mmgpy
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import load_scene
+from rigidfluid.core.case.system import build_system
+from rigidfluid.core.case.load import load_scene
 scene = load_scene(sys.argv[1], ["mesh.size=3.0", "mesh.size_body=0.6"])
 system = build_system(scene)
 sizes = sizes_of(scene.mesh, system.domain)

@@ -8,9 +8,9 @@ from scipy import sparse
 from throat import SLIPPERY, throat
 
 from rigidfluid.backends.scikit_fem import kernels
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.topology import boundary_facets, distinct_edges
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood import projection as module
 from rigidfluid.taylor_hood.coefficients import Coefficients

@@ -6,8 +6,8 @@ from falling import falling_disk
 from scenes import wet_tables
 from scipy import sparse
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 

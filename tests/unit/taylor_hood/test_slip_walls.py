@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from models import with_backend
 from throat import SLIPPERY, throat
 
 from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.run.run import run
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.scene_checks import check_fluid
 from rigidfluid.errors import SceneError
 
 
@@ -35,7 +35,6 @@ def test_a_run_with_slip_on_curved_walls_is_resumed_to_the_last_bit(tmp_path: Pa
 
 
 def test_a_backend_without_oblique_faces_refuses_them_by_name() -> None:
-    scene = throat(SLIPPERY)
     with pytest.raises(SceneError, match=r"boundary.0.type: found 'slip' on 'bottom_bump', .* backend 'dolfinx'"):
-        check_fluid(scene, Dolfinx, known_parts(scene).domain)
-    check_fluid(throat(SLIPPERY[1:]), Dolfinx, known_parts(scene).domain)
+        with_backend(model_of(throat(SLIPPERY)), Dolfinx)
+    with_backend(model_of(throat(SLIPPERY[1:])), Dolfinx)

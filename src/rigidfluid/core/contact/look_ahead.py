@@ -94,7 +94,7 @@ def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: C
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
     straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
-    inverse_mass = straight + system.arms ** 2 * turning
+    inverse_mass = straight + system.arms**2 * turning
     return float(np.sqrt(2.0 * np.max(stored[: len(inverse_mass)] * inverse_mass)))
 
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from rigidfluid.core.model.types import FloatArray
 
 Value = Callable[[float, FloatArray], FloatArray]
 """Velocities (N, d) or pressures (N,) at a time and points (N, d)."""
+
+WallValue = Callable[[FloatArray], FloatArray]
+"""Velocities (N, d) of a wall at its points (N, d), the same at any time."""
 
 
 def no_pressure(time: float, points: FloatArray) -> FloatArray:
@@ -38,11 +42,17 @@ class BoundaryCondition(ABC):
         Name of the piece.
     normal : (d,) array or None
         Unit normal into the fluid; None where the piece is not flat.
+    field : str
+        Key of the scene's table that asks for it, for messages.
     """
+
+    type: ClassVar[str] = "custom"
+    """Name of the condition in scenes and messages."""
 
     surface: int
     name: str
     normal: FloatArray | None
+    field: str = field(default="boundary", kw_only=True)
 
     @property
     @abstractmethod
@@ -68,9 +78,23 @@ class BoundaryCondition(ABC):
         return no_pressure(time, points)
 
     @property
+    def data(self) -> Value:
+        """Function of time and place that is prescribed: the velocity, unless said otherwise."""
+        return self.velocity
+
+    @property
+    def sliding(self) -> WallValue | None:
+        """Velocity (N, d) at which a wall slides in itself, at points (N, d); None at rest [length/time]."""
+        return None
+
+    @property
     def image(self) -> int | None:
         """Number of the surface that is the same as this one; None, unless it is the first of a periodic pair."""
         return None
+
+    def with_image(self, surface: int) -> Self:
+        """The condition on the first piece of a periodic pair, whose other one has this number."""
+        return self
 
     @property
     def holds_all(self) -> bool:
@@ -105,10 +129,11 @@ class BoundaryCondition(ABC):
 
 @dataclass(frozen=True)
 class NoSlip(BoundaryCondition):
-    """A wall: the fluid there has the wall's velocity, ``value(time, points)`` (N, d) along itself [length/time]; it
-    rests if None is given."""
+    """A wall: it repels bodies, and the fluid there has the wall's velocity, ``sliding(points)`` (N, d) along itself
+    [length/time]; it rests if None is given."""
 
-    value: Value | None = None
+    type: ClassVar[str] = "wall"
+    sliding: WallValue | None = None
 
     holds_across = True
     holds_along = True
@@ -116,23 +141,29 @@ class NoSlip(BoundaryCondition):
 
     def velocity(self, time: float, points: FloatArray) -> FloatArray:
         """Velocity (N, d) of the wall at ``points`` (N, d) [length/time]."""
-        return np.zeros_like(points) if self.value is None else self.value(time, points)
+        return np.zeros_like(points) if self.sliding is None else self.sliding(points)
 
     @property
     def rests(self) -> bool:
         """Whether no velocity is given."""
-        return self.value is None
+        return self.sliding is None
 
 
 @dataclass(frozen=True)
 class PrescribedVelocity(BoundaryCondition):
     """A velocity that is given, ``value(time, points)`` (N, d) [length/time]; fluid may pass with it."""
 
+    type: ClassVar[str] = "velocity"
     value: Value
 
     holds_across = True
     holds_along = True
     passes = True
+
+    @property
+    def data(self) -> Value:
+        """The velocity (N, d) by time and points (N, d) [length/time]."""
+        return self.value
 
     def velocity(self, time: float, points: FloatArray) -> FloatArray:
         """Velocity (N, d) at ``points`` (N, d) [length/time]."""
@@ -143,11 +174,17 @@ class PrescribedVelocity(BoundaryCondition):
 class PrescribedPressure(BoundaryCondition):
     """An end that fluid passes straight, under a pressure ``value(time, points)`` (N,) [force/length^(d-1)]."""
 
+    type: ClassVar[str] = "pressure"
     value: Value = no_pressure
 
     holds_across = False
     holds_along = True
     passes = True
+
+    @property
+    def data(self) -> Value:
+        """The pressure (N,) by time and points (N, d) [force/length^(d-1)]."""
+        return self.value
 
     def pressure(self, time: float, points: FloatArray) -> FloatArray:
         """Pressure (N,) at ``points`` (N, d) [force/length^(d-1)]."""
@@ -157,6 +194,8 @@ class PrescribedPressure(BoundaryCondition):
 @dataclass(frozen=True)
 class Slip(BoundaryCondition):
     """A surface that fluid goes along without traction and does not pass, as a plane of symmetry."""
+
+    type: ClassVar[str] = "slip"
 
     holds_across = True
     holds_along = False
@@ -171,6 +210,7 @@ class Periodic(BoundaryCondition):
     points)`` (N,) [force/length^(d-1)]. The other has neither.
     """
 
+    type: ClassVar[str] = "periodic"
     image: int | None = None
     drop: Value = no_pressure
 
@@ -178,6 +218,15 @@ class Periodic(BoundaryCondition):
     holds_along = False
     passes = False
 
+    @property
+    def data(self) -> Value:
+        """The excess of the pressure (N,) by time and points (N, d) [force/length^(d-1)]."""
+        return self.drop
+
     def pressure(self, time: float, points: FloatArray) -> FloatArray:
         """Excess of the pressure (N,) at ``points`` (N, d) [force/length^(d-1)]."""
         return self.drop(time, points)
+
+    def with_image(self, surface: int) -> Self:
+        """The first of the pair, whose image is the other."""
+        return replace(self, image=surface)

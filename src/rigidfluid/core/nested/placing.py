@@ -1,4 +1,4 @@
-"""Initial poses and twists of bodies and mechanisms, from the tables of a scene."""
+"""Initial poses and twists of bodies and mechanisms, from tables of a scene or values of a model."""
 
 from __future__ import annotations
 
@@ -7,18 +7,15 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.model.types import Pose, Twist
-from rigidfluid.core.scene.scene import BodyTable, MechanismTable
+from rigidfluid.core.model.types import FloatArray, Pose, Twist
 from rigidfluid.errors import SceneError
-
-Tables = Sequence[BodyTable | MechanismTable]
 
 
 class Placement(Protocol):
     """Position and orientation keys of a table: an angle in 2D, a quaternion in 3D, or neither."""
 
     @property
-    def position(self) -> tuple[float, ...]:
+    def position(self) -> Sequence[float] | FloatArray:
         """Position of the centre of mass [length]."""
 
     @property
@@ -26,8 +23,20 @@ class Placement(Protocol):
         """Angle, counter-clockwise [rad]."""
 
     @property
-    def orientation(self) -> tuple[float, float, float, float] | None:
+    def orientation(self) -> Sequence[float] | None:
         """Quaternion, scalar first [1]."""
+
+
+class Moving(Protocol):
+    """Velocity keys of a table."""
+
+    @property
+    def velocity(self) -> Sequence[float] | FloatArray | None:
+        """Velocity of the centre of mass, None at rest [length/time]."""
+
+    @property
+    def angular_velocity(self) -> Sequence[float] | FloatArray | None:
+        """Angular velocity (k,), None at rest [rad/time]."""
 
 
 def check_orientation(table: Placement, dimension: int, at: str) -> None:
@@ -53,10 +62,10 @@ def initial_pose(tables: Sequence[Placement], dimension: int) -> Pose:
     return Pose(position, quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True))
 
 
-def initial_twist(tables: Tables, dimension: int) -> Twist:
+def initial_twist(tables: Sequence[Moving], dimension: int) -> Twist:
     """Velocities and angular velocities, zero where none is given."""
     velocity, spin = np.zeros((len(tables), dimension)), np.zeros((len(tables), 1 if dimension == 2 else 3))
     for i, table in enumerate(tables):
-        velocity[i] = table.velocity or 0.0
-        spin[i] = table.angular_velocity or 0.0
+        velocity[i] = 0.0 if table.velocity is None else table.velocity
+        spin[i] = 0.0 if table.angular_velocity is None else table.angular_velocity
     return Twist(velocity, spin)

@@ -7,18 +7,18 @@ from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, RigidfluidError, SharedInterrupt
 
 __all__ = ["Progress", "run"]
 
 
 def run(
-    scene: Scene,
+    case: Case,
     out: Path | None = None,
     *,
     resume: bool = False,
@@ -26,12 +26,12 @@ def run(
     processes: int | None = None,
     finished: Callable[[History], None] | None = None,
 ) -> History:
-    """Run a scene to its end.
+    """Run a scene or a model to its end.
 
     Parameters
     ----------
-    scene : Scene
-        From `load_scene` or `scene_from_dict`.
+    case : Scene or Model
+        A scene from `load_scene` or `scene_from_dict`, or a model made of objects.
     out : Path or None
         Folder for the results; None keeps them in memory alone.
     resume : bool
@@ -63,7 +63,7 @@ def run(
     Any other error, as that of a plug-in, leaves a summary too.
     """
     folder = None if out is None else Path(out)
-    with one_openblas_thread(), no_exit(), closing(Simulation(scene, folder, resume, processes)) as simulation:
+    with one_openblas_thread(), no_exit(), closing(Simulation(case, folder, resume, processes)) as simulation:
         told = finished or (lambda _: None)
         if progress is not None:
             simulation.observe(lambda now: progress(_progress(now)))

@@ -11,11 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
@@ -37,9 +36,9 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.scene.earlier import tables_now
-from rigidfluid.core.scene.scene import FluidTable, Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.scene.scene import FluidTable
+from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.errors import OutputError, SceneError, StepError
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -84,7 +83,7 @@ class Simulation:
 
     Parameters
     ----------
-    scene : Scene
+    case : Scene or Model
         What to run.
     out : Path or None
         Folder for the results, or None.
@@ -92,8 +91,6 @@ class Simulation:
         Whether to go on from the checkpoint there.
     processes : int or None
         How many processes were started to share the run; None if the backend's own ranks are those.
-    size_fields : sequence of SizeField
-        Objects that say how fine cells are, besides those that the scene names; a resumed run wants the same.
 
     Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller, and
     ``mesh_updater.needs_remesh`` another rule of re-meshing.
@@ -101,27 +98,25 @@ class Simulation:
 
     def __init__(
         self,
-        scene: Scene,
+        case: Case,
         out: Path | None = None,
         resume: bool = False,
         processes: int | None = None,
-        size_fields: Sequence[SizeField] = (),
     ) -> None:
-        self.scene = scene
-        system = build_system(scene)
+        self.model = model = model_of(case)
+        system, time_table, mesh = assemble(model), model.time, model.fluid.mesh
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
-        earlier = _earlier(scene, out, system.backend) if resume else None
-        self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
-        sizes = _sizes(scene, system)
+        earlier = _earlier(model, out, system.backend) if resume else None
+        self.clock = Clock.for_steps(time_table.step, time_table.shortest, time_table.end)
         self.watch = Stopwatch()
-        renewal = renewal_of(scene.mesh, self.clock)
-        fields = (*wakes_of(scene.mesh, scene.dimension), *known_parts(scene).size_fields, *size_fields)
-        self.mesh_updater = MeshUpdater(system, sizes, renewal, fields, inserter_of(scene.mesh), self.watch)
-        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
-        self.history = History(scene.dimension, folder=out, coordinates=joint_coordinates(system))
+        renewal, fields = renewal_of(mesh, self.clock), (*wakes_of(mesh, model.dimension), *model.fluid.size_fields)
+        sizes = None if mesh is None else sizes_of(mesh, model.domain)
+        self.mesh_updater = MeshUpdater(system, sizes, renewal, fields, inserter_of(mesh), self.watch)
+        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, time_table.tolerance)
+        self.history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))
-        self._probes = np.array(scene.output.probes, dtype=float).reshape(-1, scene.dimension)
+        self._probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
         self._start, self._cpu_start = time.perf_counter(), time.process_time()
         self._writer: Writer | None = None
         self._observers: list[tuple[Schedule, Observer]] = []
@@ -241,7 +236,7 @@ class Simulation:
             If there is no such body, it is free, or a value is not allowed.
         """
         row, now = self._row(name, True), self.system.controlled_twist(self.time)
-        twist = twist_row(self.scene.dimension, velocity, angular_velocity)
+        twist = twist_row(self.model.dimension, velocity, angular_velocity)
         within = over_time(over, now[row], twist)
         if self.system.has_fluid:
             step = self.clock.size(0)
@@ -269,11 +264,11 @@ class Simulation:
         SceneError
             If there is no such body, it is fixed or prescribed, or a value is not allowed.
         """
-        row, wrench = self._row(name, False), wrench_row(self.scene.dimension, force, torque)
+        row, wrench = self._row(name, False), wrench_row(self.model.dimension, force, torque)
         before = nothing(self.state.pose) if self.state.applied is None else self.state.applied
         rows = flat(before)
         rows[row] = wrench
-        self.state = replace(self.state, applied=wrench_of(rows, self.scene.dimension))
+        self.state = replace(self.state, applied=wrench_of(rows, self.model.dimension))
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
@@ -321,14 +316,14 @@ class Simulation:
         self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = initial_state(
-                self.system, self.mesh_updater, self.clock, self.scene.time.tolerance is not None
+                self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
         if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
             self._rehearse()
         self._writer = None if out is None else self._writer_to(out, None)
         self._record()
         self._output()
-        self.observe(Simulation._output, self.scene.output.every)
+        self.observe(Simulation._output, self.model.output.every)
 
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
@@ -346,10 +341,10 @@ class Simulation:
         if self.state.prescription is not None:
             self._follow(PrescribedMotion(self.state.prescription))
         self._writer = self._writer_to(out, earlier)
-        self.observe(Simulation._output, self.scene.output.every)
+        self.observe(Simulation._output, self.model.output.every)
 
     def _writer_to(self, out: Path, earlier: Checkpoint | None) -> Writer:
-        return Writer(out, self.scene.dimension, earlier, self._ranks, joint_coordinates(self.system))
+        return Writer(out, self.model.dimension, earlier, self._ranks, joint_coordinates(self.system))
 
     def _record(self) -> None:
         level, cost = self.state.level, None
@@ -379,7 +374,7 @@ class Simulation:
         return Checkpoint(
             state=self.state,
             memory=memory,
-            scene=json.dumps(self.scene.to_dict()),
+            scene=json.dumps(self.model.document),
             times=self._times,
             lengths=writer.lengths,
             seconds=self.watch.seconds,
@@ -394,7 +389,7 @@ class Simulation:
         """Prescribed motion at present: since the start by the scene, or by the caller."""
         if self.state.prescription is not None:
             return PrescribedMotion(self.state.prescription)
-        return prescribed_motion(self.scene, self.system.motions.pose)
+        return prescribed_motion(self.model.bodies, self.system.motions.pose)
 
     def _follow(self, motion: PrescribedMotion) -> None:
         """Let prescribed bodies move so."""
@@ -442,13 +437,6 @@ def _bodies_now(
     }
 
 
-def _sizes(scene: Scene, system: System) -> Sizes | None:
-    if not system.has_fluid:
-        return None
-    assert scene.mesh is not None
-    return sizes_of(scene.mesh, system.domain)
-
-
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
     if processes not in (None, backend.ranks.size):
         raise SceneError(
@@ -459,12 +447,12 @@ def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
         )
 
 
-def _earlier(scene: Scene, out: Path | None, backend: FluidBackend) -> Checkpoint:
+def _earlier(model: Model, out: Path | None, backend: FluidBackend) -> Checkpoint:
     """The checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format."""
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
     checkpoint = checkpoint_for(backend, out)
-    stored, given = tables_now(json.loads(checkpoint.scene)), scene.to_dict()
+    stored, given = tables_now(json.loads(checkpoint.scene)), json.loads(json.dumps(model.document))
     stored["time"]["end"] = given["time"]["end"]
     if _is_of_another(backend, stored["fluid"]["backend"]):
         stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))

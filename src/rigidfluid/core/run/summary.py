@@ -24,8 +24,7 @@ from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 from rigidfluid.core.run.turn_remarks import turn_remarks
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.model import Model
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -48,7 +47,7 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
-    mesh, found, problem = simulation.scene.mesh, _cycles(simulation), system.fluid
+    mesh, found, problem = simulation.model.fluid.mesh, _cycles(simulation), system.fluid
     radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
     length = max(radii.values())
     remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
@@ -60,8 +59,8 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         remarks += turn_remarks(simulation.history)
     return {
         "status": status,
-        "scene": simulation.scene.to_dict(),
-        "seed": simulation.scene.scene.seed,
+        "scene": simulation.model.document,
+        "seed": simulation.model.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
         "unknowns": system.backend.unknowns(state.mesh, system.motions.controlled),
@@ -78,7 +77,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "cpu_time": simulation.cpu_time,
         "wall_time_per_stage": simulation.watch.seconds,
         "peak_memory": _total_memory(system.backend.ranks, peak_memory()),
-        **reynolds_numbers(simulation.scene, system, extremes.highest_speed),
+        **reynolds_numbers(simulation.model, system, extremes.highest_speed),
         "smallest_gap": _finite(extremes.smallest_gap),
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **found,
@@ -92,7 +91,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
 
 def _cycles(simulation: Simulation) -> dict[str, Any]:
     """Cycles of the mechanisms whose strokes repeat; empty without any."""
-    periods = {name: mechanism.period for name, mechanism in known_parts(simulation.scene).mechanisms.items()}
+    periods = {name: mechanism.period for name, mechanism in simulation.model.mechanisms_by_name.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
 
@@ -124,19 +123,20 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def reynolds_numbers(scene: Scene, system: System, speeds: FloatArray) -> dict[str, float | None]:
+def reynolds_numbers(model: Model, system: System, speeds: FloatArray) -> dict[str, float | None]:
     """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
 
     ``speeds`` (n,) are the highest |v|. R is the radius of a ball, of other shapes that of the smallest ball around
     them. None without a fluid.
     """
-    if scene.fluid.viscosity is None or scene.fluid.density is None or not system.has_fluid:
+    fluid = system.fluid
+    if fluid is None:
         return {"reynolds_solid_density": None, "reynolds": None}
-    per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / scene.fluid.viscosity
-    solid = np.array([body.density for body in known_parts(scene).scene.body])
+    per_density = 2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / fluid.dynamic_viscosity
+    solid = np.array([body.density for body in model.all_bodies])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),
-        "reynolds": float(np.max(per_density) * scene.fluid.density),
+        "reynolds": float(np.max(per_density) * fluid.density),
     }
 
 

@@ -8,10 +8,20 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, WithJsonSchema, field_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+)
 
+from rigidfluid.core.scene.validation import scene_error
 from rigidfluid.core.scene.vectors import (
     DIMENSION,
     Angular,
@@ -47,14 +57,32 @@ SizeBody = Annotated[
 ]
 
 
-class _Table(BaseModel):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass as _ModelType
+else:
+    _ModelType = type(BaseModel)
+
+
+class _TableType(_ModelType):
+    """Class of tables: who makes one in Python gets our errors; tables that are read are not made by a call."""
+
+    if not TYPE_CHECKING:  # each table has the signature that pydantic gives it
+
+        def __call__(cls, **keys: Any) -> Any:
+            try:
+                return super().__call__(**keys)
+            except ValidationError as error:
+                raise scene_error(cls, error, cls.__name__) from None
+
+
+class _Table(BaseModel, metaclass=_TableType):
     """A table whose keys are all given here."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class _OpenTable(_Table):
-    """A table that also holds the keys of the part it names; `rigidfluid.core.setup.parts` validates those."""
+    """A table that also holds the keys of the part it names; `rigidfluid.core.case.parts` validates those."""
 
     model_config = ConfigDict(extra="allow")
 

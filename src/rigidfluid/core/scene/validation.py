@@ -34,11 +34,15 @@ def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     try:
         table = model.model_validate_json(text, context={})
     except ValidationError as error:
-        complaints = sorted(error.errors(), key=_urgency)
-        raise _scene_error(model, complaints, at) from None
+        raise scene_error(model, error, at) from None
     for field, number in _numbers(json.loads(text), at):
         refuse_out_of_proportion(field, number)
     return table
+
+
+def scene_error(model: type[BaseModel], error: ValidationError, at: str) -> SceneError:
+    """Our error for the gravest of pydantic's complaints about a table at a place."""
+    return _told(model, sorted(error.errors(), key=_urgency), at)
 
 
 def _urgency(complaint: ErrorDetails) -> int:
@@ -126,7 +130,7 @@ def refuse_out_of_proportion(field: str, number: float) -> None:
         raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
 
 
-def _scene_error(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
+def _told(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
     """The error of the first complaint."""
     complaint = complaints[0]
     if complaint["type"] == "extra_forbidden":

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.model.conditions import BoundaryCondition
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import VelocityTable
-from rigidfluid.core.setup.boundary_tables import placed_tables
-from rigidfluid.core.setup.boundary_values import BoundaryVelocity, prescribed_velocity
+from rigidfluid.core.setup.boundary_data import BoundaryData, BoundaryVelocity, boundary_velocity
 from rigidfluid.core.setup.profiles import section
-from rigidfluid.core.setup.time_factor import rows_over_time
-
-if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import Scene
 
 _TIMES, _ROWS = 65, 500
 """Times in a run, and rows of a table, that are looked at."""
@@ -45,28 +40,30 @@ class SampledInflow:
 
     def speed(self, time: float) -> float:
         """Greatest speed at the points, where the profile is 1 [length/time]."""
-        points = self.points if self.velocity.velocity.names & {"x", "y", "z"} else self.points[:1]
+        points = self.points if self.velocity.value.names & {"x", "y", "z"} else self.points[:1]
         return max(float(np.linalg.norm(velocity)) for velocity in self.velocity.peak(time, points))
 
 
-def sampled_inflows(scene: Scene, domain: Domain) -> list[SampledInflow]:
-    """Velocities that the scene prescribes on surfaces that are not walls."""
+def sampled_inflows(conditions: Sequence[BoundaryCondition], domain: Domain) -> list[SampledInflow]:
+    """Velocities that are prescribed on surfaces that are not walls."""
     return [
-        SampledInflow(place.piece, prescribed_velocity(table, place), *quadrature(place.piece, domain))
-        for table, place in placed_tables(scene, domain)
-        if isinstance(table, VelocityTable)
+        SampledInflow(piece, boundary_velocity(condition.data), *quadrature(piece, domain))
+        for condition, piece in zip(conditions, domain.pieces, strict=True)
+        if condition.holds_all and condition.passes
     ]
 
 
-def sample_times(scene: Scene, *, steady: bool) -> FloatArray:
-    """Times from 0 to the end, with those where a table over time has a row; the first alone where all is steady.
+def sample_times(conditions: Sequence[BoundaryCondition], end: float, *, steady: bool) -> FloatArray:
+    """Times from 0 to the ``end``, with those where a table over time has a row; the first alone where all is steady.
 
     A long table contributes every n-th row and the row with the greatest value.
     """
-    tables = [rows for rows in rows_over_time(scene).values() if rows]
+    every: list[object] = [condition.data for condition in conditions]
+    known = [data for data in every if isinstance(data, BoundaryData)]
+    tables = [data.factor.table for data in known if data.factor.table]
     rows = [row for table in tables for row in (*table[:: 1 + len(table) // _ROWS], max(table, key=_size))]
-    times = np.concatenate([np.linspace(0.0, scene.time.end, _TIMES), [time for time, _ in rows]])
-    return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= scene.time.end)])
+    times = np.concatenate([np.linspace(0.0, end, _TIMES), [time for time, _ in rows]])
+    return times[:1] if steady else np.unique(times[(times >= 0.0) & (times <= end)])
 
 
 def quadrature(piece: Piece, domain: Domain) -> tuple[FloatArray, FloatArray]:

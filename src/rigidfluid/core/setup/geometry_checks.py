@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.model.types import Contacts, Pose
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector
-    from rigidfluid.core.scene.scene import MeshTable, Scene
-    from rigidfluid.core.setup.parts import Parts
+    from rigidfluid.core.scene.scene import MeshTable
+    from rigidfluid.core.setup.model import Model
 
 
 MOST_FACETS_PER_RADIUS = 10**4
@@ -28,17 +28,22 @@ SMALLEST_BODY = 1e-8
 end the whole process."""
 
 
-def check_geometry(scene: Scene, parts: Parts, pose: Pose) -> None:
+def check_geometry(model: Model, pose: Pose) -> None:
     """Refuse, with SceneError, bodies that overlap each other or a surface of the domain or are lost in it at their
     starting ``pose``, and a mesh too coarse for a gap."""
-    _check_extent(parts)
-    mesh = scene.mesh if parts.wet else None
-    reach = _coarsest_gap(mesh, parts) if mesh else 0.0
-    contacts = initial_contacts(parts.domain, parts.exact_detector, parts.bodies, pose, reach)
-    _check_overlap(scene, parts.domain, contacts)
+    _check_extent(model)
+    mesh = model.fluid.mesh
+    reach = _coarsest_gap(mesh, model.shapes) if mesh else 0.0
+    contacts = initial_contacts(model.domain, model.exact_detector, model.shapes, pose, reach)
+    _check_overlap(model, contacts)
     if mesh is not None:
-        _check_facets(mesh, parts)
-        _check_resolution(scene, mesh, parts, contacts)
+        _check_facets(mesh, model.shapes)
+        _check_resolution(model, mesh, contacts)
+
+
+def surfaces_of(domain: Domain, bodies: int) -> tuple[Wall, ...]:
+    """Every piece of the boundary as a wall, whether it repels or not, in the order of surface numbers."""
+    return tuple(Wall(bodies + i, piece.name, piece.shape) for i, piece in enumerate(domain.pieces))
 
 
 def initial_contacts(
@@ -49,10 +54,10 @@ def initial_contacts(
     return detector(detector.Options(), bodies, surfaces_of(domain, len(bodies))).detect(pose, None, reach)
 
 
-def _check_extent(parts: Parts) -> None:
-    _check_units(parts)
-    farthest = float(np.max(np.abs(parts.domain.extent)))
-    radii = [body.bounding_radius for body in parts.bodies]
+def _check_extent(model: Model) -> None:
+    _check_units(model)
+    farthest = float(np.max(np.abs(model.domain.extent)))
+    radii = [shape.bounding_radius for shape in model.shapes]
     smallest = min(range(len(radii)), key=radii.__getitem__)
     if radii[smallest] < SMALLEST_BODY * farthest:
         raise SceneError(
@@ -63,63 +68,58 @@ def _check_extent(parts: Parts) -> None:
         )
 
 
-def _check_units(parts: Parts) -> None:
+def _check_units(model: Model) -> None:
     """Refuse a body that cannot be in the domain wherever it is."""
-    width = float(parts.domain.size.max())
-    for number, body in enumerate(parts.bodies):
-        if body.bounding_radius > width:
-            found = f"a bounding radius of {body.bounding_radius:.6g} in a domain of width {width:.6g}"
+    width = float(model.domain.size.max())
+    for number, shape in enumerate(model.shapes):
+        if shape.bounding_radius > width:
+            found = f"a bounding radius of {shape.bounding_radius:.6g} in a domain of width {width:.6g}"
             remedy = "Use the same units for both; lengths in a file are multiplied by `domain.scale`."
             raise SceneError(f"body.{number}", found, "bodies smaller than the domain", remedy)
 
 
-def _check_overlap(scene: Scene, domain: Domain, contacts: Contacts) -> None:
+def _check_overlap(model: Model, contacts: Contacts) -> None:
     if len(contacts) == 0 or np.min(contacts.gap) > 0:
         return
     worst = int(np.argmin(contacts.gap))
     a, b, depth = int(contacts.body_a[worst]), int(contacts.body_b[worst]), abs(float(contacts.gap[worst]))
-    other = f"surface {_name(scene, domain, b)!r} of the domain"
-    if b < len(scene.body):
-        other = f"body {_name(scene, domain, b)!r}"
-    whole = {table.name for table in scene.mechanism} & {scene.body[a].part_of}
+    body, kind = model.all_bodies[a], "body" if b < len(model.all_bodies) else "surface"
+    other = f"{kind} {model.surfaces[b]!r}" + (" of the domain" if kind == "surface" else "")
+    whole = {placed.name for placed in model.mechanisms} & {body.part_of}
     raise SceneError(
         f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
-        f"{list(scene.body[a].position)}, where body {_name(scene, domain, a)!r} overlaps {other} by {depth:.6g}",
+        f"{list(body.position)}, where body {body.name!r} overlaps {other} by {depth:.6g}",
         "a place inside the domain and clear of all other surfaces",
         f"Move it by more than {depth:.6g}, or make it smaller.",
     )
 
 
-def _check_facets(mesh: MeshTable, parts: Parts) -> None:
-    largest = max(body.bounding_radius for body in parts.bodies)
+def _check_facets(mesh: MeshTable, shapes: Sequence[Body]) -> None:
+    largest = max(shape.bounding_radius for shape in shapes)
     least = largest / MOST_FACETS_PER_RADIUS
     if mesh.size_body < least:
         raise SceneError("mesh.size_body", mesh.size_body, f"at least {least:g} for these bodies", "Coarsen it.")
 
 
-def _coarsest_gap(mesh: MeshTable, parts: Parts) -> float:
+def _coarsest_gap(mesh: MeshTable, shapes: Sequence[Body]) -> float:
     """The largest gap that the mesh may be too coarse for [length]."""
-    smallest = min(body.bounding_radius for body in parts.bodies)
+    smallest = min(shape.bounding_radius for shape in shapes)
     return float((mesh.size_body / 2**mesh.refinements) ** 2 / (4.0 * smallest))
 
 
-def _check_resolution(scene: Scene, mesh: MeshTable, parts: Parts, contacts: Contacts) -> None:
+def _check_resolution(model: Model, mesh: MeshTable, contacts: Contacts) -> None:
     """A chord h of a circle of radius R cuts off h²/(8R), which must stay below half the gap."""
     halvings = 2**mesh.refinements
     for k, gap in enumerate(contacts.gap):
         for surface in (int(contacts.body_a[k]), int(contacts.body_b[k])):
-            if surface >= len(parts.bodies):
+            if surface >= len(model.shapes):
                 continue
-            fine = halvings * sqrt(4 * parts.bodies[surface].bounding_radius * float(gap))
+            fine = halvings * sqrt(4 * model.shapes[surface].bounding_radius * float(gap))
             if mesh.size_body >= fine:
-                a, b = (_name(scene, parts.domain, int(s[k])) for s in (contacts.body_a, contacts.body_b))
+                a, b = (model.surfaces[int(s[k])] for s in (contacts.body_a, contacts.body_b))
                 raise SceneError(
                     "mesh.size_body",
                     f"{mesh.size_body}, too coarse for the gap of {gap:.3g} between {a!r} and {b!r}",
                     f"less than {fine:.3g}",
                     f"Refine it, or allow more than {mesh.refinements} `refinements`.",
                 )
-
-
-def _name(scene: Scene, domain: Domain, surface: int) -> str:
-    return (*(body.name for body in scene.body), *domain.names)[surface]

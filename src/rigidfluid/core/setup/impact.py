@@ -10,18 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
-from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.setup.boundary import repelling_walls
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
-from rigidfluid.core.setup.initial_flow import fastest_at_start
-from rigidfluid.core.setup.interactions import law_tables
-from rigidfluid.core.setup.prescribed import controlled_bodies
+from rigidfluid.core.setup.fluid import Fluid
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import BodyTable, Scene
-    from rigidfluid.core.setup.parts import Parts
+    from rigidfluid.core.setup.model import Model
+    from rigidfluid.core.setup.rigid_body import RigidBody
 
 _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
@@ -41,48 +37,47 @@ class Impetus:
     given: FloatArray
 
 
-def impact_speeds(parts: Parts, impetus: Impetus) -> FloatArray:
+def impact_speeds(model: Model, impetus: Impetus) -> FloatArray:
     """Speed at which each body is expected to hit something (n,) [length/time].
 
     v = √(v₀² + 2 (W/m) h), h the free height along the weight W to the end of the box around the domain, less the
     shortest range of a law, and m the mass. In a fluid at most the larger of v₀ and the terminal speed, and on top of
     that the fastest inflow. For v₀ the surface of a body that is no ball turns with it; v₀ of a component is at least
     the greatest speed that strokes give it. A driven body has the greatest speed of its prescription. An
-    ``impact_speed`` in the scene takes the place of all that for free bodies, but for v₀, which it cannot lower.
+    ``impact_speed`` that is given takes the place of all that for free bodies, but for v₀, which it cannot lower.
     """
-    scene = parts.scene
-    start, falling = _own_speeds(parts, impetus)
-    if parts.wet:
-        falling = falling + fastest_flow(scene, parts.domain)
-    if scene.contact.impact_speed is not None:
-        falling = np.maximum(start, scene.contact.impact_speed)
-    return np.where(controlled_bodies(scene), start, falling)
+    start, falling = _own_speeds(model, impetus)
+    if model.wet:
+        falling = falling + fastest_flow(model)
+    if model.stepping.impact_speed is not None:
+        falling = np.maximum(start, model.stepping.impact_speed)
+    return np.where(model.controlled, start, falling)
 
 
-def travel_speeds(parts: Parts, impetus: Impetus) -> FloatArray:
+def travel_speeds(model: Model, impetus: Impetus) -> FloatArray:
     """Highest speed at which each body is expected to go through a fluid, or the fluid past it, (n,) [length/time].
 
     It is the larger of the body's own speed, estimated as in `impact_speeds`, and that of the fastest flow, whatever
-    the scene says of impacts.
+    is said of impacts.
     """
-    start, falling = _own_speeds(parts, impetus)
-    own = np.where(controlled_bodies(parts.scene), start, falling)
-    return np.maximum(own, fastest_flow(parts.scene, parts.domain))
+    start, falling = _own_speeds(model, impetus)
+    own = np.where(model.controlled, start, falling)
+    return np.maximum(own, fastest_flow(model))
 
 
-def _own_speeds(parts: Parts, impetus: Impetus) -> tuple[FloatArray, FloatArray]:
+def _own_speeds(model: Model, impetus: Impetus) -> tuple[FloatArray, FloatArray]:
     """v₀, and what it becomes by falling, each (n,) [length/time]."""
-    lever = _measure_bodies(_lever, parts.bodies)
-    start = np.array([_own_speed(table, arm) for table, arm in zip(parts.scene.body, lever, strict=True)])
+    lever = _measure_bodies(_lever, model.shapes)
+    start = np.array([_own_speed(body, arm) for body, arm in zip(model.all_bodies, lever, strict=True)])
     start = np.maximum(start, impetus.given[:, 0] + lever * impetus.given[:, 1])
     pull = np.linalg.norm(impetus.weight, axis=1)
-    falling = np.sqrt(start**2 + 2.0 * pull / impetus.mass * _free_heights(parts, impetus.weight))
-    if parts.wet:
-        falling = np.minimum(falling, np.maximum(start, terminal_speeds(parts, pull)))
+    falling = np.sqrt(start**2 + 2.0 * pull / impetus.mass * _free_heights(model, impetus.weight))
+    if model.wet:
+        falling = np.minimum(falling, np.maximum(start, terminal_speeds(model, pull)))
     return start, falling
 
 
-def terminal_speeds(parts: Parts, pull: FloatArray) -> FloatArray:
+def terminal_speeds(model: Model, pull: FloatArray) -> FloatArray:
     """Terminal speed (n,) [length/time] of each submerged weight ``pull`` (n,) [force], far from walls, from
     correlations for the drag of a ball of equal volume.
 
@@ -94,34 +89,31 @@ def terminal_speeds(parts: Parts, pull: FloatArray) -> FloatArray:
     Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006; Pironneau, J.
     Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
     """
-    scene = parts.scene
-    density, viscosity = scene.fluid.density, scene.fluid.viscosity
-    assert density is not None
-    assert viscosity is not None
-    radius = _measure_bodies(equal_volume_radius, parts.bodies)
-    if scene.fluid.model == "stokes":
-        return np.asarray(pull / creeping_resistances(parts)[:, 0])
-    per_pull, drag = (8.0 / np.pi, _ball_drag) if scene.dimension == 3 else (4.0 * radius, _cylinder_drag)
+    fluid = model.fluid
+    assert isinstance(fluid, Fluid)
+    density, viscosity, radius = fluid.density, fluid.viscosity, _measure_bodies(equal_volume_radius, model.shapes)
+    if not fluid.inertia:
+        return np.asarray(pull / creeping_resistances(model)[:, 0])
+    per_pull, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
     reynolds = _reynolds(pull * density / viscosity**2 * per_pull, drag)
     return np.asarray(reynolds * viscosity / (2.0 * radius * density))
 
 
-def creeping_resistances(parts: Parts) -> FloatArray:
+def creeping_resistances(model: Model) -> FloatArray:
     """Resistance of a fluid without inertia to each velocity of each body (n, d+k) [force·time/length |
     force·length·time].
 
     It is that of a ball of equal volume far from walls, which nearly every shape and place exceeds: 6πμr and 8πμr³ in
     3D, 4πμr² for rotation in 2D and, for translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
     """
-    scene, viscosity = parts.scene, parts.scene.fluid.viscosity
-    assert viscosity is not None
-    radius = _measure_bodies(equal_volume_radius, parts.bodies)[:, None]
-    if scene.dimension == 3:
+    assert isinstance(model.fluid, Fluid)
+    radius, d = _measure_bodies(equal_volume_radius, model.shapes)[:, None], model.dimension
+    if d == 3:
         along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
     else:
-        along, about = 4.0 * np.pi / np.log(float(np.max(parts.domain.size)) / radius), 4.0 * np.pi * radius**2
-    spin = 1 if scene.dimension == 2 else 3
-    return viscosity * np.hstack([np.repeat(along, scene.dimension, axis=1), np.repeat(about, spin, axis=1)])
+        along, about = 4.0 * np.pi / np.log(float(np.max(model.domain.size)) / radius), 4.0 * np.pi * radius**2
+    spin = 1 if d == 2 else 3
+    return model.fluid.viscosity * np.hstack([np.repeat(along, d, axis=1), np.repeat(about, spin, axis=1)])
 
 
 def _reynolds(driving: FloatArray, drag: Callable[[FloatArray], FloatArray]) -> FloatArray:
@@ -144,41 +136,41 @@ def _cylinder_drag(reynolds: FloatArray) -> FloatArray:
     return np.asarray(1.0 + 10.0 * reynolds ** (-2.0 / 3.0))
 
 
-def _free_heights(parts: Parts, weight: FloatArray) -> FloatArray:
+def _free_heights(model: Model, weight: FloatArray) -> FloatArray:
     """Way along the weight from each body to the end of the box around the domain, less the range; zero without weight
     (n,)."""
-    lower, upper = parts.domain.extent
+    lower, upper = model.domain.extent
     length = np.linalg.norm(weight, axis=1, keepdims=True)
     down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
-    position = np.array([table.position for table in parts.scene.body])
+    position = np.array([body.position for body in model.all_bodies])
     ahead = np.where(down > 0.0, upper - position, position - lower)
-    room = ahead - _measure_bodies(inscribed_radius, parts.bodies)[:, None]
+    room = ahead - _measure_bodies(inscribed_radius, model.shapes)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)
     height = np.where(length[:, 0] > 0.0, way.min(axis=1), 0.0)
-    shortest = min((table.range for table in law_tables(parts.scene)), default=0.0)
+    shortest = min((law.range for law in model.laws), default=0.0)
     return np.maximum(height - shortest, 0.0)
 
 
-def _own_speed(table: BodyTable, lever: float) -> float:
+def _own_speed(body: RigidBody, lever: float) -> float:
     """v₀ of a free body, or the greatest speed that its prescription gives to a driven one."""
-    motion = table.prescribed or table
+    motion = body.prescribed or body
     speed = _length(motion.velocity) + lever * _length(motion.angular_velocity)
-    if table.prescribed is None:
+    if body.prescribed is None:
         return speed
-    return speed + 2.0 * np.pi * (table.prescribed.frequency or 0.0) * _length(table.prescribed.amplitude)
+    return speed + 2.0 * np.pi * (body.prescribed.frequency or 0.0) * _length(body.prescribed.amplitude)
 
 
-def fastest_flow(scene: Scene, domain: Domain) -> float:
+def fastest_flow(model: Model) -> float:
     """Greatest speed prescribed on the boundary and at the start, at the points and times sampled [length/time]."""
-    inflows = sampled_inflows(scene, domain)
-    times = sample_times(scene, steady=all(inflow.velocity.is_steady for inflow in inflows))
+    inflows = sampled_inflows(model.conditions, model.domain)
+    times = sample_times(model.conditions, model.time.end, steady=all(inflow.velocity.is_steady for inflow in inflows))
     sliding = [
-        float(np.linalg.norm(wall.velocity(points_of(wall.shape, domain)), axis=1).max())
-        for wall in repelling_walls(scene, domain)
+        float(np.linalg.norm(wall.velocity(points_of(wall.shape, model.domain)), axis=1).max())
+        for wall in model.walls
         if wall.velocity is not None
     ]
     inflowing = [inflow.speed(time) for inflow in inflows for time in times]
-    return max([fastest_at_start(scene, domain), *sliding, *inflowing])
+    return max([model.fluid.fastest_at_start(model.domain), *sliding, *inflowing])
 
 
 def _lever(body: Body) -> float:

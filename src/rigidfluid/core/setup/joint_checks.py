@@ -1,48 +1,39 @@
-"""Tables of joints, held directions and springs that contradict themselves."""
+"""Joints, held directions and springs that contradict themselves."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rigidfluid.core.setup.joint_kinds import joint_kinds
+from rigidfluid.core.setup.rigid_body import DIRECTIONS
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.types import BoolArray
-    from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene, SpringTable
+    from rigidfluid.core.model.types import FloatArray
+    from rigidfluid.core.scene.scene import SpringTable
+    from rigidfluid.core.setup.model import Model
+    from rigidfluid.core.setup.rigid_body import JoinedBodies, RigidBody
 
-DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
-"""Names of the d+k directions of motion."""
 
-
-def check_joints(scene: Scene) -> None:
-    """Refuse, with SceneError, invalid tables of joints and of bodies' links to the ground, before anything is
-    built."""
-    for number, body in enumerate(scene.body):
-        _check_free(body, scene.dimension, f"body.{number}")
-        _check_spring(body, scene.dimension, f"body.{number}")
-    names = Counter(joint.name for joint in scene.joint)
+def check_joints(model: Model) -> None:
+    """Refuse, with SceneError, invalid joints and bodies' links to the ground, before anything is built."""
+    for number, body in enumerate(model.bodies):
+        _check_free(body, f"body.{number}")
+        _check_spring(body, f"body.{number}")
+    names = Counter(joint.name for joint in model.joints)
     for name in names:
-        if names[name] > 1 or name in (body.name for body in scene.body):
+        if names[name] > 1 or name in (body.name for body in model.all_bodies):
             raise SceneError("joint.name", repr(name), "a name that no other joint or body has", "Rename it.")
-    for number, joint in enumerate(scene.joint):
-        _check_ends(scene, joint, f"joint.{number}")
-    joint_kinds(scene)
+    for number, joint in enumerate(model.joints):
+        _check_ends(model, joint, f"joint.{number}")
 
 
-def held_directions(body: BodyTable, dimension: int) -> BoolArray:
-    """Directions (d+k,) in which the key `free` of a body's table holds it."""
-    names = DIRECTIONS[dimension]
-    return np.array([body.free is not None and name not in body.free for name in names])
-
-
-def _check_free(body: BodyTable, dimension: int, at: str) -> None:
+def _check_free(body: RigidBody, at: str) -> None:
     if body.free is None:
         return
+    dimension = body.shape.dimension
     names, given = DIRECTIONS[dimension], list(body.free)
     _refuse_beside(body, "free", at)
     for name in given:
@@ -54,16 +45,17 @@ def _check_free(body: BodyTable, dimension: int, at: str) -> None:
     if not given:
         raise SceneError(f"{at}.free", "none", "one direction or more", "Set `fixed = true` in its place.")
     for key, part in (("velocity", names[:dimension]), ("angular_velocity", names[dimension:])):
-        for held, speed in zip(part, getattr(body, key) or (), strict=False):
+        for held, speed in zip(part, _values(getattr(body, key)), strict=False):
             if held not in body.free and speed != 0.0:
                 raise SceneError(f"{at}.{key}", f"{speed:g} along {held!r}, which is held", "0 there", "Set it to 0.")
 
 
-def _check_spring(body: BodyTable, dimension: int, at: str) -> None:
+def _check_spring(body: RigidBody, at: str) -> None:
     if body.spring is None:
         return
     _refuse_beside(body, "spring", at)
-    names, held = DIRECTIONS[dimension], held_directions(body, dimension)
+    dimension, held = body.shape.dimension, body.held_directions
+    names = DIRECTIONS[dimension]
     for straight, turning in (("stiffness", "angular_stiffness"), ("damping", "angular_damping")):
         for key, part in ((straight, slice(0, dimension)), (turning, slice(dimension, None))):
             given = getattr(body.spring, key) or ()
@@ -83,7 +75,7 @@ def _strengths(spring: SpringTable) -> list[tuple[float, ...]]:
     return [getattr(spring, key) or () for key in keys]
 
 
-def _refuse_beside(body: BodyTable, key: str, at: str) -> None:
+def _refuse_beside(body: RigidBody, key: str, at: str) -> None:
     """Whose motion is given cannot be held or pulled."""
     for other in ("fixed", "prescribed"):
         if getattr(body, other):
@@ -91,8 +83,13 @@ def _refuse_beside(body: BodyTable, key: str, at: str) -> None:
             raise SceneError(f"{at}.{key}", statement, None, f"Remove `{key}` or `{other}`.")
 
 
-def _check_ends(scene: Scene, joint: JointTable, at: str) -> None:
-    names = [body.name for body in scene.body]
+def _values(vector: Sequence[float] | FloatArray | None) -> Sequence[float] | FloatArray:
+    """Components of a vector, none where it is not given."""
+    return () if vector is None else vector
+
+
+def _check_ends(model: Model, joint: JoinedBodies, at: str) -> None:
+    names = [body.name for body in model.all_bodies]
     for number, name in enumerate(joint.between):
         if name not in names:
             shown = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")

@@ -1,4 +1,4 @@
-"""A scene's joints, held directions and springs become a linkage of its motions."""
+"""A model's joints, held directions and springs become a linkage of its motions."""
 
 from __future__ import annotations
 
@@ -11,17 +11,15 @@ from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.joints import GroundLink, NoJoints
 from rigidfluid.core.scene.scene import SpringTable
-from rigidfluid.core.setup.joint_checks import held_directions
-from rigidfluid.core.setup.joint_kinds import joint_kinds
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.model.joints import Joints
     from rigidfluid.core.model.motions import Motions
     from rigidfluid.core.model.types import FloatArray, IntArray, Pose
-    from rigidfluid.core.scene.scene import BodyTable, JointTable, Scene
+    from rigidfluid.core.setup.model import Model
+    from rigidfluid.core.setup.rigid_body import JoinedBodies, RigidBody
 
 LONGEST_TURN = 0.5
 """Greatest product of a spring's frequency and the step [1]: Verlet's scheme then errs by a hundredth of the frequency.
@@ -29,50 +27,50 @@ The rate at which a spring relaxes in a fluid without inertia counts as its freq
 
 
 def build_joints(
-    scene: Scene,
+    model: Model,
     pose: Pose,
     motions: Motions,
     controlled_twist: Callable[[float], FloatArray],
     resistance: FloatArray | None,
 ) -> Joints:
-    """Joints and ground links between the motions of a scene at the start.
+    """Joints and ground links between the motions of a model at the start.
 
     ``pose`` is the bodies', ``controlled_twist`` the prescribed twists (N, d+k) of the N motions by time;
     ``resistance`` (n, d+k) is a lower bound of that of a fluid
     without inertia [force·time/length | force·length·time]. Raises SceneError if joints hold what is held already,
     nothing can move in one, or a spring is too stiff for the step.
     """
-    ground = [_ground_link(body, number, scene.dimension) for number, body in enumerate(scene.body) if _is_held(body)]
-    if not scene.joint and not ground:
+    ground = [_ground_link(body, number) for number, body in enumerate(model.bodies) if body.linked_to_ground]
+    if not model.joints and not ground:
         return NoJoints(len(motions.mass))
-    joints = joints_of(scene, pose)
+    joints = placed_joints(model, pose)
+    for joint in joints:
+        if joint.kind.drive is not None:
+            refuse_quick_drive(joint.kind.drive, joint.name, model.time)
     linkage = JointLinkage(pose, joints, ground, motions, controlled_twist, resistance)
-    _check_step(scene, linkage)
+    _check_step(model.time.step, linkage)
     return linkage
 
 
-def joints_of(scene: Scene, pose: Pose) -> list[PlacedJoint]:
-    """The joints of a scene, with the components of mechanisms among its bodies, that are at ``pose`` at the start."""
-    return [_placed(scene, table, kind, pose) for table, kind in zip(scene.joint, joint_kinds(scene), strict=True)]
+def placed_joints(model: Model, pose: Pose) -> list[PlacedJoint]:
+    """Joints of a model, whose bodies are at ``pose`` at the start."""
+    names = [body.name for body in model.all_bodies]
+    return [_placed(joint, names, pose) for joint in model.joints]
 
 
-def joined_bodies(scene: Scene) -> IntArray:
+def joined_bodies(model: Model) -> IntArray:
     """Numbers of the two bodies of each joint that is not with the ground (p, 2)."""
-    names = [body.name for body in scene.body]
-    pairs = [sorted(map(names.index, joint.between)) for joint in scene.joint if len(joint.between) == 2]
+    names = [body.name for body in model.all_bodies]
+    pairs = [sorted(map(names.index, joint.between)) for joint in model.joints if len(joint.between) == 2]
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
-def _is_held(body: BodyTable) -> bool:
-    return body.free is not None or body.spring is not None
-
-
-def _ground_link(body: BodyTable, number: int, dimension: int) -> GroundLink:
-    spring = body.spring or SpringTable()
+def _ground_link(body: RigidBody, number: int) -> GroundLink:
+    spring, dimension = body.spring or SpringTable(), body.shape.dimension
     return GroundLink(
         name=body.name,
         body=number,
-        held=held_directions(body, dimension),
+        held=body.held_directions,
         stiffness=_join_directions(dimension, spring.stiffness, spring.angular_stiffness),
         damping=_join_directions(dimension, spring.damping, spring.angular_damping),
         rest=None if spring.rest is None else np.array(spring.rest),
@@ -85,18 +83,15 @@ def _join_directions(dimension: int, straight: Sequence[float] | None, turning: 
     return np.array([*(straight or [0.0] * dimension), *(turning or [0.0] * k)])
 
 
-def _placed(scene: Scene, table: JointTable, kind: Joint, pose: Pose) -> PlacedJoint:
-    names = [body.name for body in scene.body]
-    first, *second = map(names.index, table.between)
-    if kind.drive is not None:
-        refuse_quick_drive(kind.drive, table.name, scene.time)
-    point = pose.position[first].copy() if table.at is None else np.array(table.at)
-    return PlacedJoint(table.name, kind, first, second[0] if second else None, point)
+def _placed(joint: JoinedBodies, names: Sequence[str], pose: Pose) -> PlacedJoint:
+    first, *second = map(names.index, joint.between)
+    point = pose.position[first].copy() if joint.at is None else np.array(joint.at)
+    return PlacedJoint(joint.name, joint.kind, first, second[0] if second else None, point)
 
 
-def _check_step(scene: Scene, linkage: JointLinkage) -> None:
-    turn = linkage.frequency * scene.time.step
+def _check_step(step: float, linkage: JointLinkage) -> None:
+    turn = linkage.frequency * step
     if turn > LONGEST_TURN:
-        found = f"{scene.time.step:g}, in which the stiffest spring turns by {turn:.3g} rad"
+        found = f"{step:g}, in which the stiffest spring turns by {turn:.3g} rad"
         allowed = f"at most {LONGEST_TURN / linkage.frequency:.3g}, {LONGEST_TURN:g} rad"
         raise SceneError("time.step", found, allowed, "Shorten it, or soften the spring.")

@@ -1,4 +1,4 @@
-"""Masses and weights of a scene's bodies."""
+"""Masses and weights of a model's bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rigidfluid.core.mechanics.added_mass import added_mass
 from rigidfluid.core.model.types import FloatArray
 
 if TYPE_CHECKING:
-    from rigidfluid.core.setup.parts import Parts
+    from rigidfluid.core.setup.model import Model
 
 
 @dataclass(frozen=True)
@@ -25,23 +25,16 @@ class Masses:
     weight: FloatArray
 
 
-def masses_of(parts: Parts) -> Masses:
+def masses_of(model: Model) -> Masses:
     """Masses of all bodies, the components of mechanisms included."""
-    bodies, tables = parts.bodies, parts.scene.body
-    mass = np.array([table.density * body.volume for table, body in zip(tables, bodies, strict=True)])
-    inertia = mass[:, None, None] * np.array([body.unit_inertia for body in bodies])
-    added = _inert_density(parts) * np.array([added_mass(body) for body in bodies])
-    return Masses(mass, inertia, added, _submerged_weight(parts, mass))
+    mass = np.array([body.density * body.shape.volume for body in model.all_bodies])
+    inertia = mass[:, None, None] * np.array([shape.unit_inertia for shape in model.shapes])
+    added = model.fluid.inert_density * np.array([added_mass(shape) for shape in model.shapes])
+    return Masses(mass, inertia, added, _submerged_weight(model, mass))
 
 
-def _submerged_weight(parts: Parts, mass: FloatArray) -> FloatArray:
+def _submerged_weight(model: Model, mass: FloatArray) -> FloatArray:
     """(m - ρV)g with the exact volume, (n, d) [force]; the fluid carries no gravity, so buoyancy belongs here."""
-    fluid, dimension = parts.scene.fluid, parts.scene.dimension
-    volume = np.array([body.volume for body in parts.bodies])
-    return np.outer(mass - (fluid.density or 0.0) * volume, np.array(fluid.gravity or [0.0] * dimension))
-
-
-def _inert_density(parts: Parts) -> float:
-    """Density of the fluid that bodies have to move with them; none without a fluid, or without its inertia."""
-    fluid = parts.scene.fluid
-    return (fluid.density or 0.0) if parts.wet and fluid.model == "navier-stokes" else 0.0
+    volume = np.array([shape.volume for shape in model.shapes])
+    gravity = np.zeros(model.dimension) if model.gravity is None else np.array(model.gravity)
+    return np.outer(mass - model.fluid.density * volume, gravity)

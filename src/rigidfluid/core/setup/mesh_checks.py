@@ -10,22 +10,19 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.scene.scene import MeshTable, Scene
+    from rigidfluid.core.scene.scene import MeshTable, TimeTable
 
 MOST_CELLS = 10**9
 """Greatest number of cells, each a cube or square of the edge length: more are a slip of units, and a mesher would
 never end."""
 
 
-def check_mesh_table(scene: Scene) -> None:
+def check_mesh_table(mesh: MeshTable, time: TimeTable) -> None:
     """Refuse what contradicts itself in the tables alone; raises SceneError at the first contradiction."""
-    mesh = scene.mesh
-    if mesh is None:
-        return
     if mesh.size_body > mesh.size:
         raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
-    if mesh.remesh_every is not None and mesh.remesh_every < scene.time.step:
-        allowed = f"at least time.step = {scene.time.step}"
+    if mesh.remesh_every is not None and mesh.remesh_every < time.step:
+        allowed = f"at least time.step = {time.step}"
         raise SceneError("mesh.remesh_every", mesh.remesh_every, allowed, "Re-mesh less often.")
     if mesh.size_wall is not None:
         _check_size("mesh.size_wall", mesh.size_wall, mesh)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,15 +10,10 @@ import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
-from rigidfluid.core.model.types import BoolArray, FloatArray, Pose
+from rigidfluid.core.model.types import FloatArray, Pose
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import Scene
-
-
-def controlled_bodies(scene: Scene) -> BoolArray:
-    """Whether the motion of each body is given: fixed, or prescribed (n,)."""
-    return np.array([table.fixed or table.prescribed is not None for table in scene.body], dtype=bool)
+    from rigidfluid.core.setup.rigid_body import RigidBody
 
 
 @dataclass(frozen=True)
@@ -77,11 +73,11 @@ def _replace_row(rows: FloatArray, row: int, values: FloatArray | float) -> Floa
     return changed
 
 
-def prescribed_motion(scene: Scene, pose: Pose) -> PrescribedMotion:
-    """The motion that a scene prescribes to its bodies, the first of those that are at ``pose`` at the start."""
-    n, d = len(pose.position), scene.dimension
+def prescribed_motion(bodies: Sequence[RigidBody], pose: Pose) -> PrescribedMotion:
+    """The motion that is prescribed to ``bodies``, the first of those that are at ``pose`` at the start."""
+    n, d = pose.position.shape
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
-    for i, body in enumerate(scene.body):
+    for i, body in enumerate(bodies):
         motion = body.prescribed
         if motion is None:
             continue

@@ -1,4 +1,4 @@
-"""The window that a scene lets go with a body: what may be one, and what holds at its ends."""
+"""The window that a model lets go with a body: what may be one, and what holds at its ends."""
 
 from __future__ import annotations
 
@@ -10,40 +10,38 @@ import numpy as np
 from rigidfluid.core.model.conditions import BoundaryCondition, PrescribedPressure
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
-from rigidfluid.core.setup.boundary import condition_of, conditions
-from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import Scene, WindowTable
-    from rigidfluid.core.setup.parts import Parts
+    from rigidfluid.core.scene.scene import WindowTable
+    from rigidfluid.core.setup.model import Model
 
 
-def build_window(scene: Scene, parts: Parts, pose: Pose) -> Window | None:
-    """Window of a scene at the start, None for a scene without one.
+def build_window(model: Model, pose: Pose) -> Window | None:
+    """Window of a model at the start, None without one.
 
     Raises SceneError for an unknown body or axis, a window that does not fit into the domain, or conditions, a domain,
     detector or backend that allow none.
     """
-    table = scene.domain.window
+    table, domain = model.window, model.domain
     if table is None:
         return None
-    _check_parts(parts)
-    body = _followed_body(scene, table)
+    _check_parts(model)
+    body = _followed_body(model, table)
     axis, sign = "xyz".index(table.direction[-1]), -1.0 if table.direction[0] == "-" else 1.0
-    if axis >= scene.dimension:
-        remedy = f"The scene has {scene.dimension} dimensions."
+    if axis >= model.dimension:
+        remedy = f"The scene has {model.dimension} dimensions."
         raise SceneError("domain.window.direction", repr(table.direction), "along x or y", remedy)
-    if parts.domain.between(axis, *(float(corner[axis]) for corner in parts.domain.extent)) is None:
-        found = f"a window in a domain of type {parts.domain.name!r}"
+    if domain.between(axis, *(float(corner[axis]) for corner in domain.extent)) is None:
+        found = f"a window in a domain of type {domain.name!r}"
         raise SceneError("domain.window", found, "one in a domain that is the same all along, as 'box'", "Remove it.")
     start = float(pose.position[body, axis])
     behind, ahead = start - sign * table.behind, start + sign * table.ahead
-    window = Window(parts.domain, body, axis, start, behind, ahead)
-    _check_place(scene, parts, window, table)
-    _check_bodies(scene, parts, window, pose)
-    _check_conditions(scene, window)
+    window = Window(domain, body, axis, start, behind, ahead)
+    _check_place(window, table)
+    _check_bodies(model, window, pose)
+    _check_conditions(model, window)
     return window
 
 
@@ -57,32 +55,33 @@ def open_wake_end(conditions: Sequence[BoundaryCondition], window: Window | None
     return tuple(open_end if each is held and held.is_wall else each for each in conditions)
 
 
-def _followed_body(scene: Scene, table: WindowTable) -> int:
-    names = [body.name for body in scene.body]
+def _followed_body(model: Model, table: WindowTable) -> int:
+    names = [body.name for body in model.all_bodies]
     if table.follow not in names:
         allowed = f"a body: {', '.join(names)}"
         raise SceneError("domain.window.follow", repr(table.follow), allowed, suggestion(table.follow, names))
     number = names.index(table.follow)
-    if scene.body[number].fixed:
+    if model.all_bodies[number].fixed:
         found = f"{table.follow!r}, which is fixed"
         raise SceneError("domain.window.follow", found, "a body that moves", "Follow another, or remove the window.")
     return number
 
 
-def _check_parts(parts: Parts) -> None:
-    if not parts.wet:
-        found = f"a window with backend {parts.backend.part.name!r}, which has no mesh"
+def _check_parts(model: Model) -> None:
+    if not model.wet:
+        found = f"a window with backend {model.fluid.backend.part.name!r}, which has no mesh"
         raise SceneError("domain.window", found, "a backend with a mesh", "Remove the window.")
-    if parts.detector.part.needs_mesh:
-        found = f"{parts.detector.part.name!r} with a window, whose ends it would take for the domain's"
+    detector = model.detection[0].part
+    if detector.needs_mesh:
+        found = f"{detector.name!r} with a window, whose ends it would take for the domain's"
         allowed = "a detector that needs no mesh"
-        raise SceneError("contact.detector", found, allowed, f"Set it to {parts.exact_detector.name!r}.")
+        raise SceneError("contact.detector", found, allowed, f"Set it to {model.exact_detector.name!r}.")
 
 
-def _check_place(scene: Scene, parts: Parts, window: Window, table: WindowTable) -> None:
+def _check_place(window: Window, table: WindowTable) -> None:
     """The end behind is open: it may not start at the domain's own end, nor the one ahead where it must stop."""
-    behind, ahead = (parts.domain.names[end] for end in window.ends)
-    lower, upper = (float(corner[window.axis]) for corner in parts.domain.extent)
+    behind, ahead = (window.domain.names[end] for end in window.ends)
+    lower, upper = (float(corner[window.axis]) for corner in window.domain.extent)
     room = window.sign * (window.behind - (lower if window.sign > 0.0 else upper))
     if room < 0.0:
         found = f"{table.behind:g}, which reaches beyond {behind!r} by {-room:.6g}"
@@ -94,25 +93,25 @@ def _check_place(scene: Scene, parts: Parts, window: Window, table: WindowTable)
         raise SceneError("domain.window.ahead", found, allowed, "Shorten it, or leave out [domain.window].")
 
 
-def _check_bodies(scene: Scene, parts: Parts, window: Window, pose: Pose) -> None:
-    left = window.left_by(pose, np.array([body.bounding_radius for body in parts.bodies]))
+def _check_bodies(model: Model, window: Window, pose: Pose) -> None:
+    left = window.left_by(pose, np.array([shape.bounding_radius for shape in model.shapes]))
     if left is not None:
         low, high = window.interval(pose)
         raise SceneError(
             f"body.{left}.position",
-            f"{pose.position[left].tolist()}, where body {scene.body[left].name!r} is not well in the window",
+            f"{pose.position[left].tolist()}, where body {model.all_bodies[left].name!r} is not well in the window",
             f"at least {CLEARANCE:g} of its radii from {low:.6g} and {high:.6g} along {'xyz'[window.axis]}",
             "Move it, or lengthen domain.window.ahead or domain.window.behind.",
         )
 
 
-def _check_conditions(scene: Scene, window: Window) -> None:
+def _check_conditions(model: Model, window: Window) -> None:
     """Conditions at the ends must hold as well wherever the window is."""
-    for number, (table, place) in enumerate(placed_tables(scene, window.domain)):
-        if number in window.ends and not condition_of(table, place).holds_along:
-            found = f"{table.type!r} on {place.piece.name!r}, an end of the window"
+    held = model.conditions
+    for end in sorted(window.ends):
+        if not held[end].holds_along:
+            found = f"{held[end].type!r} on {held[end].name!r}, an end of the window"
             raise SceneError("boundary", found, "'wall', 'velocity' or 'pressure' there", "Change it.")
-    held = conditions(scene, window.domain)
     behind, ahead = (held[end] for end in window.ends)
     if ahead.is_open and (behind.is_open or behind.is_wall):
         found = f"'pressure' on {ahead.name!r}, ahead of a window that is open behind"

@@ -95,7 +95,7 @@ def pair(reference: tuple[str, Results], other: tuple[str, Results]) -> Pair:
 
 def histories(results: Results) -> Histories:
     """Histories of the quantities that a comparison of runs takes."""
-    named = columns(results.scene.dimension)["bodies"]
+    named = columns(results.model.dimension)["bodies"]
     orientation = [name for name in ("angle", "qw", "qx", "qy", "qz") if name in named]
     spin = [name for name in ("w", "wx", "wy", "wz") if name in named]
     energy = results.energy["kinetic"] + results.energy["contact"]

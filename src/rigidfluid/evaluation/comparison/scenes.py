@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import FluidTable, Scene, read_toml
 from rigidfluid.core.scene.validation import fields_by_key, unknown_key
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 

@@ -8,15 +8,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.mesh.size_interface import with_fields_at_rest
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.core.output.writer import writing
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
-from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.insertion.figures import Figures, measured
 from rigidfluid.evaluation.insertion.page import write_page
@@ -29,15 +28,16 @@ _WAYS = {
 
 
 def insert(
-    scene: Scene, out: Path | None = None, progress: Callable[[str], None] = lambda _: None
+    case: Case, out: Path | None = None, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Figures, list[Path]]:
-    """Make the first mesh of a scene with a [mesh] table; return the insertion's figures and the files written.
+    """Make the first mesh of a scene or a model with a fluid; return the insertion's figures and the files written.
 
     They go to ``out``, else to ``out/<scene name>_mesh``; ``progress`` is called with the name of each phase as it
     begins. Raises SceneError or PluginError if the scene cannot be built or has no mesh, MeshError if none can be made,
     OutputError if the disk refuses.
     """
-    table = scene.mesh
+    model = model_of(case)
+    table = model.fluid.mesh
     if table is None:
         raise SceneError(
             "mesh", "no such table", "a scene with [mesh] size and size_body", "Add the table; dry runs need none."
@@ -45,9 +45,9 @@ def insert(
     seconds: dict[str, float] = {}
     with _timed(seconds, "scene"):
         progress("checking the scene")
-        system, inserter = build_system(scene), inserter_of(table)
+        system, inserter = assemble(model), inserter_of(table)
         around = fluid_domain_at(system, system.pose)
-        sizes = with_fields_at_rest(sizes_of(table, system.domain), known_parts(scene).size_fields, around)
+        sizes = with_fields_at_rest(sizes_of(table, system.domain), model.fluid.size_fields, around)
         way = inserter.chosen(around.bodies, around.domain)
     with _timed(seconds, "insertion"):
         progress(_WAYS[way])
@@ -55,9 +55,9 @@ def insert(
     with _timed(seconds, "grading"):
         progress("grading the cells")
         mesh = remesh(mesh, around, sizes)
-    figures = measured(scene.name, way, mesh, system, seconds)
+    figures = measured(model.name, way, mesh, system, seconds)
     progress("writing mesh and report")
-    out = Path("out") / f"{scene.name}_mesh" if out is None else Path(out)
+    out = Path("out") / f"{model.name}_mesh" if out is None else Path(out)
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         files = [out / name for name in ("mesh.vtu", "mesh.msh", "insertion.json")]

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.tables import KINDS
 from rigidfluid.core.run.summary import ENERGIES, FIGURES
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.mechanisms import append_components
 from rigidfluid.errors import SceneError
 from rigidfluid.evaluation.studies.model import FigureTable
 from rigidfluid.registry import suggestion
@@ -39,7 +39,7 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
             f"{_FIELD}.probe", figure.probe or 0, allowed, "Correct it, or add output.probes to the scene."
         )
     if figure.body is not None:
-        _refuse_unknown(".body", figure.body, [body.name for body in append_components(scene)[0].body])
+        _refuse_unknown(".body", figure.body, [body.name for body in model_of(scene).all_bodies])
     if figure.at is not None and not 0 <= figure.at <= scene.time.end:
         allowed = f"a time from 0 to time.end, {scene.time.end:g}"
         raise SceneError(f"{_FIELD}.at", figure.at, allowed, "Correct it, or run for longer.")

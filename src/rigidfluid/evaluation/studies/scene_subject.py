@@ -7,10 +7,10 @@ from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.scene import Scene, read_toml
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.evaluation.studies.figure import check_figure, read_figure
 from rigidfluid.evaluation.studies.model import ErrorTable, Settings, Study
 from rigidfluid.evaluation.studies.subject import Outcome, Target, tried

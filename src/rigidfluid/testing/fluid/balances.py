@@ -62,7 +62,7 @@ class BalancesContract(FluidContract):
         """Couette's: u = U y between a wall at rest and one that slides at U, whose power μ U² is dissipated."""
         sliding = np.eye(dimension)[0] * DROP
         kinds = {"x0": _under(BACK), "x1": _under(BACK), "z0": Slip, "z1": Slip}
-        kinds["y1"] = partial(NoSlip, value=lambda _, x: np.tile(sliding, (len(x), 1)))
+        kinds["y1"] = partial(NoSlip, sliding=lambda x: np.tile(sliding, (len(x), 1)))
         flow = self.empty(problem(dimension, kinds, inertia=inertia), box(dimension, 3)).after(None).after(0.1)
         points = samples(dimension)
         velocity, pressure = flow.probe(points)

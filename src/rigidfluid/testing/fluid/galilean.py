@@ -43,7 +43,7 @@ class GalileanContract(FluidContract):
             return np.tile(translation, (len(points), 1))
 
         walls = FACES[: 2 * dimension]
-        posed = problem(dimension, dict.fromkeys(walls, partial(NoSlip, value=uniform)), 2)
+        posed = problem(dimension, dict.fromkeys(walls, partial(NoSlip, sliding=partial(uniform, 0.0))), 2)
         posed = replace(posed, dynamic_viscosity=VISCOSITY, initial=uniform)
         start = balls_pose(dimension)
         twist = np.zeros((2, size(start)))

@@ -7,11 +7,11 @@ import pytest
 from scenes import dry_tables
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.proximity import detect
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, FloatArray, Pose
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 FILM = {"law": "lubrication", "range": 1.0, "viscosity": 0.7, "cutoff": 1e-6}

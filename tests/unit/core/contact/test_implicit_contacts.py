@@ -7,14 +7,14 @@ from scipy.integrate import quad
 from touching import contact
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact import implicit_contacts
 from rigidfluid.core.contact.contact_newton import discrete_gradient
 from rigidfluid.core.contact.repulsion import RepulsionOptions
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Pose, Wrench
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError, StepError, StepRejected
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw

@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 from touching import NORMAL, contact, unstacked
 
 from rigidfluid.api import Simulation
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.hunt_crossley import LEAST
 from rigidfluid.core.contact.restitution import Restitution
@@ -19,8 +21,6 @@ from rigidfluid.core.contact.substep import _greatest
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Film, Motion
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.lubrication import LubricationLaw
 from rigidfluid.forces.normal import NormalLaw

@@ -10,6 +10,8 @@ import pytest
 from scenes import wet_tables
 from scipy.spatial.transform import Rotation
 
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.coupling.schemes import scheme_of
@@ -18,8 +20,6 @@ from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.state import MotionState, Past, State, unloaded
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, Twist, Wrench
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 
 TURN, STEP, NONE = [0.3, -0.5, 0.7], 1e-3, np.zeros(0)
 BODY: dict[int, dict[str, Any]] = {

@@ -10,7 +10,7 @@ from scipy.optimize import curve_fit, newton
 from scipy.special import kve
 
 import rigidfluid
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.case.load import scene_from_dict
 
 RADIUS, DENSITY, STIFFNESS, VISCOSITY, START = 0.5, 2.0, 10.0, 0.01, 0.02
 DISPLACED = np.pi * RADIUS**2

@@ -7,12 +7,12 @@ import pytest
 
 import rigidfluid
 from rigidfluid.checks import check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.proximity import interacting
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.geometry_checks import initial_contacts
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.errors import SceneError, StepError
 from rigidfluid.reports import report
 
@@ -182,7 +182,7 @@ def test_joined_bodies_do_not_repel_but_the_next_ones_do():
     apart = ball("d", 0.38, 0.73)
     joint = [hinge("b", "a", at=[0.265, 0.5]), hinge("b", "c", at=[0.495, 0.5])]
     scene = scene_from_dict(tables(*bodies, apart, joint=joint, contact=LAW))
-    system, parts = build_system(scene), known_parts(scene)
+    system, parts = build_system(scene), model_of(scene)
     near = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, np.inf)
     acting = interacting(system, near)
     names = {

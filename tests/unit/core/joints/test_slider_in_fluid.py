@@ -5,9 +5,9 @@ import pytest
 from linked_runs import linked_scene, misfit
 from paths import SCENES
 
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import load_scene
 
 pytestmark = pytest.mark.long
 

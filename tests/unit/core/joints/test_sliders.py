@@ -9,11 +9,11 @@ from linked_runs import bar, body, hinge, linked_scene, misfit, momenta
 
 import rigidfluid
 from rigidfluid.checks import check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.reports import report
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])

@@ -7,11 +7,11 @@ import pytest
 from scenes import dry_tables
 from scipy.special import ellipj, ellipkinc
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mechanics.free_rotation import rotate_freely
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepRejected
 
 INERTIA = np.array([1.0, 2.0, 3.0])

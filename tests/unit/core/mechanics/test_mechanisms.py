@@ -10,6 +10,8 @@ from mechanism_parts import Dumbbell, Ellipse, Hammer, PairOptions, Stroke
 
 import rigidfluid
 from rigidfluid.checks.report import check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.motions import body_accelerations
@@ -19,8 +21,6 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.types import Wrench
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.testing import MechanismContract
 

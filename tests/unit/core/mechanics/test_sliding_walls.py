@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
 from rigidfluid.core.setup.features import features
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 BELT = {"on": "bottom", "type": "wall", "velocity": [0.5, 0.0]}

@@ -9,10 +9,10 @@ import pytest
 from curved_channels import VISCOSITY, flow_between_cylinders, torque_between_cylinders
 from dish import CODE, in_a_dish
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.run import run
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 RUBBING = {"law": "spring-dashpot", "range": 0.02, "stiffness": 400.0, "damping": 1.0, "friction": 0.4}

@@ -10,8 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 from mesh_tools import ball, upright
+from models import with_backend
 
 from rigidfluid.backends.dolfinx.backend import Dolfinx
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -22,10 +26,6 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.periodic import check_periodic
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import MeshError, SceneError, StepError
 
@@ -165,7 +165,7 @@ def test_a_surface_without_an_opposite_one_is_refused() -> None:
 def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
     scene = channel()
     with pytest.raises(SceneError, match=r"boundary.0.type: found 'periodic' with backend 'dolfinx'"):
-        check_periodic(scene, Dolfinx, known_parts(scene).domain)
+        with_backend(model_of(scene), Dolfinx)
     with pytest.raises(SceneError, match=r"found 'periodic' with backend 'dry'"):
         channel(fluid={"backend": "dry"}, mesh=None)
 

@@ -13,7 +13,7 @@ from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.wake import Wake
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.boundary import surfaces_of
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.reports.plane import distance_grid
 from rigidfluid.reports.view_plane import ViewPlane

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from falling import falling_disk
 
-from rigidfluid.api import PartOptions, Scene, Simulation, SizeField, run, scene_from_dict
+from rigidfluid.api import Fluid, PartOptions, Scene, Simulation, SizeField, run, scene_from_dict
 from rigidfluid.checks import check
 from rigidfluid.checks.run_size import run_size
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.size_interface import with_fields_at_rest
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import PluginError, SceneError
 
 Install = Callable[..., Path]
@@ -92,7 +93,7 @@ def test_of_several_fields_the_least_size_counts(install: Install) -> None:
     around, plain = fluid_domain_at(system, system.pose), Sizes(0.3, 0.05)
     low, high = (0.04 + 0.3 * np.abs(points[:, 1] - height) for height in (1.0, 5.0))
     expected = np.minimum(wanted_size(points, around, plain), np.minimum(low, high))
-    found = wanted_size(points, around, with_fields_at_rest(plain, known_parts(scene).size_fields, around))
+    found = wanted_size(points, around, with_fields_at_rest(plain, model_of(scene).fluid.size_fields, around))
     np.testing.assert_array_equal(found, expected)
     assert (low == found).any()
     assert (high == found).any()
@@ -100,7 +101,10 @@ def test_of_several_fields_the_least_size_counts(install: Install) -> None:
 
 
 def test_an_object_that_nobody_registered_makes_cells() -> None:
-    plain, handed = Simulation(fall()), Simulation(fall(), size_fields=[AboutThePoint(PartOptions(), 2)])
+    plain = model_of(fall())
+    assert isinstance(plain.fluid, Fluid)
+    fluid = replace(plain.fluid, size_fields=[AboutThePoint(PartOptions(), 2)])
+    plain, handed = Simulation(plain), Simulation(replace(plain, fluid=fluid))
     assert cells_near(handed, (1.0, 1.0)) > 10 * cells_near(plain, (1.0, 1.0))
 
 
@@ -108,7 +112,7 @@ def test_the_check_counts_the_cells_that_a_field_asks_for_at_the_start(install: 
     install(BANDS.replace("RESULT", RIGHT), name="bands", module="bands")
     scene = fall({"type": "band", "height": 1.0, "size": 0.02})
     assert scene.mesh is not None
-    size = run_size(known_parts(scene), build_system(scene), scene.mesh, scene.time)
+    size = run_size(model_of(scene), build_system(scene), scene.mesh)
     assert size is not None
     assert size.start.cells == pytest.approx(len(Simulation(scene).state.mesh.cells), rel=0.2)
 

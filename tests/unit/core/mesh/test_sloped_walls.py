@@ -13,6 +13,7 @@ from drawn import drawn, oblique_tube, polyhedron, straight, written
 from mesh_files import meshed, write_gmsh41
 from mesh_tools import ball, nobody, upright
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -26,8 +27,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.run import run
-from rigidfluid.core.setup.boundary import surfaces_of
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.errors import MeshError
 
 TRAPEZOID = [(0.0, 0.0), (1.3, 0.0), (2.0, 1.0), (-0.4, 1.0)]

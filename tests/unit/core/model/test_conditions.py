@@ -58,7 +58,7 @@ def test_a_class_must_say_what_it_holds() -> None:
     ("kind", "answers"),
     [
         (NoSlip, "holds_all is_wall rests"),
-        (partial(NoSlip, value=uniform), "holds_all is_wall"),
+        (partial(NoSlip, sliding=partial(uniform, 0.0)), "holds_all is_wall"),
         (partial(PrescribedVelocity, value=uniform), "holds_all"),
         (PrescribedPressure, "holds_part is_open"),
         (Slip, "holds_part slips"),
@@ -78,7 +78,7 @@ def test_what_backends_ask_follows_from_what_a_class_holds(kind: type[BoundaryCo
 def test_at_a_corner_walls_hold_the_fluid_and_those_at_rest_before_others() -> None:
     """In from the left at 1, along the top at 2, and at rest below."""
     left = PrescribedVelocity(0, "left", np.array([1.0, 0.0]), lambda _, at: np.full_like(at, 1.0))
-    top = NoSlip(3, "top", np.array([0.0, -1.0]), lambda _, at: np.full_like(at, 2.0))
+    top = NoSlip(3, "top", np.array([0.0, -1.0]), lambda at: np.full_like(at, 2.0))
     right, bottom = NoSlip(1, "right", np.array([-1.0, 0.0])), NoSlip(2, "bottom", np.array([0.0, 1.0]))
     mesh = box(2, 2)
     numbering = Numbering.from_mesh(mesh)

@@ -11,8 +11,8 @@ from dry_scenes import ball, dry_scene
 
 import rigidfluid
 from rigidfluid.checks import check
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import PluginError
 from rigidfluid.registry import Registry
 

@@ -12,13 +12,13 @@ import pytest
 
 import rigidfluid
 from rigidfluid.checks import Finding, check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.stiffness import greatest_stiffness
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.overrides import override
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import PluginError, SceneError, StepError
 from rigidfluid.forces.contact import ContactLaw, ContactOptions
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions

@@ -10,8 +10,8 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError
 
 Install = Callable[..., Path]

@@ -12,6 +12,8 @@ from mesh_tools import ball, box, upright
 from threaded_ranks import on_ranks
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -22,8 +24,6 @@ from rigidfluid.core.model.window import Window
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError, StepError
 
 Tables = dict[str, Any]

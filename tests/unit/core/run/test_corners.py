@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 
 ROWS = [[0.0, 0.0], [0.06, 0.12], [0.1, 0.12], [0.16, 0.0], [0.2, 0.0]]
 

@@ -11,9 +11,9 @@ from scenes import dry_tables
 from starts import DISK, INFLOW, disk_in_box
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.energy_account import NOTICEABLE, STABILISED
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 

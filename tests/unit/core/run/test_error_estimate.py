@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from falling import falling_disk
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mechanics.time_scheme import extrapolation_weights
 from rigidfluid.core.model.state import ErrorEstimate, Past, State
 from rigidfluid.core.model.types import Twist, Wrench
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 
 SPEED, ENERGY = 50.0, 3.0
 

@@ -5,9 +5,9 @@ import pytest
 from scenes import dry_tables
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run import stepper as loop
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import StepError, StepRejected
 
 BALL = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [5.0, 5.0]}

@@ -19,14 +19,13 @@ import rigidfluid
 from rigidfluid import load_scene
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.checks import check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.boundary import conditions
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 
@@ -437,13 +436,13 @@ def test_plug_ins_are_looked_up_once_and_each_body_is_built_once(
     assert counts == {"lookups": 1, "bodies": 2}
 
 
-def test_an_equal_scene_has_parts_of_its_own() -> None:
-    """It may have been read where other plug-ins were installed; and what no scene has is not kept."""
+def test_an_equal_scene_has_a_model_of_its_own() -> None:
+    """It may have been read where other plug-ins were installed; and only the latest is kept."""
     one, other = scene_from_dict(DISK), scene_from_dict(DISK)
-    assert known_parts(one) is known_parts(one)
-    assert known_parts(other).bodies[0] is not known_parts(one).bodies[0]
-    kept = weakref.ref(known_parts(other).bodies[0])
-    del other
+    assert model_of(one) is model_of(one)
+    assert model_of(other).bodies[0] is not model_of(one).bodies[0]
+    kept = weakref.ref(model_of(other).bodies[0])
+    model_of(one)
     assert kept() is None
 
 
@@ -483,7 +482,7 @@ def test_later_boundaries_override_earlier_ones() -> None:
         {"on": "top", "type": "wall"},
     ]
     scene = scene_from_dict(changed({"boundary": boundary}))
-    left, right, bottom, top = conditions(scene, build_system(scene).domain)
+    left, right, bottom, top = model_of(scene).conditions
     assert [type(c) for c in (left, right, bottom, top)] == [PrescribedVelocity, PrescribedPressure, Slip, NoSlip]
     assert [c.surface for c in (left, right, bottom, top)] == [1, 2, 3, 4]
     points = np.array([[0.0, 0.0], [0.0, 1.5], [0.0, 3.0]])

@@ -13,11 +13,11 @@ import pytest
 from pydantic import BaseModel, ConfigDict, Field
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.output.writer import CHECKPOINT
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.validation import read_table
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.schema import json_schema
 from rigidfluid.errors import SceneError
 
 INLET = {"on": "left", "type": "velocity", "velocity": [1.0, 0.0]}

@@ -13,6 +13,7 @@ from mesh_tools import nobody, upright
 from other_units import Table, Units, in_units
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.remesh import initial_mesh
@@ -20,8 +21,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.reduced_model import Asked, reduced_model
 from rigidfluid.core.model.types import FloatArray, Mesh
 from rigidfluid.core.run.run import run
-from rigidfluid.core.setup.boundary import surfaces_of
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.mesh import MeshDomain, MeshOptions

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.history import History
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 
 VISCOSITY, FORCE = 0.5, 0.3

@@ -13,16 +13,15 @@ import pytest
 
 import rigidfluid
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
+from rigidfluid.core.case.boundary_values import BoundaryPressure, BoundaryVelocity
+from rigidfluid.core.case.expressions import Expression, VectorExpression
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.model.conditions import PrescribedPressure, PrescribedVelocity
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.setup.boundary import conditions
 from rigidfluid.core.setup.boundary_samples import quadrature
-from rigidfluid.core.setup.boundary_values import BoundaryPressure, BoundaryVelocity
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.expressions import Expression, VectorExpression
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError
@@ -56,7 +55,7 @@ def value_on_left(table: dict[str, Any], time: float, points: Any, dimension: in
     scene = scene_from_dict(
         tables([{"on": "left", **table}, *([] if table["type"] == "pressure" else [OPEN])], dimension)
     )
-    condition = conditions(scene, known_parts(scene).domain)[0]
+    condition = model_of(scene).conditions[0]
     given = condition.pressure if condition.is_open else condition.velocity
     return given(time, np.column_stack([np.zeros(len(points)), points]))
 
@@ -91,7 +90,7 @@ def test_a_ramp_rises_from_zero_with_two_continuous_derivatives() -> None:
 
 def _over(times: np.ndarray, table: dict[str, Any]) -> list[np.ndarray]:
     scene = scene_from_dict(tables([{"on": "left", **table}, OPEN]))
-    condition = conditions(scene, known_parts(scene).domain)[0]
+    condition = model_of(scene).conditions[0]
     return [condition.velocity(time, np.zeros((1, 2))) for time in times]
 
 

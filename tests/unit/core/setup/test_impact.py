@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from rigidfluid import Scene
-from rigidfluid.core.setup.build import build_system
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.setup.impact import terminal_speeds
-from rigidfluid.core.setup.load import scene_from_dict
-from rigidfluid.core.setup.parts import known_parts
 from rigidfluid.errors import SceneError
 
 RADIUS, RANGE, GRAVITY = 0.1, 0.02, 10.0
@@ -94,20 +94,20 @@ def drag_2d(v: float) -> float:
 @pytest.mark.parametrize("v", [0.01, 1.0, 20.0])
 def test_drag_holds_the_weight_at_the_terminal_speed(dimension: int, drag: Any, v: float) -> None:
     wet = scene(BALL, dimension=dimension, fluid=FLUID, mesh=MESH)
-    found = terminal_speeds(known_parts(wet), np.array([drag(v), 0.0][:1]))
+    found = terminal_speeds(model_of(wet), np.array([drag(v), 0.0][:1]))
     assert found[0] == pytest.approx(v, rel=1e-6)
 
 
 def test_newton_drag_beyond_the_correlation() -> None:
     wet = scene(BALL, dimension=3, fluid=FLUID, mesh=MESH)
     weight = 0.44 * 0.5 * 100.0**2 * np.pi * RADIUS**2
-    assert terminal_speeds(known_parts(wet), np.array([weight]))[0] == pytest.approx(100.0)
+    assert terminal_speeds(model_of(wet), np.array([weight]))[0] == pytest.approx(100.0)
 
 
 def test_stokes_without_inertia() -> None:
     for dimension, resistance in ((3, 6 * np.pi * RADIUS), (2, 4 * np.pi / np.log(2.0 / RADIUS))):
         slow = scene(BALL, dimension=dimension, fluid=FLUID | {"model": "stokes"}, mesh=MESH)
-        found = terminal_speeds(known_parts(slow), np.array([5.0]))
+        found = terminal_speeds(model_of(slow), np.array([5.0]))
         assert found[0] == pytest.approx(5.0 / (0.01 * resistance))
 
 
@@ -116,7 +116,7 @@ def test_a_fluid_limits_the_fall_but_not_the_start() -> None:
     slow = speed(BALL, fluid=thick, mesh=MESH)
     wet = scene(BALL, fluid=thick, mesh=MESH)
     pull = np.linalg.norm(build_system(wet).weight, axis=1)
-    assert slow == terminal_speeds(known_parts(wet), pull)[0] < 1.0
+    assert slow == terminal_speeds(model_of(wet), pull)[0] < 1.0
     assert speed(BALL | {"velocity": [0.0, -3.0]}, fluid=thick, mesh=MESH) == 3.0
 
 

@@ -3,8 +3,8 @@
 import pytest
 from scenes import dry_tables
 
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.load import scene_from_dict
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.system import build_system
 from rigidfluid.errors import SceneError
 
 ROWS = [[0.0, 0.0], [0.05, 0.1], [0.1, 0.0]]

@@ -18,9 +18,9 @@ from typer.testing import CliRunner, Result
 
 import rigidfluid
 from rigidfluid.cli import app
+from rigidfluid.core.case.system import build_system
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.scene.scene_text import scene_text
-from rigidfluid.core.setup.build import build_system
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.evaluation.comparison import child, compare, runs
 from rigidfluid.evaluation.comparison.compare import CompareProgress

@@ -13,13 +13,13 @@ from mesh_tools import ball, box, ellipsoid, upright
 from typer.testing import CliRunner
 
 from rigidfluid.cli import app
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import MeshError, SceneError
 from rigidfluid.evaluation.insertion import insert
 from rigidfluid.evaluation.insertion.pictures import sliced

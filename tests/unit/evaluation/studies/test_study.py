@@ -15,11 +15,11 @@ from typer.testing import CliRunner, Result
 
 import rigidfluid
 from rigidfluid.cli import app
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import OutputError, SceneError
 from rigidfluid.evaluation.studies import load_study, run_study, scene_subject
 from rigidfluid.evaluation.studies.figure import check_figure, read_figure

@@ -7,8 +7,8 @@ from scipy import sparse
 from throat import SLIPPERY, throat
 
 import rigidfluid
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.core.setup.load import scene_from_dict
 from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood import sparse_backend
 from rigidfluid.taylor_hood.few_columns import times

@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.nested.strokes import read_stroke_rows
-from rigidfluid.core.scene.scene import JointTable, Scene, StrokeTable
+from rigidfluid.core.scene.scene import JointTable, StrokeTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
+from rigidfluid.core.setup.rigid_body import JoinedBodies
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import JOINT, Registry
 
 
-def joint_kinds(scene: Scene) -> list[Joint]:
-    """Build the joints of a scene, without their bodies; raises PluginError for a type that is not there, SceneError
-    for options that are unknown or contradict each other."""
-    registry = _registry(scene)
-    return [_built(table, registry, scene.dimension, f"joint.{n}") for n, table in enumerate(scene.joint)]
+def joined_bodies(tables: Sequence[JointTable], registry: Registry, dimension: int) -> tuple[JoinedBodies, ...]:
+    """Joints of a scene; raises PluginError for a type that is not there, SceneError for options that are unknown or
+    contradict each other."""
+    return tuple(
+        JoinedBodies(table.name, _built(table, registry, dimension, f"joint.{number}"), table.between, table.at)
+        for number, table in enumerate(tables)
+    )
 
 
-def read_drives(scene: Scene) -> Scene:
-    """A scene with the rows of all files of drives in their place, so that a checkpoint needs no file; raises as
-    `joint_kinds` does."""
-    registry = _registry(scene)
-    tables = [_with_rows(table, registry, f"joint.{number}") for number, table in enumerate(scene.joint)]
-    return scene.model_copy(update={"joint": tuple(tables)})
-
-
-def _registry(scene: Scene) -> Registry:
-    return Registry.load() if scene.joint else Registry((), ())
+def read_drives(tables: Sequence[JointTable]) -> tuple[JointTable, ...]:
+    """Tables with the rows of all files of drives in their place, so that a checkpoint needs no file; raises as
+    `joined_bodies` does."""
+    if not tables:
+        return ()
+    registry = Registry.load()
+    return tuple(_with_rows(table, registry, f"joint.{number}") for number, table in enumerate(tables))
 
 
 def _built(table: JointTable, registry: Registry, dimension: int, at: str) -> Joint:

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.case.boundary_tables import placed_tables
 from rigidfluid.core.scene.scene import PeriodicTable
-from rigidfluid.core.setup.boundary import oblique_parts
-from rigidfluid.core.setup.boundary_tables import placed_tables
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.model.piece import Piece
-    from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.core.scene.scene import BoundaryTable
 
 _APART = 1e-12
 """Opposite surfaces have the same corners but for this, over the size of the domain."""
 
 
-def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
+def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tuple[int, int], ...]:
     """Pairs of numbers of periodic pieces; one with a higher pressure than its opposite comes first.
 
     Raises SceneError for a surface without an opposite one that is periodic too, or with a higher pressure on both.
     """
-    placed = enumerate(placed_tables(scene, domain))
+    placed = enumerate(placed_tables(tables, domain))
     chosen = {i: (table, place.at) for i, (table, place) in placed if isinstance(table, PeriodicTable)}
     pairs = []
     for i, (table, at) in chosen.items():
@@ -46,26 +45,6 @@ def periodic_pairs(scene: Scene, domain: Domain) -> tuple[tuple[int, int], ...]:
         if table.pressure_drop is not None or (other.pressure_drop is None and i < others[0]):
             pairs.append((i, others[0]))
     return tuple(pairs)
-
-
-def check_periodic(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
-    """Refuse, with SceneError, periodic surfaces together with a backend, window, domain or condition that cannot take
-    them."""
-    if not domain.periodic:
-        return
-    _, first = list(placed_tables(scene, domain))[domain.periodic[0][0]]
-    at = f"{first.at}.type"
-    if not backend.periodic_faces:
-        found = f"'periodic' with backend {backend.name!r}"
-        raise SceneError(at, found, "a backend that takes periodic surfaces", "Use backend = 'scikit-fem'.")
-    if scene.domain.window is not None:
-        raise SceneError(at, "'periodic' with a window", "one of both", "Remove [domain.window].")
-    if domain.facets is not None:
-        found = f"'periodic' in a domain of type {domain.name!r}, which is made of facets"
-        raise SceneError(at, found, "a domain with a CAD shape, as 'box'", "Choose another type.")
-    for other, place in oblique_parts(scene, domain):
-        found = f"'periodic' beside {other.type!r} on {place.piece.name!r}, which does not lie across an axis"
-        raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
 
 
 def _is_opposite(domain: Domain, piece: Piece, other: Piece) -> bool:

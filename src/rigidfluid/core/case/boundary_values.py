@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial, singledispatch
+from functools import partial
 
 import numpy as np
 
+from rigidfluid.core.case.boundary_tables import Place
+from rigidfluid.core.case.expressions import Expression, VectorExpression
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.core.scene.scene import BoundaryTable, PeriodicTable, PressureTable, VelocityTable, WallTable
-from rigidfluid.core.setup.boundary_tables import Place
-from rigidfluid.core.setup.expressions import Expression, VectorExpression
+from rigidfluid.core.scene.scene import PeriodicTable, PressureTable, VelocityTable, WallTable
+from rigidfluid.core.setup.boundary_data import BoundaryPressure, BoundaryVelocity, Profile, TimeFactor
 from rigidfluid.core.setup.profiles import Rectangle, couette, poiseuille, section
-from rigidfluid.core.setup.time_factor import UNCHANGED, TimeFactor
 from rigidfluid.errors import SceneError
-
-Profile = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -38,80 +36,24 @@ class PeakOfFlux:
         return self.flux(time, points)[:, None] * self.per_flux
 
 
-@dataclass(frozen=True)
-class BoundaryVelocity:
-    """Velocity prescribed on a surface: u(t, x) · profile(x) · factor(t), the ``profile`` 1 where it is None."""
-
-    velocity: VectorExpression | PeakOfFlux
-    profile: Profile | None = None
-    factor: TimeFactor = UNCHANGED
-
-    def __call__(self, time: float, points: FloatArray) -> FloatArray:
-        """Velocity (N, d) at ``points`` (N, d) [length/time]."""
-        velocity = self.peak(time, points)
-        return velocity if self.profile is None else self.profile(points)[:, None] * velocity
-
-    def peak(self, time: float, points: FloatArray) -> FloatArray:
-        """The velocity (N, d) where the profile is 1 [length/time]."""
-        return self.velocity(time, points) * self.factor(time)
-
-    @property
-    def is_uniform(self) -> bool:
-        """Whether it is the same everywhere on its surface."""
-        return self.profile is None and not self.velocity.names & {"x", "y", "z"}
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether it is the same at all times."""
-        return self.factor == UNCHANGED and "t" not in self.velocity.names
-
-
-@dataclass(frozen=True)
-class BoundaryPressure:
-    """Pressure prescribed on a surface: p(t, x) · factor(t) [force/length^(d-1)]."""
-
-    pressure: Expression
-    factor: TimeFactor = UNCHANGED
-
-    def __call__(self, time: float, points: FloatArray) -> FloatArray:
-        """Pressure (N,) at ``points`` (N, d)."""
-        return self.pressure(time, points) * self.factor(time)
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether it is the same at all times."""
-        return self.factor == UNCHANGED and "t" not in self.pressure.names
-
-
-@singledispatch
-def boundary_value(table: BoundaryTable, place: Place) -> BoundaryVelocity | BoundaryPressure | None:
-    """Velocity, pressure or drop of pressure that a table prescribes at a place; None of other tables.
-
-    Raises SceneError for an invalid expression, or a shape that the profile or a flux does not fit.
-    """
-    return None
-
-
-@boundary_value.register(VelocityTable)
 def prescribed_velocity(table: VelocityTable, place: Place) -> BoundaryVelocity:
-    """Velocity of a table with a velocity or flux; see `boundary_value`."""
+    """Velocity of a table with a velocity or flux; raises SceneError for an invalid expression, or a shape that the
+    profile or a flux does not fit."""
     piece, at = place.piece, place.at
     profile = _profile(piece, table.profile, f"{at}.profile")
     if table.flux is not None:
-        return BoundaryVelocity(_peak_of_flux(piece, profile, table.flux, f"{at}.flux"), profile, _factor(table))
+        return BoundaryVelocity(_peak_of_flux(piece, profile, table.flux, f"{at}.flux"), profile, factor=_factor(table))
     assert table.velocity is not None
     velocity = VectorExpression.parse(table.velocity, f"{at}.velocity", f" on {piece.name!r}")
-    return BoundaryVelocity(velocity, profile, _factor(table))
+    return BoundaryVelocity(velocity, profile, factor=_factor(table))
 
 
-@boundary_value.register(PressureTable)
 def prescribed_pressure(table: PressureTable, place: Place) -> BoundaryPressure:
     """Pressure of an open end."""
     pressure = Expression(table.pressure, f"{place.at}.pressure", place.dimension, f" on {place.piece.name!r}")
-    return BoundaryPressure(pressure, _factor(table))
+    return BoundaryPressure(pressure, factor=_factor(table))
 
 
-@boundary_value.register(PeriodicTable)
 def pressure_drop(table: PeriodicTable, place: Place) -> BoundaryPressure | None:
     """Pressure on a periodic surface less the pressure on the opposite one [force/length^(d-1)]; None if not given."""
     if table.pressure_drop is None:

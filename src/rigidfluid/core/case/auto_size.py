@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.build import build_system
-from rigidfluid.core.setup.parts import known_parts
+from rigidfluid.core.setup.assemble import assemble
 
 _EDGES_PER_DIAMETER = 10.0
 _DIGITS = 3
@@ -22,10 +22,10 @@ def auto_size_body(scene: Scene) -> float:
     The scene needs a mesh; its ``size_body`` is not read.
     """
     assert scene.mesh is not None
-    smallest = min((equal_volume_radius(body) for body in known_parts(scene).bodies), default=np.inf)
+    smallest = min((equal_volume_radius(shape) for shape in model_of(scene).shapes), default=np.inf)
     size = min(scene.mesh.size, 2.0 * smallest / _EDGES_PER_DIAMETER)
     fine = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"size_body": size})})
-    return _rounded(min(size, _half_layer(build_system(fine))))
+    return _rounded(min(size, _half_layer(assemble(model_of(fine)))))
 
 
 def _half_layer(system: System) -> float:

@@ -6,18 +6,14 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.case.auto_size import auto_size_body
+from rigidfluid.core.case.joint_kinds import read_drives
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
-from rigidfluid.core.setup.auto_size import auto_size_body
-from rigidfluid.core.setup.boundary_checks import check_boundary
-from rigidfluid.core.setup.interactions import check_interactions
-from rigidfluid.core.setup.joint_checks import check_joints
-from rigidfluid.core.setup.joint_kinds import read_drives
-from rigidfluid.core.setup.parts import known_parts
-from rigidfluid.core.setup.scene_checks import check_fluid, check_tables
-from rigidfluid.core.setup.time_factor import read_time_tables
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 
 
@@ -42,7 +38,7 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
         If it names a part that is not there.
     """
     scene = scene_of_results(data)
-    if missing_packages(known_parts(scene).backend.part):
+    if missing_packages(model_of(scene).fluid.backend.part):
         Registry.load().get(FLUID_BACKEND, scene.fluid.backend)  # says what is missing
     return scene
 
@@ -60,13 +56,10 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
 
 def _checked(data: Mapping[str, Any]) -> Scene:
-    scene = read_drives(read_time_tables(read_table(Scene, tables_now(data))))
-    check_tables(scene)
-    parts = known_parts(scene)
-    check_boundary(parts.scene, parts.domain)
-    check_interactions(parts.scene, parts.domain)
-    check_joints(parts.scene)
-    check_fluid(parts.scene, parts.backend.part, parts.domain)
+    tables = read_table(Scene, tables_now(data))
+    rows = {"boundary": read_time_tables(tables.boundary), "joint": read_drives(tables.joint)}
+    scene = tables.model_copy(update=rows)
+    model_of(scene)
     return scene
 
 

@@ -1,0 +1,50 @@
+"""Refuses tables of conditions that the domain does not have, or that contradict themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import singledispatch
+from typing import TYPE_CHECKING
+
+from rigidfluid.core.case.time_factor import rows_over_time
+from rigidfluid.core.nested.rows import check_rows
+from rigidfluid.core.scene.scene import BoundaryTable, VelocityTable, WallTable
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
+
+
+def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: float) -> None:
+    """Refuse, with SceneError, unknown names of surfaces, keys that do not go together, and rows over time that do not
+    reach from the start to the ``end`` [time]."""
+    for number, table in enumerate(tables):
+        _check_on(domain, table, f"boundary.{number}")
+        _check_table(table, f"boundary.{number}")
+    for at, rows in rows_over_time(tables).items():
+        check_rows(rows, end, at)
+
+
+def _check_on(domain: Domain, table: BoundaryTable, at: str) -> None:
+    allowed = ("all", *domain.names)
+    if table.on not in allowed:
+        raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+
+
+@singledispatch
+def _check_table(table: BoundaryTable, at: str) -> None:
+    """Refuse keys of a table that its type has and that do not go together; of most types they all do."""
+
+
+@_check_table.register(VelocityTable)
+def _check_velocity_table(table: VelocityTable, at: str) -> None:
+    if table.velocity is None and table.flux is None:
+        raise SceneError(f"{at}.velocity", "nothing", "a value with type = 'velocity'", "Add 'velocity' or 'flux'.")
+    if table.velocity is not None and table.flux is not None:
+        raise SceneError(f"{at}.flux", "flux takes the place of velocity, and both are given", None, "Keep one.")
+
+
+@_check_table.register(WallTable)
+def _check_wall_table(table: WallTable, at: str) -> None:
+    if table.centre is not None and table.angular_velocity is None:
+        raise SceneError(f"{at}.centre", "a centre is read only with an angular_velocity", None, "Leave it out.")

@@ -1,0 +1,78 @@
+"""The fluid that a scene asks for, with its backend and mesh, or none."""
+
+from __future__ import annotations
+
+from rigidfluid.core.case.expressions import VectorExpression
+from rigidfluid.core.case.part_options import refuse_unread
+from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.scene.scene import FluidTable, MeshTable, SizeFieldTable
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import FLUID_BACKEND, SIZE_FIELD, Registry
+
+
+def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, dimension: int) -> Fluid | NoFluid:
+    """The fluid of a scene, or none where its backend has no mesh.
+
+    Raises PluginError for a backend that is missing, SceneError for an option that is not allowed, and where density,
+    viscosity or mesh are missing.
+    """
+    backend = scene_backend(table, registry)
+    source = None if table.force is None else VectorExpression.parse(table.force, "fluid.force")
+    if not backend.part.needs_mesh:
+        _refuse_flow(table, backend.part)
+        return NoFluid(table.density or 0.0, backend)
+    beside = f"with backend {backend.part.name!r}"
+    for key in ("density", "viscosity"):
+        if getattr(table, key) is None:
+            raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
+    if mesh is None:
+        raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
+    initial = table.initial
+    assert table.density is not None
+    assert table.viscosity is not None
+    return Fluid(
+        density=table.density,
+        viscosity=table.viscosity,
+        mesh=mesh,
+        inertia=table.model == "navier-stokes",
+        source=source,
+        initial=initial if isinstance(initial, str) else VectorExpression.parse(initial, "fluid.initial"),
+        size_fields=tuple(
+            _size_field(field, f"mesh.field.{number}", registry, dimension) for number, field in enumerate(mesh.field)
+        ),
+        backend=backend,
+    )
+
+
+def scene_backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
+    """Class of the backend that a scene names, and its options."""
+    part = registry.find(FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
+    refuse_unread(table.options, [part], type(table).model_fields, "fluid")
+    return Selected(part, read_table(part.Options, table.options, "fluid"))
+
+
+def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:
+    """Raise SceneError for a force or a flow at the start that there is no fluid for."""
+    if table.force is not None:
+        found = f"{list(table.force)} with backend {backend.name!r}"
+        remedy = "Leave it out, or choose backend = 'scikit-fem'."
+        raise SceneError("fluid.force", found, "a backend with a fluid", remedy)
+    if table.initial != "rest":
+        allowed = f"'rest' with backend {backend.name!r}"
+        remedy = "Leave it out, or choose backend = 'scikit-fem'."
+        raise SceneError("fluid.initial", table.initial, allowed, remedy)
+
+
+def _size_field(table: SizeFieldTable, at: str, registry: Registry, dimension: int) -> SizeField:
+    part = registry.get(SIZE_FIELD, table.type, f"{at}.type")
+    refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        return part(options, dimension)
+    except SceneError as error:  # a field does not know its number
+        subject = f"{at}.{error.subject.removeprefix('mesh.field.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None

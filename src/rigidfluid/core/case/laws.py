@@ -1,0 +1,57 @@
+"""Laws of contact that a scene names: one in `[contact]`, and one in each `[[interaction]]`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from rigidfluid.core.case.part_options import own_options, refuse_unread
+from rigidfluid.core.model.interactions import Between
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.scene.scene import ContactTable, InteractionTable
+from rigidfluid.core.setup.contact_laws import ContactLaw, has_own_restitution
+from rigidfluid.registry import FORCE_LAW, Registry
+
+
+class _LawTable(NamedTuple):
+    """A table that names a law, with its ``field`` in the scene, its place among contacts, and the keys of its part."""
+
+    field: str
+    table: ContactTable | InteractionTable
+    between: Between
+    names: tuple[str, ...]
+
+
+def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], registry: Registry) -> list[ContactLaw]:
+    """All laws of a scene, that of `[contact]` first; raises PluginError for one that is missing, SceneError for an
+    option that is not allowed."""
+    found = []
+    for field, table, between, names in _law_tables(contact, interactions):
+        assert table.law is not None
+        assert table.range is not None
+        part = registry.get(FORCE_LAW, table.law, f"{field}.law")
+        if isinstance(table, InteractionTable):
+            refuse_unread(table.options, [part], InteractionTable.model_fields, field)
+        own = {"restitution": table.restitution} if has_own_restitution(part) and table.restitution is not None else {}
+        options = own_options(part, {**table.options, **own}, field)
+        found.append(
+            ContactLaw(
+                law=Selected[ForceLaw](part, options),
+                range=table.range,
+                smallest_gap=table.smallest_gap,
+                restitution=table.restitution,
+                restitution_stokes=table.restitution_stokes,
+                between=between,
+                names=names,
+                field=field,
+            )
+        )
+    return found
+
+
+def _law_tables(contact: ContactTable, interactions: Sequence[InteractionTable]) -> Iterator[_LawTable]:
+    if contact.law is not None and contact.range is not None:
+        yield _LawTable("contact", contact, "all", ())
+    for number, table in enumerate(interactions):
+        yield _LawTable(f"interaction.{number}", table, table.between, table.names or ())

@@ -1,0 +1,161 @@
+"""A scene becomes a model: its tables in the place of which the parts that they name are put."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from functools import lru_cache, singledispatch
+
+from rigidfluid.core.case.body_sizes import refuse_lost_body
+from rigidfluid.core.case.boundary import condition_makers
+from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
+from rigidfluid.core.case.contact_table_checks import check_contact_table
+from rigidfluid.core.case.fluid import scene_fluid
+from rigidfluid.core.case.joint_kinds import joined_bodies
+from rigidfluid.core.case.laws import scene_laws
+from rigidfluid.core.case.mechanisms import placed_mechanisms
+from rigidfluid.core.case.part_options import own_options, refuse_unread
+from rigidfluid.core.case.periodic import periodic_pairs
+from rigidfluid.core.contact.detector_choice import choose_detector
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body, Detector, Part
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.scene.scene import BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.model import ContactStepping, Model
+from rigidfluid.core.setup.rigid_body import RigidBody
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
+
+Case = Scene | Model
+"""A scene, or a model that was made of objects."""
+
+AUTO = "auto"
+"""Value of `contact.detector` that leaves the choice to `choose_detector`."""
+
+
+@singledispatch
+def model_of(case: Case) -> Model:
+    """The model that a scene describes; a model is its own.
+
+    Raises PluginError if a part is missing, SceneError for what is unknown, missing or not allowed.
+    """
+    raise TypeError(f"a scene or a model is needed, not {type(case).__name__}")
+
+
+@model_of.register
+def _itself(case: Model) -> Model:
+    return case
+
+
+@model_of.register
+def _latest(case: Scene) -> Model:
+    return _kept(_ThisScene(case))
+
+
+class _ThisScene:
+    """A scene as a key: an equal one may have been read where other plug-ins were installed."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    def __hash__(self) -> int:
+        return id(self.scene)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _ThisScene) and self.scene is other.scene
+
+
+@lru_cache(maxsize=1)
+def _kept(this: _ThisScene) -> Model:
+    """Model of a scene, the latest of which is kept: a scene is loaded, and then run, checked or reported."""
+    return _model(this.scene, Registry.load())
+
+
+def _model(scene: Scene, registry: Registry) -> Model:
+    check_contact_table(scene.contact, scene.interaction)
+    domain = _domain(scene.domain, scene.boundary, registry, scene.dimension)
+    check_boundary_tables(scene.boundary, domain, scene.time.end)
+    mechanisms = placed_mechanisms(scene.mechanism, registry, scene.dimension)
+    bodies = tuple(_body(table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body))
+    fluid = scene_fluid(scene.fluid, scene.mesh, registry, scene.dimension)
+    laws = scene_laws(scene.contact, scene.interaction, registry)
+    shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
+    detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.needs_mesh, laws)
+    return Model(
+        domain=domain,
+        bodies=bodies,
+        time=scene.time,
+        fluid=fluid,
+        gravity=scene.fluid.gravity,
+        boundary=condition_makers(scene.boundary, domain),
+        mechanisms=mechanisms,
+        joints=joined_bodies(scene.joint, registry, scene.dimension),
+        laws=tuple(laws),
+        detector=detector,
+        detector_why=why,
+        stepping=ContactStepping(
+            scene.contact.substeps, scene.contact.stepping == "implicit", scene.contact.impact_speed
+        ),
+        window=scene.domain.window,
+        output=scene.output,
+        name=scene.name,
+        seed=scene.scene.seed,
+        tables=scene.to_dict(),
+        registry=registry,
+    )
+
+
+def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
+    part = registry.get(DOMAIN, table.type)
+    refuse_unread(table.options, [part], type(table).model_fields, "domain")
+    domain = part(read_table(part.Options, table.options, "domain"), dimension)
+    return domain.with_periodic(periodic_pairs(boundary, domain))
+
+
+def _body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:
+    shape = _shape(table, at, registry, dimension)
+    own = {field.name: getattr(table, field.name) for field in fields(RigidBody) if field.name != "shape"}
+    return RigidBody(shape=shape, **own)
+
+
+def _shape(table: BodyTable, at: str, registry: Registry, dimension: int) -> Body:
+    part = registry.get(BODY, table.type, f"{at}.type")
+    refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        shape = part(options, dimension)
+    except SceneError as error:  # a body does not know its number
+        subject = f"{at}.{error.subject.removeprefix('body.')}"
+        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    refuse_lost_body(shape, at)
+    return shape
+
+
+def _detector(
+    table: ContactTable,
+    registry: Registry,
+    around: tuple[Sequence[Body], Domain],
+    mesh: bool,
+    laws: Sequence[ContactLaw],
+) -> tuple[Selected[Detector], str]:
+    """The detector that a scene names, or the cheapest that is exact for shapes in a domain; and why it is this one."""
+    part, why = _detector_class(table, registry, around, mesh and bool(laws))
+    if part.needs_mesh and not mesh:
+        remedy = 'Use detector = "auto", or a backend with a mesh.'
+        raise SceneError("contact.detector", f"{part.name!r} without a mesh", "a detector that needs none", remedy)
+    readers: list[type[Part]] = [part, laws[0].law.part] if table.law else [part]
+    hint = "" if table.law else "Name the law that reads it: `law = …`."
+    refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
+    return Selected(part, own_options(part, table.options, "contact")), why
+
+
+def _detector_class(
+    table: ContactTable, registry: Registry, around: tuple[Sequence[Body], Domain], mesh: bool
+) -> tuple[type[Detector], str]:
+    if table.detector != AUTO:
+        return registry.get(DETECTOR, table.detector), "the scene names it"
+    shapes, domain = around
+    detector, why = choose_detector(shapes, domain.pieces, mesh, registry)
+    return detector, f"chosen as {why}"

@@ -1,0 +1,140 @@
+"""A model becomes a system: motions, joints, loads, laws and detector, ready for the loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache, partial
+
+import numpy as np
+
+from rigidfluid.core.mechanics.carried_leverage import leverages
+from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
+from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
+from rigidfluid.core.model.interactions import acting_together
+from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
+from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Twist
+from rigidfluid.core.nested.placing import initial_pose, initial_twist
+from rigidfluid.core.setup.geometry_checks import check_geometry
+from rigidfluid.core.setup.impact import creeping_resistances
+from rigidfluid.core.setup.joints import build_joints, joined_bodies
+from rigidfluid.core.setup.loads import build_loads
+from rigidfluid.core.setup.masses import Masses, masses_of
+from rigidfluid.core.setup.model import Model
+from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
+from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
+from rigidfluid.core.setup.window import build_window, open_wake_end
+
+_MOST_PAIRS = 1000
+
+
+def assemble(model: Model) -> System:
+    """Make the system of a model, and check that its objects fit together.
+
+    Raises SceneError if a body overlaps another or a surface of the domain, or the mesh is
+    too coarse for a gap.
+    """
+    masses = masses_of(model)
+    motions, given = _motions(model, masses)
+    pose = motions.poses(motions.pose, 0.0)
+    check_geometry(model, pose)
+    window = build_window(model, pose)
+    problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.dimension)
+    joints = build_joints(model, pose, motions, given, _least_resistance(model))
+    motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
+    loads = build_loads(model, masses, motions, joints)
+    interactions = tuple(law.interaction(model.surfaces, loads) for law in model.laws)
+    chosen, why = model.detection
+    detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
+    backend = model.fluid.backend
+    return System(
+        dimension=model.dimension,
+        bodies=model.shapes,
+        surfaces=model.surfaces,
+        domain=model.domain,
+        walls=model.walls,
+        wall_velocity=None if all(wall.velocity is None for wall in model.walls) else SlidingWalls(model.walls),
+        mass=masses.mass,
+        added_mass=masses.added,
+        inertia=masses.inertia,
+        weight=masses.weight,
+        pose=pose,
+        twist=motions.kinematics(motions.pose, 0.0).component_twist(motions.twist),
+        motions=motions,
+        joints=joints,
+        assembly=_assemblies(model),
+        controlled=model.controlled,
+        controlled_twist=given,
+        controlled_pose=given.pose_at,
+        fluid=problem,
+        backend_type=backend.part,
+        make_backend=cache(partial(backend.part, backend.options, problem)),
+        detector=detector,
+        detector_why=why,
+        reach=_reach(detector, law),
+        leverage=leverages(model.shapes, motions, model.time.end),
+        interactions=interactions,
+        law=law,
+        loads=loads,
+        substeps=model.stepping.substeps,
+        implicit=model.stepping.implicit,
+        window=window,
+        joined=joined_bodies(model),
+    )
+
+
+def _motions(model: Model, masses: Masses) -> tuple[Motions, PrescribedMotion]:
+    """The motions that carry the bodies, where and as they start, and those that are given."""
+    wholes: tuple[RigidBody | PlacedMechanism, ...] = (*model.bodies, *model.mechanisms)
+    start = initial_pose(wholes, model.dimension)
+    given = prescribed_motion(model.bodies, start)
+    single = model.controlled[: len(model.bodies)]
+    started = _initial_twist(initial_twist(wholes, model.dimension), single, given(0.0))
+    own = masses.mass, masses.inertia, model.controlled, start, started
+    return (CarriedBodies(model.mechanisms_by_name, *own) if model.mechanisms else SingleBodies(*own)), given
+
+
+def _assemblies(model: Model) -> IntArray:
+    """A number for each body, the same for parts of one articulated body (n,)."""
+    wholes: list[str | int] = [body.part_of or number for number, body in enumerate(model.all_bodies)]
+    first: dict[str | int, int] = {}
+    return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
+
+
+def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
+    """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are controlled."""
+    d, held = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
+    held[: len(controlled), 0] = controlled
+    return Twist(
+        np.where(held, given[:, :d], twist.velocity),
+        np.where(held, given[:, d:], twist.angular_velocity),
+    )
+
+
+def _least_resistance(model: Model) -> FloatArray | None:
+    """Least resistance of a fluid without inertia to each body (n, d+k), None in any other."""
+    return creeping_resistances(model) if model.wet and not model.fluid.inertia else None
+
+
+def _reach(detector: Detector, law: ForceLaw | None) -> float:
+    """Detection distance [length]: the detector's preferred reach, capped at the largest gap worth measuring."""
+    law_range = law.range if law else 0.0
+    return min(detector.preferred_reach(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
+
+
+def gap_reach(system: System) -> float:
+    """The largest gap that is worth measuring, whatever the detector sees [length]."""
+    return _worth_measuring(system.bodies, len(system.walls), system.law.range if system.law else 0.0)
+
+
+def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float) -> float:
+    """Among few bodies any gap; among many at most twice the largest body's size beyond the range.
+
+    So the work grows with the number of neighbours and not of pairs.
+    """
+    if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS:
+        return math.inf
+    return law_range + 2.0 * max(body.bounding_radius for body in bodies)

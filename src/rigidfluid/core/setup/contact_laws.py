@@ -1,0 +1,153 @@
+"""Laws of a model, each with the contacts that it acts in, and the interactions that are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rigidfluid.core.contact.film_loss import FilmLoss
+from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.model.interactions import Between, Interaction
+from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.model.types import Loads
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+if TYPE_CHECKING:
+    from rigidfluid.core.setup.model import Model
+
+SMALLEST_GAP = 0.25
+"""The smallest gap wanted over the range of the law, if none is given."""
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """A law of contact, and the contacts that it acts in; forces of several add up.
+
+    Parameters
+    ----------
+    law : Selected
+        Class of the law and its options; it is made once the loads of contacts are known.
+    range : float
+        Gap above which it is zero [length].
+    smallest_gap : float, optional
+        Gap at which the expected impact is to end; range/4 if not given [length].
+    restitution : float, optional
+        Speed after over speed before a dry head-on impact; 1 if not given [1].
+    restitution_stokes : float, optional
+        β, with which an impact ends with ``restitution`` · exp(-β/St) of its speed, St its Stokes number [1].
+    between : str
+        Contacts at `walls`, of `pairs` of bodies, or `all`.
+    names : sequence of str
+        Bodies or walls: all contacts of one, or that of two with each other; any contacts if empty.
+    field : str
+        Key of the scene's table that asks for it, for messages.
+    """
+
+    law: Selected[ForceLaw]
+    range: float
+    smallest_gap: float | None = None
+    restitution: float | None = None
+    restitution_stokes: float | None = None
+    between: Between = "all"
+    names: tuple[str, ...] = ()
+    field: str = "contact"
+
+    @property
+    def aim(self) -> float:
+        """Gap at which the expected impact is to end [length]."""
+        return self.smallest_gap or SMALLEST_GAP * self.range
+
+    def interaction(self, surfaces: Sequence[str], loads: Loads) -> Interaction:
+        """The law made for ``loads``, with the contacts that it acts in; ``surfaces`` are the names of bodies and then
+        of the domain's pieces. Raises SceneError if the law refuses its options or loads."""
+        return Interaction(
+            field=self.field,
+            law=self._made(replace(loads, smallest_gap=self.aim)),
+            between=self.between,
+            surfaces=tuple(surfaces.index(name) for name in self.names),
+            smallest_gap=self.smallest_gap,
+        )
+
+    def _made(self, loads: Loads) -> ForceLaw:
+        part, options = self.law.part, self.law.options
+        try:
+            law = part(options, self.range, loads)
+            if self.restitution_stokes is None and (self.restitution in (None, 1.0) or has_own_restitution(part)):
+                return law
+            return Restitution(law, self.restitution or 1.0, self._film_loss(loads))
+        except SceneError as error:  # a law does not know its table
+            subject = f"{self.field}.{error.subject.removeprefix('contact.')}"
+            allowed = (error.allowed or "").replace("contact.range", f"{self.field}.range") or None
+            raise SceneError(subject, error.found, allowed, error.remedy) from None
+
+    def _film_loss(self, loads: Loads) -> FilmLoss | None:
+        if self.restitution_stokes is None:
+            return None
+        given = f"{self.field}.restitution_stokes", self.restitution_stokes
+        if has_own_restitution(self.law.part):
+            allowed = f"a law whose restitution is not its own, as it is with {self.law.part.name!r}"
+            raise SceneError(*given, allowed, "Remove it, or choose another law.")
+        if loads.film is None:
+            allowed = "a fluid with a viscosity, which the Stokes number of an impact is made of"
+            raise SceneError(*given, allowed, "Remove it, or choose a backend with a fluid.")
+        return FilmLoss(self.restitution_stokes, loads.film, loads)
+
+
+def has_own_restitution(law: type[ForceLaw]) -> bool:
+    """Whether the restitution is an option of the law itself."""
+    return "restitution" in law.Options.model_fields
+
+
+def check_laws(model: Model) -> None:
+    """Refuse, with SceneError, laws that act nowhere or cannot act there, or whose smallest gap is not below their
+    range."""
+    for law in model.laws:
+        if law.smallest_gap is not None and law.smallest_gap >= law.range:
+            allowed = f"a length above 0 and below {law.field}.range = {law.range}"
+            raise SceneError(f"{law.field}.smallest_gap", law.smallest_gap, allowed, "Shorten it, or widen the range.")
+        _check_names(model, law)
+        _check_shapes(model, law)
+
+
+def _check_names(model: Model, law: ContactLaw) -> None:
+    bodies, walls = [body.name for body in model.all_bodies], [wall.name for wall in model.walls]
+    for number, name in enumerate(law.names):
+        if name not in (*bodies, *walls):
+            raise _unknown(model, f"{law.field}.names.{number}", name, [*bodies, *walls])
+    at_walls = any(name in walls for name in law.names)
+    pair = len(law.names) == 2
+    if pair and (len(set(law.names)) == 1 or all(name in walls for name in law.names)):
+        raise _nowhere(law, "two different surfaces, one of them a body")
+    if (at_walls and law.between == "pairs") or (pair and not at_walls and law.between == "walls"):
+        raise _nowhere(law, f"surfaces that meet with between = {law.between!r}")
+    wholes = [model.all_bodies[bodies.index(name)].part_of for name in law.names if name in bodies]
+    if pair and len(wholes) == 2 and wholes[0] is not None and wholes[0] == wholes[1]:
+        raise _nowhere(law, "bodies that are not parts of one articulated body, which do not touch")
+
+
+def _check_shapes(model: Model, law: ContactLaw) -> None:
+    """Refuse a law that does not know the shapes of the bodies it acts on."""
+    named = [body.shape for body in model.all_bodies if body.name in law.names]
+    met, part = named if len(law.names) == 2 else model.shapes, law.law.part
+    if part.balls_only and any(shape.radius is None for shape in met):
+        remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
+        found = f"{part.name!r} with bodies that are no balls"
+        raise SceneError(f"{law.field}.law", found, "a law for any shape", remedy)
+    if part.film and any(shape.semi_axes is None for shape in met):
+        remedy = "Keep it to other contacts by `between` or `names`, or choose another law."
+        found = f"{part.name!r} with bodies of unknown curvature"
+        raise SceneError(f"{law.field}.law", found, "balls, ellipses and ellipsoids", remedy)
+
+
+def _unknown(model: Model, field: str, name: str, known: Sequence[str]) -> SceneError:
+    open_face = "a surface that is no wall, and does not repel" if name in model.domain.names else "no surface"
+    shown = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
+    remedy = suggestion(name, known) or "Name a body or a wall."
+    return SceneError(field, f"{name!r}, {open_face}", f"one of {shown}", remedy)
+
+
+def _nowhere(law: ContactLaw, allowed: str) -> SceneError:
+    return SceneError(f"{law.field}.names", list(law.names), allowed, "Correct the names, or `between`.")

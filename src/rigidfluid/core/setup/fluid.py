@@ -1,0 +1,141 @@
+"""The fluid of a model, or none: one object that is always there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.model.conditions import BoundaryCondition, Value
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.interfaces import Body, FluidBackend
+from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.model.types import Film
+from rigidfluid.registry import FLUID_BACKEND, Registry
+
+if TYPE_CHECKING:
+    from rigidfluid.core.scene.scene import MeshTable
+
+_SAMPLES = 17
+"""Points along each axis where the speed of the flow at the start is looked at."""
+
+
+def installed_backend(name: str) -> Selected[FluidBackend]:
+    """The backend of this name, with the options that it has by default."""
+    part = Registry.load().get(FLUID_BACKEND, name)
+    return Selected(part, part.Options())
+
+
+@dataclass(frozen=True)
+class Fluid:
+    """A Newtonian fluid around the bodies: ρ(∂u/∂t + (u·∇)u) = -∇p + μ∇²u + f, ∇·u = 0.
+
+    Parameters
+    ----------
+    density : float
+        ρ [mass/length^d].
+    viscosity : float
+        Dynamic viscosity μ [mass·length^(2-d)/time].
+    mesh : MeshTable
+        How fine its mesh is, and when it is made anew.
+    inertia : bool
+        Whether the left side is there; without it the flow is a creeping one, by the Stokes equations.
+    source : callable, optional
+        Force f on the fluid alone, ``source(time, points)`` (N, d) [force/volume].
+    initial : str or callable
+        Flow at the start: at `rest` but for what bodies set in motion, `steady`, or ``initial(0, points)`` (N, d)
+        [length/time].
+    size_fields : sequence of SizeField
+        Objects that say how fine cells are, by place and flow.
+    backend : Selected
+        Class that solves its equations, and its options; `scikit-fem` if not given.
+    """
+
+    density: float
+    viscosity: float
+    mesh: MeshTable
+    inertia: bool = True
+    source: Value | None = None
+    initial: Literal["rest", "steady"] | Value = "rest"
+    size_fields: Sequence[SizeField] = ()
+    backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("scikit-fem"))
+
+    @property
+    def inert_density(self) -> float:
+        """Density of the fluid that bodies have to move with them."""
+        return self.density if self.inertia else 0.0
+
+    def description(self) -> dict[str, Any]:
+        """Numbers of the fluid and keys of its mesh, in values that JSON can hold."""
+        mesh = self.mesh.model_dump(mode="json", exclude_none=True)
+        return {"density": self.density, "viscosity": self.viscosity, "inertia": self.inertia, "mesh": mesh}
+
+    def fastest_at_start(self, domain: Domain) -> float:
+        """Greatest speed in the domain of a flow at the start that is a function, at the points sampled, else 0
+        [length/time]."""
+        if isinstance(self.initial, str):
+            return 0.0
+        axes = [np.linspace(low, high, _SAMPLES) for low, high in zip(*domain.extent, strict=True)]
+        grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
+        inside = grid[domain.contains(grid)]
+        return float(np.linalg.norm(self.initial(0.0, inside), axis=1).max(initial=0.0))
+
+    def film(self, bodies: Sequence[Body]) -> Film:
+        """Films in gaps, as far as the mesh resolves them."""
+        radius = np.array([equal_volume_radius(body) for body in bodies])
+        return Film(self.viscosity, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia)
+
+    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, dimension: int) -> FluidProblem:
+        """Equations with conditions on the boundary, around bodies that ``motions`` carry."""
+        return FluidProblem(
+            dimension=dimension,
+            bodies=len(motions.carrier),
+            density=self.density,
+            dynamic_viscosity=self.viscosity,
+            inertia=self.inertia,
+            conditions=conditions,
+            source=self.source,
+            carrier=tuple(motions.carrier.tolist()),
+            initial=self.initial,
+        )
+
+
+@dataclass(frozen=True)
+class NoFluid:
+    """No fluid that moves: bodies in a vacuum, or in a medium that bears them up by its density.
+
+    Parameters
+    ----------
+    density : float
+        Density of what bodies displace [mass/length^d].
+    backend : Selected
+        Class that moves bodies without a fluid, and its options; `dry` if not given.
+    """
+
+    density: float = 0.0
+    backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("dry"))
+
+    mesh: ClassVar[None] = None
+    inertia: ClassVar[bool] = False
+    inert_density: ClassVar[float] = 0.0
+    size_fields: ClassVar[Sequence[SizeField]] = ()
+
+    def description(self) -> dict[str, Any]:
+        """The density, in a value that JSON can hold."""
+        return {"density": self.density}
+
+    def fastest_at_start(self, domain: Domain) -> float:
+        """Zero [length/time]."""
+        return 0.0
+
+    def film(self, bodies: Sequence[Body]) -> None:
+        """None: there are no films."""
+
+    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, dimension: int) -> None:
+        """None: there are no equations."""

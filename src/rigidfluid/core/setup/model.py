@@ -1,0 +1,193 @@
+"""A model: bodies, and what is around them, composed of objects; a scene is one way to make one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
+from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.interfaces import Body, Detector, Mechanism
+from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.scene.scene import OutputTable, TimeTable, WindowTable
+from rigidfluid.core.setup.components import component_bodies
+from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.description import describe
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
+from rigidfluid.core.setup.model_checks import check_model
+from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
+from rigidfluid.registry import Registry
+
+ConditionMaker = Callable[[int, str, FloatArray | None], BoundaryCondition]
+"""Class of a boundary condition, or a function, called with the number, the name and the unit normal of a surface."""
+
+
+@dataclass(frozen=True)
+class ContactStepping:
+    """How bodies go through contacts: in ``substeps``, as many as they need if None, or in an ``implicit`` step.
+
+    ``impact_speed``: speed at which free bodies hit, estimated if None [length/time].
+    """
+
+    substeps: int | None = None
+    implicit: bool = False
+    impact_speed: float | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """Rigid bodies in a domain, with what is around them and between them: m dv/dt = (m - ρV)g + fluid + contacts.
+
+    Nothing in it needs to be registered: a domain, a shape, a law, a condition or a size field may be any object of its
+    class.
+
+    Parameters
+    ----------
+    domain : Domain
+        The region that fluid and bodies share.
+    bodies : sequence of RigidBody
+        Single bodies.
+    time : TimeTable
+        End, steps and tolerance.
+    output : OutputTable
+        Interval of fields and checkpoints, and probes.
+    fluid : Fluid or NoFluid
+        What is around the bodies.
+    gravity : sequence of float, optional
+        (d,) zero if not given [length/time²].
+    boundary : mapping of str to callable
+        Class of the condition on each surface of the domain, by its name: it is called with the number, the name and
+        the unit normal of the surface; those not named are walls at rest.
+    mechanisms : sequence of PlacedMechanism
+        Bodies that move as one.
+    joints : sequence of JoinedBodies
+        What joins bodies with each other or the ground.
+    laws : sequence of ContactLaw
+        Forces of contact.
+    detector : Selected, optional
+        Class of the detector and its options; the cheapest that is exact if not given.
+    detector_why : str
+        Who chose the detector, and for what reason, as `rigidfluid check` says it.
+    stepping : ContactStepping
+        How bodies go through contacts.
+    window : WindowTable, optional
+        The part of the domain that is meshed; all if not given.
+    name : str
+        Name in results.
+    seed : int
+        Seed of all random numbers.
+    tables : mapping, optional
+        The scene that it was made of, for results and checkpoints; a description of the model if not given.
+    registry : Registry
+        Installed parts, among which detectors are chosen.
+
+    Raises
+    ------
+    SceneError
+        If it contradicts itself.
+    """
+
+    domain: Domain
+    bodies: tuple[RigidBody, ...]
+    time: TimeTable
+    output: OutputTable
+    fluid: Fluid | NoFluid = field(default_factory=NoFluid)
+    gravity: Sequence[float] | None = None
+    boundary: Mapping[str, ConditionMaker] = field(default_factory=dict)
+    mechanisms: tuple[PlacedMechanism, ...] = ()
+    joints: tuple[JoinedBodies, ...] = ()
+    laws: tuple[ContactLaw, ...] = ()
+    detector: Selected[Detector] | None = None
+    detector_why: str = "the model names it"
+    stepping: ContactStepping = ContactStepping()
+    window: WindowTable | None = None
+    name: str = "model"
+    seed: int = 0
+    tables: Mapping[str, Any] | None = None
+    registry: Registry = field(default_factory=Registry.load, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("bodies", "mechanisms", "joints", "laws"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        check_model(self)
+
+    @property
+    def document(self) -> Mapping[str, Any]:
+        """Tables of the scene that it was made of, or else what tells it from other models, as JSON can hold it."""
+        return describe(self) if self.tables is None else self.tables
+
+    @property
+    def dimension(self) -> int:
+        """Number of space dimensions."""
+        return self.domain.dimension
+
+    @property
+    def wet(self) -> bool:
+        """Whether there is a fluid around the bodies, on a mesh."""
+        return self.fluid.mesh is not None
+
+    @cached_property
+    def all_bodies(self) -> tuple[RigidBody, ...]:
+        """The single bodies, and after them the components of all mechanisms, where they are at the start."""
+        return (*self.bodies, *component_bodies(self.mechanisms, self.dimension))
+
+    @cached_property
+    def shapes(self) -> tuple[Body, ...]:
+        """Shapes of all bodies."""
+        return tuple(body.shape for body in self.all_bodies)
+
+    @property
+    def controlled(self) -> BoolArray:
+        """Whether the motion of each body is given (n,)."""
+        return np.array([body.controlled for body in self.all_bodies], dtype=bool)
+
+    @property
+    def mechanisms_by_name(self) -> dict[str, Mechanism]:
+        """Mechanisms by their names, in order."""
+        return {placed.name: placed.mechanism for placed in self.mechanisms}
+
+    @property
+    def surfaces(self) -> tuple[str, ...]:
+        """Names of all bodies, then of the domain's pieces."""
+        return (*(body.name for body in self.all_bodies), *self.domain.names)
+
+    @cached_property
+    def conditions(self) -> tuple[BoundaryCondition, ...]:
+        """The condition on each piece of the boundary, in the order of surface numbers."""
+        count, images = len(self.all_bodies), dict(self.domain.periodic)
+        placed = []
+        for number, piece in enumerate(self.domain.pieces):
+            plane = piece.shape.plane
+            make = self.boundary.get(piece.name, NoSlip)
+            condition = make(count + number, piece.name, None if plane is None else plane.unit_normal)
+            placed.append(condition.with_image(count + images[number]) if number in images else condition)
+        return tuple(placed)
+
+    @cached_property
+    def walls(self) -> tuple[Wall, ...]:
+        """The pieces of the boundary that repel bodies, with the velocities at which they slide."""
+        return tuple(
+            Wall(condition.surface, piece.name, piece.shape, condition.sliding)
+            for condition, piece in zip(self.conditions, self.domain.pieces, strict=True)
+            if condition.is_wall
+        )
+
+    @cached_property
+    def detection(self) -> tuple[Selected[Detector], str]:
+        """The detector, and who chose it for what reason."""
+        if self.detector is not None:
+            return self.detector, self.detector_why
+        part, why = choose_detector(self.shapes, self.domain.pieces, self.wet and bool(self.laws), self.registry)
+        return Selected(part, part.Options()), f"chosen as {why}"
+
+    @cached_property
+    def exact_detector(self) -> type[Detector]:
+        """The cheapest detector that is exact and needs no mesh."""
+        return exact_detector(self.shapes, self.domain.pieces, self.registry)

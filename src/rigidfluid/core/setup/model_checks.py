@@ -1,0 +1,165 @@
+"""Refuses models whose objects are valid one by one but not together: doubled names, contradictions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.nested.placing import check_orientation
+from rigidfluid.core.setup.along_strokes import refuse_overlap_along
+from rigidfluid.core.setup.boundary_checks import check_boundary, check_inflow, check_oblique, check_periodic
+from rigidfluid.core.setup.contact_laws import check_laws
+from rigidfluid.core.setup.fluid import Fluid
+from rigidfluid.core.setup.joint_checks import check_joints
+from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import suggestion
+
+if TYPE_CHECKING:
+    from rigidfluid.core.setup.model import Model
+    from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
+
+MOST_STEPS = 10**9
+"""A scene of more nominal steps than this is a slip of units."""
+
+
+def check_model(model: Model) -> None:
+    """Refuse, with SceneError, a model that contradicts itself, or that its objects cannot run."""
+    if not (model.bodies or model.mechanisms):
+        raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
+    for number, mechanism in enumerate(model.mechanisms):
+        _check_vectors(mechanism, model.dimension, f"mechanism.{number}")
+    for number, body in enumerate(model.bodies):
+        _check_positive(f"body.{number}.density", body.density)
+        _check_vectors(body, model.dimension, f"body.{number}")
+        _check_control(body, f"body.{number}")
+    _check_assemblies(model.bodies)
+    _check_times(model)
+    _check_names(model)
+    check_joints(model)
+    refuse_quick_mechanisms(model.mechanisms_by_name, model.time)
+    refuse_overlap_along(model.mechanisms_by_name, model.time.end, model.exact_detector)
+    check_boundary(model)
+    _check_probes(model)
+    check_laws(model)
+    check_periodic(model)
+    if isinstance(model.fluid, Fluid):
+        _check_fluid(model, model.fluid)
+    else:
+        _check_without_fluid(model)
+
+
+def _check_fluid(model: Model, fluid: Fluid) -> None:
+    _check_positive("fluid.density", fluid.density)
+    _check_positive("fluid.viscosity", fluid.viscosity)
+    _check_source(model, fluid)
+    if fluid.initial != "rest" and not fluid.backend.part.initial_flows:
+        allowed = f"'rest' with backend {fluid.backend.part.name!r}"
+        raise SceneError("fluid.initial", fluid.initial, allowed, "Leave it out, or choose backend = 'scikit-fem'.")
+    fluid.fastest_at_start(model.domain)  # says where it is not finite
+    check_mesh_table(fluid.mesh, model.time)
+    check_cells(fluid.mesh, model.domain)
+    check_oblique(model)
+    check_inflow(model)
+
+
+def _check_source(model: Model, fluid: Fluid) -> None:
+    """Refuse a force on the fluid that is none, at two corners of the domain."""
+    if fluid.source is not None:
+        corners = np.array(model.domain.extent)
+        force = np.asarray(fluid.source(0.0, corners))
+        if force.shape != corners.shape or not np.isfinite(force).all():
+            found = f"forces of shape {force.shape} at {len(corners)} points"
+            raise SceneError("fluid.force", found, f"finite forces of shape {corners.shape}", "Correct the function.")
+
+
+def _check_positive(field: str, value: float) -> None:
+    if not (isinstance(value, int | float | np.floating) and 0.0 < value < np.inf):
+        raise SceneError(field, repr(value), "a finite number above 0", "Correct it.")
+
+
+def _check_without_fluid(model: Model) -> None:
+    if model.time.tolerance is not None:
+        backend = model.fluid.backend.part.name
+        allowed = f"none with backend {backend!r}, whose bodies go through contacts in substeps of their own"
+        raise SceneError("time.tolerance", model.time.tolerance, allowed, "Remove it.")
+
+
+def _check_vectors(placed: RigidBody | PlacedMechanism, dimension: int, at: str) -> None:
+    turns = 1 if dimension == 2 else 3
+    lengths = {"position": dimension, "velocity": dimension, "angular_velocity": turns}
+    for name, length in lengths.items():
+        vector = getattr(placed, name)
+        if vector is not None and (np.shape(vector) != (length,) or not np.isfinite(vector).all()):
+            raise SceneError(f"{at}.{name}", f"{vector}", f"{length} finite numbers", "Correct it.")
+    check_orientation(placed, dimension, at)
+
+
+def _check_names(model: Model) -> None:
+    names, wholes = [body.name for body in model.all_bodies], [placed.name for placed in model.mechanisms]
+    for name, count in Counter([*names, *wholes, *model.domain.names]).items():
+        if count > 1:
+            last = len(names) - 1 - names[::-1].index(name) if name in names else len(names)
+            field = f"body.{last}.name" if last < len(model.bodies) else "mechanism.name"
+            raise SceneError(field, repr(name), "a name that no other body or surface has", "Rename it.")
+
+
+def _check_probes(model: Model) -> None:
+    probes = model.output.probes
+    outside = ~model.domain.contains(np.array(probes, dtype=float).reshape(-1, model.dimension))
+    if outside.any():
+        i = int(np.argmax(outside))
+        raise SceneError(f"output.probes.{i}", list(probes[i]), "a point of the domain", "Move it inside.")
+
+
+def _check_control(body: RigidBody, at: str) -> None:
+    """A body moves freely, is fixed, or follows a prescription: one of them."""
+    given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
+    if body.fixed and (given or body.prescribed):
+        other = given[0] if given else "prescribed"
+        raise SceneError(f"{at}.fixed", f"true beside {other!r}", "one of them", f"Remove `fixed` or {other!r}.")
+    if body.prescribed and given:
+        where = f"`{at}.prescribed`"
+        statement = "a body with `prescribed` has its velocities there"
+        raise SceneError(f"{at}.{given[0]}", statement, None, f"Move it into {where}.")
+    if body.prescribed and (body.prescribed.amplitude is None) != (body.prescribed.frequency is None):
+        missing = "amplitude" if body.prescribed.amplitude is None else "frequency"
+        field = f"{at}.prescribed.{missing}"
+        raise SceneError(field, "nothing", "amplitude and frequency together, or neither", f"Add {missing!r}.")
+
+
+def _check_assemblies(bodies: Sequence[RigidBody]) -> None:
+    """A name that only one body gives is a slip of the pen."""
+    wholes = [body.part_of for body in bodies]
+    for number, whole in enumerate(wholes):
+        if whole is not None and wholes.count(whole) == 1:
+            others = sorted({name for name in wholes if name is not None and name != whole})
+            remedy = suggestion(whole, others) or "Give it to the other parts too, or remove it."
+            raise SceneError(f"body.{number}.part_of", repr(whole), "a name that at least two bodies give", remedy)
+
+
+def _check_times(model: Model) -> None:
+    time = model.time
+    if time.step > time.end:
+        raise SceneError("time.step", time.step, f"at most time.end = {time.end}", "Shorten it, or end later.")
+    if time.end / time.step > MOST_STEPS:
+        raise SceneError("time.step", time.step, f"at least {time.end / MOST_STEPS:g} for this end", "Lengthen it.")
+    if model.output.every < time.step:
+        raise SceneError("output.every", model.output.every, f"at least time.step = {time.step}", "Write less often.")
+    if time.shortest > time.step:
+        raise SceneError("time.shortest", time.shortest, f"at most time.step = {time.step}", "Shorten it.")
+    for body in model.bodies:
+        _check_frequency(body, time.step)
+
+
+def _check_frequency(body: RigidBody, step: float) -> None:
+    """Longer steps could go more than all of the way to and fro, and not meet it."""
+    frequency = abs(body.prescribed.frequency or 0.0) if body.prescribed else 0.0
+    if pi * frequency * step > 1.0:
+        found = f"{step:g}, {frequency * step:.3g} periods of body {body.name!r}"
+        raise SceneError("time.step", found, f"at most {1.0 / (pi * frequency):.3g}", "Shorten it.")

@@ -1,0 +1,106 @@
+"""Objects of a model that move: bodies, mechanisms in their place, joined bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.joints.joint import Joint
+from rigidfluid.core.model.interfaces import Body, Mechanism
+from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.scene.scene import Freedom, PrescribedTable, SpringTable
+
+DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
+"""Names of the d+k directions of motion."""
+
+Vector = Sequence[float] | FloatArray
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A rigid body with the velocities v and ω about its centre of mass: where it starts, and what moves it.
+
+    Parameters
+    ----------
+    name : str
+        Name in the results, which no other body has.
+    shape : Body
+        Its shape, of a registered type or any other.
+    density : float
+        Mass over volume [mass/length^d].
+    position : sequence of float
+        Position of the centre of mass at the start, (d,) [length].
+    angle : float, optional
+        Angle at the start, counter-clockwise; in 2D alone [rad].
+    orientation : sequence of float, optional
+        Orientation at the start, a quaternion (4,), scalar first; in 3D alone [1].
+    velocity, angular_velocity : sequence of float, optional
+        Those at the start, (d,) and (k,); zero if not given [length/time, rad/time].
+    part_of : str, optional
+        Name of the articulated body that it is a part of; parts of one do not repel each other.
+    fixed : bool
+        Whether it is held in place.
+    prescribed : PrescribedTable, optional
+        A motion that the fluid cannot change.
+    free : sequence of str, optional
+        Directions in which it may move, the others are held: `x`, `y`, `z`, in 2D `rotation`, in 3D `rx`, `ry`, `rz`.
+    spring : SpringTable, optional
+        Springs and dampers between it and the ground.
+    """
+
+    name: str
+    shape: Body
+    density: float
+    position: Vector
+    angle: float | None = None
+    orientation: Sequence[float] | None = None
+    velocity: Vector | None = None
+    angular_velocity: Vector | None = None
+    part_of: str | None = None
+    fixed: bool = False
+    prescribed: PrescribedTable | None = None
+    free: Sequence[Freedom] | None = None
+    spring: SpringTable | None = None
+
+    @property
+    def controlled(self) -> bool:
+        """Whether its motion is given: fixed, or prescribed."""
+        return self.fixed or self.prescribed is not None
+
+    @property
+    def linked_to_ground(self) -> bool:
+        """Whether directions of it are held, or springs pull it."""
+        return self.free is not None or self.spring is not None
+
+    @property
+    def held_directions(self) -> BoolArray:
+        """Directions (d+k,) in which it is held."""
+        names = DIRECTIONS[self.shape.dimension]
+        return np.array([self.free is not None and name not in self.free for name in names])
+
+
+@dataclass(frozen=True)
+class PlacedMechanism:
+    """A mechanism named ``name`` in its place at the start, that of its centre of mass; the other values are those of a
+    `RigidBody`."""
+
+    name: str
+    mechanism: Mechanism
+    position: Vector
+    angle: float | None = None
+    orientation: Sequence[float] | None = None
+    velocity: Vector | None = None
+    angular_velocity: Vector | None = None
+
+
+@dataclass(frozen=True)
+class JoinedBodies:
+    """A joint named ``name`` of a ``kind`` between two bodies by name, or of one with the ground; ``at`` (d,) is its
+    point at the start, the first body's if None [length]."""
+
+    name: str
+    kind: Joint
+    between: tuple[str, ...]
+    at: Vector | None = None
