@@ -61,7 +61,7 @@ class Flow:
         self.free, self._factors = space.FreeDofs(), None
         (u, p), (v, q) = space.TnT()
         self.state, self._mesh_velocity = ngs.GridFunction(space), ngs.GridFunction(ngs.VectorH1(self._mesh, order=1))
-        wind, density, viscosity = self.state.components[0], problem.density, problem.dynamic_viscosity
+        wind, density, viscosity = self.state.components[0], problem.density, problem.material.dynamic_viscosity
         advection = density * (wind - self._mesh_velocity)
         inertia, divergence = density / step * u * v, -p * ngs.div(v) - q * ngs.div(u)
         pin = -1e-10 * p * q  # fixes the pressure's constant

@@ -58,6 +58,7 @@ from rigidfluid.core.model.interfaces import (
     PartOptions,
 )
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.material import Material, Newtonian
 from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.selected import Selected
@@ -191,6 +192,7 @@ __all__ = [
     "Kinematics",
     "Loads",
     "MarkerPair",
+    "Material",
     "Mechanism",
     "Mesh",
     "MeshError",
@@ -199,6 +201,7 @@ __all__ = [
     "Motion",
     "MovingComponents",
     "NestedBodyTable",
+    "Newtonian",
     "NoFluid",
     "NoSlip",
     "Obstacles",

@@ -10,6 +10,7 @@ from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.topology import boundary_facets, orient
 from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedPressure, PrescribedVelocity
 from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.types import CurvedEdges, FloatArray, Mesh, Pose
 from rigidfluid.testing.fluid.boxes import nobody
 from rigidfluid.testing.fluid.flow import Bodies, Flow
@@ -121,7 +122,7 @@ def torque_between_cylinders(inner: float, outer: float) -> float:
 
 
 def _backend(bodies: int, faces: tuple[BoundaryCondition, ...]) -> Any:
-    posed = FluidProblem(2, bodies, 1.0, VISCOSITY, False, faces)
+    posed = FluidProblem(2, bodies, 1.0, Newtonian(VISCOSITY), False, faces)
     return ScikitFem(ScikitFem.Options(tolerance=1e-12), posed)
 
 

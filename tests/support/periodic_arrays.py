@@ -7,6 +7,7 @@ import numpy as np
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.model.conditions import Periodic, no_pressure
 from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box
 from rigidfluid.testing.fluid.flow import Bodies, Flow
@@ -20,7 +21,7 @@ def array_of_balls(dimension: int, layers: int) -> float:
         lower, normal = side % 2 == 0, (1 - 2 * (side % 2)) * np.eye(dimension)[side // 2]
         drop = (lambda _, at: np.ones(len(at))) if side == 0 else no_pressure
         faces.append(Periodic(1 + side, str(side), normal, 2 + side if lower else None, drop))
-    posed = FluidProblem(dimension, 1, 1.0, 1.0, False, tuple(faces))
+    posed = FluidProblem(dimension, 1, 1.0, Newtonian(1.0), False, tuple(faces))
     pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
     start = Flow.start(
         ScikitFem(ScikitFem.Options(tolerance=1e-12), posed),

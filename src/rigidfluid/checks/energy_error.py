@@ -70,7 +70,7 @@ def _layer_rate(met: DesignContacts, fluid: FluidProblem) -> FloatArray:
     bodies = met.system.bodies
     surface = np.array([body.dimension * body.volume / equal_volume_radius(body) for body in bodies])
     drawn = pair_values(surface / met.system.loads.mass**2, met.contacts).sum(axis=0)
-    shear = float(np.sqrt(fluid.density * fluid.dynamic_viscosity))
+    shear = float(np.sqrt(fluid.density * fluid.material.dynamic_viscosity))
     return np.asarray(_LAYER_FACTOR * shear * drawn / met.inverse_mass)
 
 

@@ -157,7 +157,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
         return {}
     radius = np.array([body.bounding_radius for body in results.system.bodies])
     solid = np.array([body.density for body in results.model.all_bodies])
-    per_density = 2.0 * radius * speed / fluid.dynamic_viscosity
+    per_density = 2.0 * radius * speed / fluid.material.dynamic_viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 
 

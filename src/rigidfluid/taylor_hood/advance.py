@@ -132,7 +132,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         points=points,
         node_points=node_points,
         inertia=density * d0,
-        viscosity=problem.dynamic_viscosity,
+        viscosity=problem.material.dynamic_viscosity,
         advection=flow - density * mesh_velocity,
         flow=flow - density * frame,
         position=step.kinematics.centres(step.pose),

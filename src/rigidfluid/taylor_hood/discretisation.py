@@ -77,7 +77,7 @@ def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity:
 def dissipation(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
     """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""
     rate = discretisation.surfaces.ranks.sum(discretisation.strain_square(points, velocity))
-    return discretisation.problem.dynamic_viscosity * float(rate)
+    return discretisation.problem.material.dynamic_viscosity * float(rate)
 
 
 def stress_power(discretisation: Discretisation, points: FloatArray, velocity: FloatArray, other: FloatArray) -> float:

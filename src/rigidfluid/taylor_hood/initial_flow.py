@@ -63,7 +63,7 @@ def _stokes(target: Discretisation, mesh: Mesh, state: FluidState) -> CoupledSys
         points=mesh.geometry,
         node_points=node_points,
         inertia=0.0,
-        viscosity=problem.dynamic_viscosity,
+        viscosity=problem.material.dynamic_viscosity,
         advection=still,
         flow=still,
         position=state["position"],
@@ -111,7 +111,7 @@ def _not_steady(target: Discretisation, node_points: FloatArray, velocity: Float
     ranks, problem = target.surfaces.ranks, target.problem
     side = float(np.min(ranks.greatest(node_points.max(axis=0)) - ranks.min(node_points.min(axis=0))))
     speed = float(ranks.greatest(np.linalg.norm(velocity, axis=1).max()))
-    reynolds = problem.density * speed * side / problem.dynamic_viscosity
+    reynolds = problem.density * speed * side / problem.material.dynamic_viscosity
     return SceneError(
         "fluid.initial",
         f"'steady' with {found}, at a Reynolds number of {reynolds:.3g} of the domain's shortest side",

@@ -6,6 +6,7 @@ from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.case.part_options import refuse_unread
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.scene import FluidTable, MeshTable, SizeFieldTable
 from rigidfluid.core.scene.validation import read_table
@@ -36,7 +37,7 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
     assert table.viscosity is not None
     return Fluid(
         density=table.density,
-        viscosity=table.viscosity,
+        material=Newtonian(table.viscosity),
         mesh=mesh,
         inertia=table.model == "navier-stokes",
         source=source,

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rigidfluid.core.model.conditions import BoundaryCondition
+from rigidfluid.core.model.material import Material
 from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class FluidProblem:
-    """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ).
+    """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ), with
+    μ of the ``material``.
 
     With ``inertia`` False the left side is left out (Stokes). Without an open one among the ``conditions`` the pressure
     has zero mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):
@@ -23,7 +25,7 @@ class FluidProblem:
     dimension: int
     bodies: int
     density: float
-    dynamic_viscosity: float
+    material: Material
     inertia: bool
     conditions: tuple[BoundaryCondition, ...]
     source: Callable[[float, FloatArray], FloatArray] | None = None

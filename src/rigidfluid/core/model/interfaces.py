@@ -20,6 +20,7 @@ from scipy.sparse import csc_array
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.material import Material, Newtonian
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.surface import Surface
@@ -301,6 +302,8 @@ class FluidBackend(Part):
     """
 
     needs_mesh: ClassVar[bool] = True
+    materials: ClassVar[tuple[type[Material], ...]] = (Newtonian,)
+    """Materials that it solves for."""
     curved_cells: ClassVar[bool] = False
     """Whether it takes meshes with curved edges; else it gets straight ones."""
     initial_flows: ClassVar[bool] = False

@@ -14,6 +14,7 @@ from rigidfluid.core.model.conditions import BoundaryCondition, Value
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import Body, FluidBackend
+from rigidfluid.core.model.material import Material
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Film
@@ -34,14 +35,14 @@ def installed_backend(name: str) -> Selected[FluidBackend]:
 
 @dataclass(frozen=True)
 class Fluid:
-    """A Newtonian fluid around the bodies: ρ(∂u/∂t + (u·∇)u) = -∇p + μ∇²u + f, ∇·u = 0.
+    """A fluid around the bodies: ρ(∂u/∂t + (u·∇)u) = ∇·σ + f, ∇·u = 0.
 
     Parameters
     ----------
     density : float
         ρ [mass/length^d].
-    viscosity : float
-        Dynamic viscosity μ [mass·length^(2-d)/time].
+    material : Material
+        Its viscosity μ: `Newtonian`, or another that its backend solves for.
     mesh : MeshTable
         How fine its mesh is, and when it is made anew.
     inertia : bool
@@ -58,7 +59,7 @@ class Fluid:
     """
 
     density: float
-    viscosity: float
+    material: Material
     mesh: MeshTable
     inertia: bool = True
     source: Value | None = None
@@ -74,7 +75,12 @@ class Fluid:
     def description(self) -> dict[str, Any]:
         """Numbers of the fluid and keys of its mesh, in values that JSON can hold."""
         mesh = self.mesh.model_dump(mode="json", exclude_none=True)
-        return {"density": self.density, "viscosity": self.viscosity, "inertia": self.inertia, "mesh": mesh}
+        return {
+            "density": self.density,
+            "viscosity": self.material.dynamic_viscosity,
+            "inertia": self.inertia,
+            "mesh": mesh,
+        }
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Greatest speed in the domain of a flow at the start that is a function, at the points sampled, else 0
@@ -89,7 +95,9 @@ class Fluid:
     def film(self, bodies: Sequence[Body]) -> Film:
         """Films in gaps, as far as the mesh resolves them."""
         radius = np.array([equal_volume_radius(body) for body in bodies])
-        return Film(self.viscosity, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia)
+        return Film(
+            self.material.dynamic_viscosity, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia
+        )
 
     def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, dimension: int) -> FluidProblem:
         """Equations with conditions on the boundary, around bodies that ``motions`` carry."""
@@ -97,7 +105,7 @@ class Fluid:
             dimension=dimension,
             bodies=len(motions.carrier),
             density=self.density,
-            dynamic_viscosity=self.viscosity,
+            material=self.material,
             inertia=self.inertia,
             conditions=conditions,
             source=self.source,

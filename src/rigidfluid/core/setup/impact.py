@@ -91,7 +91,11 @@ def terminal_speeds(model: Model, pull: FloatArray) -> FloatArray:
     """
     fluid = model.fluid
     assert isinstance(fluid, Fluid)
-    density, viscosity, radius = fluid.density, fluid.viscosity, _measure_bodies(equal_volume_radius, model.shapes)
+    density, viscosity, radius = (
+        fluid.density,
+        fluid.material.dynamic_viscosity,
+        _measure_bodies(equal_volume_radius, model.shapes),
+    )
     if not fluid.inertia:
         return np.asarray(pull / creeping_resistances(model)[:, 0])
     per_pull, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
@@ -107,13 +111,14 @@ def creeping_resistances(model: Model) -> FloatArray:
     3D, 4πμr² for rotation in 2D and, for translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
     """
     assert isinstance(model.fluid, Fluid)
-    radius, d = _measure_bodies(equal_volume_radius, model.shapes)[:, None], model.dimension
+    viscosity, d = model.fluid.material.dynamic_viscosity, model.dimension
+    radius = _measure_bodies(equal_volume_radius, model.shapes)[:, None]
     if d == 3:
         along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
     else:
         along, about = 4.0 * np.pi / np.log(float(np.max(model.domain.size)) / radius), 4.0 * np.pi * radius**2
     spin = 1 if d == 2 else 3
-    return model.fluid.viscosity * np.hstack([np.repeat(along, d, axis=1), np.repeat(about, spin, axis=1)])
+    return viscosity * np.hstack([np.repeat(along, d, axis=1), np.repeat(about, spin, axis=1)])
 
 
 def _reynolds(driving: FloatArray, drag: Callable[[FloatArray], FloatArray]) -> FloatArray:

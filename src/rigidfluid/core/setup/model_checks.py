@@ -56,7 +56,8 @@ def check_model(model: Model) -> None:
 
 def _check_fluid(model: Model, fluid: Fluid) -> None:
     _check_positive("fluid.density", fluid.density)
-    _check_positive("fluid.viscosity", fluid.viscosity)
+    _check_positive("fluid.viscosity", fluid.material.dynamic_viscosity)
+    _check_material(fluid)
     _check_source(model, fluid)
     if fluid.initial != "rest" and not fluid.backend.part.initial_flows:
         allowed = f"'rest' with backend {fluid.backend.part.name!r}"
@@ -66,6 +67,14 @@ def _check_fluid(model: Model, fluid: Fluid) -> None:
     check_cells(fluid.mesh, model.domain)
     check_oblique(model)
     check_inflow(model)
+
+
+def _check_material(fluid: Fluid) -> None:
+    backend = fluid.backend.part
+    if not isinstance(fluid.material, backend.materials):
+        found = f"{type(fluid.material).__name__} with backend {backend.name!r}"
+        allowed = ", ".join(material.__name__ for material in backend.materials)
+        raise SceneError("fluid.material", found, allowed, "Choose one of these, or a backend that solves for it.")
 
 
 def _check_source(model: Model, fluid: Fluid) -> None:

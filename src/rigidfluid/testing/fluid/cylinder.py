@@ -13,6 +13,7 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity
 from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.testing.fluid.base import FluidContract
@@ -40,7 +41,7 @@ class CylinderContract(FluidContract):
             NoSlip(3, "y0", inward_normal(2, 2)),
             NoSlip(4, "y1", inward_normal(3, 2)),
         )
-        backend = self.make_backend(FluidProblem(2, 1, 1.0, 1e-3, True, conditions))
+        backend = self.make_backend(FluidProblem(2, 1, 1.0, Newtonian(1e-3), True, conditions))
         flow = Flow.start(backend, self.make_mesh(_mesh()), POSE)
         for _ in range(ITERATIONS):
             flow = flow.after(None)

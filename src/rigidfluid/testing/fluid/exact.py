@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedVelocity, Value
 from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.types import FloatArray
 
 DENSITY, VISCOSITY = 1.3, 0.7
@@ -33,7 +34,7 @@ def problem(
         (kinds or {}).get(name, NoSlip)(bodies + face, name, inward_normal(face, dimension))
         for face, name in enumerate(FACES[: 2 * dimension])
     )
-    return FluidProblem(dimension, bodies, DENSITY, VISCOSITY, inertia, conditions, source)
+    return FluidProblem(dimension, bodies, DENSITY, Newtonian(VISCOSITY), inertia, conditions, source)
 
 
 def enclosed(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.model.conditions import NoSlip
+from rigidfluid.core.model.material import Newtonian
 from rigidfluid.core.model.types import FloatArray, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose, carried
@@ -44,7 +45,7 @@ class GalileanContract(FluidContract):
 
         walls = FACES[: 2 * dimension]
         posed = problem(dimension, dict.fromkeys(walls, partial(NoSlip, sliding=partial(uniform, 0.0))), 2)
-        posed = replace(posed, dynamic_viscosity=VISCOSITY, initial=uniform)
+        posed = replace(posed, material=Newtonian(VISCOSITY), initial=uniform)
         start = balls_pose(dimension)
         twist = np.zeros((2, size(start)))
         twist[:, :dimension] = translation

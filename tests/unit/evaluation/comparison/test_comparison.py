@@ -90,7 +90,7 @@ BACKENDS = f"""
         name = "thick"
 
         def __init__(self, options, problem):
-            super().__init__(options, replace(problem, dynamic_viscosity=1.1 * problem.dynamic_viscosity))
+            super().__init__(options, replace(problem, material=Newtonian(1.1 * problem.material.dynamic_viscosity)))
 
     @hookimpl
     def rigidfluid_fluid_backends():
