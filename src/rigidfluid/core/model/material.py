@@ -19,10 +19,8 @@ class Material(ABC):
 
     name: ClassVar[str]
 
-    @property
-    @abstractmethod
-    def dynamic_viscosity(self) -> float:
-        """Viscosity for scales and estimates, positive; where it varies, that at rest [mass·length^(2-d)/time]."""
+    dynamic_viscosity: float
+    """Viscosity for scales and estimates, positive; where it varies, that at rest [mass·length^(2-d)/time]."""
 
     @abstractmethod
     def viscosity(self, shear_rate: FloatArray) -> FloatArray:

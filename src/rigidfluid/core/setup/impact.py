@@ -91,11 +91,8 @@ def terminal_speeds(model: Model, pull: FloatArray) -> FloatArray:
     """
     fluid = model.fluid
     assert isinstance(fluid, Fluid)
-    density, viscosity, radius = (
-        fluid.density,
-        fluid.material.dynamic_viscosity,
-        _measure_bodies(equal_volume_radius, model.shapes),
-    )
+    density, viscosity = fluid.density, fluid.material.dynamic_viscosity
+    radius = _measure_bodies(equal_volume_radius, model.shapes)
     if not fluid.inertia:
         return np.asarray(pull / creeping_resistances(model)[:, 0])
     per_pull, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
