@@ -6,9 +6,7 @@ import numpy as np
 
 from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
-from rigidfluid.core.contact.round_contacts import on_round_shapes
 from rigidfluid.core.mechanics.rigid import angle_between
-from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
@@ -17,15 +15,8 @@ from rigidfluid.errors import StepRejected
 
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-    """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh.
-
-    PluginError is raised if they are between unknown surfaces or arrays have a wrong shape, StepRejected if a gap,
-    point or normal is not finite.
-    """
-    contacts = system.detector.detect(pose, mesh, reach)
-    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
-    if system.detector.needs_mesh:
-        contacts = on_round_shapes(contacts, system.walls, pose)
+    """Contacts with gap ≤ ``reach`` [length] by the system's detection, with effective radii if a law reads them."""
+    contacts = system.detection.contacts(pose, mesh, reach)
     if any(interaction.law.film for interaction in system.interactions):
         return with_effective_radii(contacts, system.bodies, system.walls, pose)
     return contacts

@@ -13,8 +13,6 @@ import numpy as np
 
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
-from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
@@ -24,12 +22,12 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import StepCost, joint_coordinates, records
+from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
-from rigidfluid.core.run.mesh_keys import inserter_of, renewal_of, sizes_of, wakes_of
+from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
@@ -113,11 +111,9 @@ class Simulation:
         _refuse_lone_ranks(system.backend, processes)
         earlier = _earlier(scene, out, system.backend) if resume else None
         self.clock = Clock.for_steps(scene.time.step, scene.time.shortest, scene.time.end)
-        sizes = _sizes(scene, system)
         self.watch = Stopwatch()
-        renewal = renewal_of(scene.mesh, self.clock)
-        fields = (*wakes_of(scene.mesh, scene.dimension), *known_parts(scene).size_fields, *size_fields)
-        self.mesh_updater = MeshUpdater(system, sizes, renewal, fields, inserter_of(scene.mesh), self.watch)
+        fields = (*known_parts(scene).size_fields, *size_fields)
+        self.mesh_updater = updater_of(scene.mesh, system, self.clock, fields, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, scene.time.tolerance)
         self.history = History(scene.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))
@@ -371,7 +367,7 @@ class Simulation:
         if self._writer is None:
             return
         with self.watch("write"):
-            if self.state.mesh is not None:
+            if count_cells(self.state.mesh):
                 self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
 
@@ -440,13 +436,6 @@ def _bodies_now(
         )
         for i, name in enumerate(names, start=first)
     }
-
-
-def _sizes(scene: Scene, system: System) -> Sizes | None:
-    if not system.has_fluid:
-        return None
-    assert scene.mesh is not None
-    return sizes_of(scene.mesh, system.domain)
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:

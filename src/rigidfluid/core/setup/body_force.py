@@ -8,8 +8,8 @@ from rigidfluid.core.setup.expressions import VectorExpression
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.core.setup.parts import Parts
 
 _KEY = "fluid.force"
 
@@ -19,8 +19,8 @@ def body_force(scene: Scene) -> VectorExpression | None:
     return None if scene.fluid.force is None else VectorExpression.parse(scene.fluid.force, _KEY)
 
 
-def check_body_force(scene: Scene, backend: type[FluidBackend]) -> None:
+def check_body_force(parts: Parts) -> None:
     """Refuse a force that is no formula, or that there is no fluid for."""
-    if body_force(scene) is not None and not backend.needs_mesh:
-        found = f"{list(scene.fluid.force or ())} with backend {backend.name!r}"
+    if body_force(parts.scene) is not None and not parts.wet:
+        found = f"{list(parts.scene.fluid.force or ())} with backend {parts.backend.part.name!r}"
         raise SceneError(_KEY, found, "a backend with a fluid", "Leave it out, or choose backend = 'scikit-fem'.")

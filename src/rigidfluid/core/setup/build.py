@@ -8,6 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
@@ -79,6 +80,7 @@ def build_system(scene: Scene) -> System:
         backend_type=parts.backend.part,
         make_backend=cache(partial(parts.backend.part, parts.backend.options, problem)),
         detector=detector,
+        detection_type=detection_by(parts.detector.part),
         detector_why=parts.detector_why,
         reach=_reach(detector, law),
         leverage=leverages(parts.bodies, motions, scene.time.end),

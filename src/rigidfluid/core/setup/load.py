@@ -66,7 +66,7 @@ def _checked(data: Mapping[str, Any]) -> Scene:
     check_boundary(parts.scene, parts.domain)
     check_interactions(parts.scene, parts.domain)
     check_joints(parts.scene)
-    check_fluid(parts.scene, parts.backend.part, parts.domain)
+    check_fluid(parts)
     return scene
 
 

@@ -61,7 +61,7 @@ def _impact_loads(parts: Parts, impetus: Impetus) -> Loads:
 
 def _film(parts: Parts) -> Film | None:
     fluid, mesh = parts.scene.fluid, parts.scene.mesh
-    if fluid.viscosity is None or mesh is None or not parts.wet:
+    if not (parts.wet and mesh and fluid.viscosity):
         return None
     radius = np.array([equal_volume_radius(body) for body in parts.bodies])
     return Film(fluid.viscosity, radius, mesh.size_body / 2**mesh.refinements, fluid.model == "navier-stokes")

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
@@ -65,7 +66,7 @@ class Parts:
     @property
     def wet(self) -> bool:
         """Whether there is a fluid around the bodies, on a mesh."""
-        return self.backend.part.needs_mesh
+        return self.backend.part.wet
 
 
 def select_plugins(scene: Scene) -> Parts:
@@ -79,11 +80,11 @@ def select_plugins(scene: Scene) -> Parts:
     scene, mechanisms = append_components(scene, registry)
     bodies = tuple(_body(scene, registry, number) for number in range(len(scene.body)))
     backend = _backend(scene.fluid, registry)
-    mesh = backend.part.needs_mesh
+    wet = backend.part.wet
     tables = law_tables(scene)
     laws = [registry.get(FORCE_LAW, table.law, f"{table.at}.law") for table in tables]
-    detector, why = _detector(scene.contact, registry, bodies, domain, mesh and bool(laws))
-    _refuse_detector(detector, mesh)
+    detector, why = _detector(scene.contact, registry, bodies, domain, wet and bool(laws))
+    _refuse_detector(detector, wet)
     _refuse_contact_keys(scene.contact, detector, laws)
     chosen = tuple(_law(table, law, scene, bodies) for table, law in zip(tables, laws, strict=True))
     exact = exact_detector(bodies, domain.pieces, registry)
@@ -157,7 +158,7 @@ def _detector(
 
 
 def _refuse_detector(detector: type[Detector], mesh: bool) -> None:
-    if detector.needs_mesh and not mesh:
+    if detection_by(detector).on_mesh and not mesh:
         remedy = 'Use detector = "auto", or a backend with a mesh.'
         raise SceneError("contact.detector", f"{detector.name!r} without a mesh", "a detector that needs none", remedy)
 

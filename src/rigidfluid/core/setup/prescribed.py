@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
 from rigidfluid.core.model.types import BoolArray, FloatArray, Pose
+from rigidfluid.core.scene.scene import PrescribedTable
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import Scene
@@ -82,9 +83,7 @@ def prescribed_motion(scene: Scene, pose: Pose) -> PrescribedMotion:
     n, d = len(pose.position), scene.dimension
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(scene.body):
-        motion = body.prescribed
-        if motion is None:
-            continue
+        motion = body.prescribed or PrescribedTable()
         twist[i, :d] = motion.velocity or 0.0
         twist[i, d:] = motion.angular_velocity or 0.0
         amplitude[i] = motion.amplitude or 0.0

@@ -15,9 +15,8 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.interfaces import FluidBackend
     from rigidfluid.core.scene.scene import BodyTable, Scene
+    from rigidfluid.core.setup.parts import Parts
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -38,13 +37,14 @@ def check_tables(scene: Scene) -> None:
     check_mesh_table(scene)
 
 
-def check_fluid(scene: Scene, backend: type[FluidBackend], domain: Domain) -> None:
+def check_fluid(parts: Parts) -> None:
     """Refuse, with SceneError, a scene that lacks the density, viscosity or mesh that its backend needs, has a
     tolerance for a backend without a mesh, or prescribes an impossible flow."""
+    scene, backend, domain = parts.scene, parts.backend.part, parts.domain
     check_initial_flow(scene, backend, domain)
-    check_body_force(scene, backend)
+    check_body_force(parts)
     check_periodic(scene, backend, domain)
-    if not backend.needs_mesh:
+    if not parts.wet:
         if scene.time.tolerance is not None:
             allowed = f"none with backend {backend.name!r}, whose bodies go through contacts in substeps of their own"
             raise SceneError("time.tolerance", scene.time.tolerance, allowed, "Remove it.")

@@ -1,0 +1,96 @@
+"""The two ways in which contacts are detected: by the bodies' poses alone, or on the fluid's mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.core.contact.look_ahead import foreseen, look_ahead
+from rigidfluid.core.contact.round_contacts import on_round_shapes
+from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.model.contact_results import refuse_lost_contacts
+from rigidfluid.core.model.detection import Detection, FollowedContacts, Sight
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.interfaces import Detector, ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
+
+
+class PoseDetection(Detection):
+    """`Detection` by a detector that is asked at any pose on the way: it misses nothing, and needs no mesh."""
+
+    on_mesh: ClassVar[bool] = False
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+
+    @staticmethod
+    def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
+        return Mesh.empty(pose.position.shape[1])
+
+    def contacts(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        return _detected(self._system, pose, mesh, reach)
+
+    def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
+        return look_ahead(self._system, movement, size)
+
+    def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
+        now = look_ahead(self._system, movement, size)
+        return now if now.reach > sight.reach else sight
+
+    def followed(
+        self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
+    ) -> tuple[Contacts, TrackedPairs]:
+        pairs = foreseen(self._system, law, movement, size, reach)
+        return pairs.start, pairs
+
+    def has_missed(self, seen: Contacts, found: Contacts) -> bool:
+        return False
+
+
+class MeshDetection(Detection):
+    """`Detection` on the mesh at the start of a step and at its end; between them contacts move with their bodies."""
+
+    on_mesh: ClassVar[bool] = True
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+
+    @staticmethod
+    def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
+        return make(pose)
+
+    def contacts(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        return on_round_shapes(_detected(self._system, pose, mesh, reach), self._system.walls, pose)
+
+    def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
+        return Sight(near.extrapolate, np.inf, size)
+
+    def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
+        return sight
+
+    def followed(
+        self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
+    ) -> tuple[Contacts, FollowedContacts]:
+        return near.extrapolate(movement.pose), near
+
+    def has_missed(self, seen: Contacts, found: Contacts) -> bool:
+        """Whether a contact is in range that was beyond the detector's reach, or a pair has more than were seen."""
+        count = len(self._system.surfaces)
+        before, after = (each.body_a * count + each.body_b for each in (seen, found))
+        pairs, met = np.unique(after[found.gap < self._system.law_range], return_counts=True)
+        return bool(np.any(met > np.count_nonzero(before == pairs[:, None], axis=1)))
+
+
+def detection_by(detector: type[Detector]) -> type[PoseDetection | MeshDetection]:
+    """Way of detection by detectors of this class."""
+    return MeshDetection if detector.needs_mesh else PoseDetection
+
+
+def _detected(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+    """Contacts as the detector finds them."""
+    contacts = system.detector.detect(pose, mesh, reach)
+    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
+    return contacts
