@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.look_ahead import foreseen, look_ahead
 from rigidfluid.core.contact.round_contacts import on_round_shapes
-from rigidfluid.core.contact.tracked_pairs import TrackedPairs
-from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.detection import Detection, FollowedContacts, Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import Detector, ForceLaw
@@ -24,26 +22,28 @@ class PoseDetection(Detection):
     on_mesh: ClassVar[bool] = False
 
     def __init__(self, system: System) -> None:
-        self._system = system
+        from rigidfluid.core.contact.look_ahead import foreseen, look_ahead
+
+        self._foreseen, self._look_ahead = partial(foreseen, system), partial(look_ahead, system)
 
     @staticmethod
     def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
         return Mesh.empty(pose.position.shape[1])
 
-    def contacts(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-        return _detected(self._system, pose, mesh, reach)
+    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
+        return contacts
 
     def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
-        return look_ahead(self._system, movement, size)
+        return self._look_ahead(movement, size)
 
     def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
-        now = look_ahead(self._system, movement, size)
+        now = self._look_ahead(movement, size)
         return now if now.reach > sight.reach else sight
 
     def followed(
         self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
-    ) -> tuple[Contacts, TrackedPairs]:
-        pairs = foreseen(self._system, law, movement, size, reach)
+    ) -> tuple[Contacts, FollowedContacts]:
+        pairs = self._foreseen(law, movement, size, reach)
         return pairs.start, pairs
 
     def has_missed(self, seen: Contacts, found: Contacts) -> bool:
@@ -62,8 +62,8 @@ class MeshDetection(Detection):
     def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
         return make(pose)
 
-    def contacts(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-        return on_round_shapes(_detected(self._system, pose, mesh, reach), self._system.walls, pose)
+    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
+        return on_round_shapes(contacts, self._system.walls, pose)
 
     def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
         return Sight(near.extrapolate, np.inf, size)
@@ -87,10 +87,3 @@ class MeshDetection(Detection):
 def detection_by(detector: type[Detector]) -> type[PoseDetection | MeshDetection]:
     """Way of detection by detectors of this class."""
     return MeshDetection if detector.needs_mesh else PoseDetection
-
-
-def _detected(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-    """Contacts as the detector finds them."""
-    contacts = system.detector.detect(pose, mesh, reach)
-    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
-    return contacts

@@ -7,6 +7,7 @@ import numpy as np
 from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.mechanics.rigid import angle_between
+from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
@@ -15,8 +16,14 @@ from rigidfluid.errors import StepRejected
 
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-    """Contacts with gap ≤ ``reach`` [length] by the system's detection, with effective radii if a law reads them."""
-    contacts = system.detection.contacts(pose, mesh, reach)
+    """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh.
+
+    PluginError is raised if they are between unknown surfaces or arrays have a wrong shape, StepRejected if a gap,
+    point or normal is not finite.
+    """
+    contacts = system.detector.detect(pose, mesh, reach)
+    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
+    contacts = system.detection.on_shapes(contacts, pose)
     if any(interaction.law.film for interaction in system.interactions):
         return with_effective_radii(contacts, system.bodies, system.walls, pose)
     return contacts

@@ -30,7 +30,7 @@ def partition(mesh: Mesh, parts: int) -> IntArray:
 
 def distributed(mesh: Mesh, ranks: Ranks) -> Mesh:
     """Part of the root's ``mesh`` that this rank gets, with all vertices of its cells, both in the order of the whole;
-    alone, the very mesh. Those of the other ranks are not read."""
+    alone, the very mesh. No other rank's mesh is read."""
     if ranks.size == 1:
         return mesh
     return shared(ranks.scatter(parts_of(mesh, partition(mesh, ranks.size)) if ranks.is_root else None), ranks)

@@ -45,12 +45,8 @@ class Detection(ABC):
         """The mesh that it looks at when the bodies are at ``pose``: what ``make`` makes, or one without cells."""
 
     @abstractmethod
-    def contacts(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-        """All contacts with gap ≤ ``reach`` [length] at ``pose``, those of balls between the round shapes themselves.
-
-        PluginError is raised if they are between unknown surfaces or arrays have a wrong shape, StepRejected if a gap,
-        point or normal is not finite.
-        """
+    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
+        """Contacts that the detector found at ``pose``, those of balls between the round shapes themselves."""
 
     @abstractmethod
     def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
