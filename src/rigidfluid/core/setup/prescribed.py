@@ -82,7 +82,7 @@ def prescribed_motion(scene: Scene, pose: Pose) -> PrescribedMotion:
     """The motion that a scene prescribes to its bodies, the first of those that are at ``pose`` at the start."""
     n, d = len(pose.position), scene.dimension
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
-    for i, body in enumerate(scene.body):
+    for i, body in enumerate(scene.body[:n]):
         motion = body.prescribed or PrescribedTable()
         twist[i, :d] = motion.velocity or 0.0
         twist[i, d:] = motion.angular_velocity or 0.0
