@@ -26,13 +26,13 @@ class Dry(FluidBackend):
     """Newton–Euler without a fluid: mass_matrix · twist = load for free motions, the prescribed twist for others."""
 
     name: ClassVar[str] = "dry"
-    needs_mesh: ClassVar[bool] = False
+    wet: ClassVar[bool] = False
 
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """An empty state without energy."""
         return {}, 0.0
 
-    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+    def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         """The twists at the new time; the fluid's wrench and powers are zero."""
         bodies, dimension = step.pose.position.shape
         twist, nothing = _solve(step), np.zeros((bodies, step.load.shape[1]))
@@ -68,7 +68,7 @@ class Dry(FluidBackend):
         """Zero velocity (N, d) and zero pressure (N,) at ``points`` (N, d)."""
         return np.zeros_like(points), np.zeros(len(points))
 
-    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
         """Zero unknowns: each body's equation stands alone."""
         return 0
 

@@ -27,12 +27,12 @@ class Workers:
 
     def __init__(self, threads: int) -> None:
         self._threads = threads or _cores()
-        self._mesh: Mesh | None = None
+        self._mesh = Mesh.empty(2)
         self._workspaces: list[Workspace] = []
 
     def topology(self, mesh: Mesh) -> Topology:
         """The topology of ``mesh``; kept while its cells, facets and markers are the same arrays."""
-        if self._mesh is None or not same_topology(mesh, self._mesh):
+        if not same_topology(mesh, self._mesh):
             self._mesh, self._topology = mesh, Topology.from_mesh(mesh)
             self._workspaces.clear()
         return self._topology

@@ -87,23 +87,19 @@ class TaylorHoodBackend(FluidBackend):
         """Forget what the solutions of earlier systems have left behind."""
 
     @final
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
         from rigidfluid.taylor_hood.initial_flow import formula_flow, steady_flow
         from rigidfluid.taylor_hood.transfer import initial
 
         start = self.problem.initial
-        target = (
-            self._steady_discretisation(_given(mesh))
-            if start == "steady"
-            else self._projecting_discretisation(_given(mesh))
-        )
-        given = target, self.options.tolerance, _given(mesh), pose, twist
+        target = self._steady_discretisation(mesh) if start == "steady" else self._projecting_discretisation(mesh)
+        given = target, self.options.tolerance, mesh, pose, twist
         if start == "rest":
             made = initial(*given)
         else:
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given)
-            made = flow, kinetic_energy(target, _given(mesh).geometry, flow["velocity"])
+            made = flow, kinetic_energy(target, mesh.geometry, flow["velocity"])
         self.drop_factors()
         return made
 
@@ -122,9 +118,9 @@ class TaylorHoodBackend(FluidBackend):
         return fluid, kinetic, motions
 
     @final
-    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+    def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         tolerance = max(self.options.tolerance, _PROVISIONAL if step.provisional else 0.0)
-        return self._advanced(fluid, _given(mesh), step, tolerance)
+        return self._advanced(fluid, mesh, step, tolerance)
 
     @final
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
@@ -148,14 +144,12 @@ class TaylorHoodBackend(FluidBackend):
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
     @final
-    def prediction_error(
-        self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
-    ) -> float:
+    def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
         from rigidfluid.taylor_hood.advance import extrapolated
         from rigidfluid.taylor_hood.discretisation import kinetic_energy
 
         missed = after["velocity"] - extrapolated(before, extrapolation)
-        return kinetic_energy(self._any_discretisation(_given(mesh)), _given(mesh).geometry, missed)
+        return kinetic_energy(self._any_discretisation(mesh), mesh.geometry, missed)
 
     @final
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
@@ -173,8 +167,8 @@ class TaylorHoodBackend(FluidBackend):
         return mesh.ranks.bcast(found)
 
     @final
-    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
-        return self._discretisation(_given(mesh), controlled).unknowns
+    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
+        return self._discretisation(mesh, controlled).unknowns
 
     @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
@@ -243,8 +237,3 @@ class TaylorHoodBackend(FluidBackend):
         """A discretisation on this topology, whichever bodies are controlled."""
         self.numbering_of(mesh)
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
-
-
-def _given(mesh: Mesh | None) -> Mesh:
-    assert mesh is not None, "backends of finite elements declare needs_mesh"
-    return mesh

@@ -94,11 +94,11 @@ class SparseBackend(TaylorHoodBackend):
         return {"controlled": controlled.astype(float), "geometry": self._geometry} | discretisation.memory()
 
     @final
-    def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
+    def recall(self, memory: FluidState, mesh: Mesh) -> None:
         from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
         self.forget()
-        if memory and mesh is not None:
+        if memory:
             discretisation = self._discretisation(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)

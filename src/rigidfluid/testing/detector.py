@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, FloatArray
@@ -30,7 +31,7 @@ Pairs = list[tuple[int, int]]
 class DetectorContract:
     """Contacts of balls against their closed form, of ellipsoids against ``brute_force``, and what holds for any shape.
 
-    Override ``make_detector``. A detector with ``needs_mesh`` gets a mesh of the fluid between the bodies; its gaps may
+    Override ``make_detector``. A detector on meshes gets a mesh of the fluid between the bodies; its gaps may
     be larger than those of the shapes by as much as the facets lie below the surfaces, h²/(8R) or so each.
     """
 
@@ -73,15 +74,16 @@ class DetectorContract:
     def detect(self, arrangement: Arrangement, reach: float) -> Contacts:
         """All contacts of an arrangement."""
         detector = self.make_detector(arrangement)
-        return detector.detect(arrangement.pose, arrangement.mesh if detector.needs_mesh else None, reach)
+        mesh = detection_by(type(detector)).mesh_at(arrangement.pose, lambda pose: arrangement.mesh)
+        return detector.detect(arrangement.pose, mesh, reach)
 
     def depths(self, arrangement: Arrangement) -> FloatArray:
         """How far the detector's surfaces may lie below the true ones, by number of body, and for walls 0 at the end.
 
         With a mesh that is the depth of the facets, h²/(8R) on a circle of radius R with edges h.
         """
-        meshed = self.make_detector(arrangement).needs_mesh
-        return np.append(arrangement.depths if meshed else np.zeros(len(arrangement.semi_axes)), 0.0)
+        on_mesh = detection_by(type(self.make_detector(arrangement))).on_mesh
+        return np.append(arrangement.depths if on_mesh else np.zeros(len(arrangement.semi_axes)), 0.0)
 
     def test_gaps_of_balls_and_walls(self, dimension: int) -> None:
         """Exactly the pairs within reach, sorted, each with the closed form's gap."""
@@ -103,7 +105,7 @@ class DetectorContract:
         made = self.make_detector(arrangement)
         if made.exact_for(arrangement.bodies, pieces) is None:
             pytest.skip("this detector does not claim to be exact for these shapes")
-        if made.needs_mesh:
+        if detection_by(type(made)).on_mesh:
             pytest.skip("this detector is exact to the facets of its mesh")
         self._check_gaps(arrangement, _searched_gaps(arrangement, 1.01 * self.reach), self.reach, 1e-10)
 

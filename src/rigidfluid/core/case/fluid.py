@@ -23,7 +23,7 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
     """
     backend = scene_backend(table, registry)
     source = None if table.force is None else VectorExpression.parse(table.force, "fluid.force")
-    if not backend.part.needs_mesh:
+    if not backend.part.wet:
         _refuse_flow(table, backend.part)
         return NoFluid(table.density or 0.0, backend)
     beside = f"with backend {backend.part.name!r}"

@@ -16,6 +16,7 @@ from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_options import own_options, refuse_unread
 from rigidfluid.core.case.periodic import periodic_pairs
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Part
@@ -82,7 +83,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
     fluid = scene_fluid(scene.fluid, scene.mesh, registry, scene.dimension)
     laws = scene_laws(scene.contact, scene.interaction, registry)
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
-    detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.needs_mesh, laws)
+    detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
     return Model(
         domain=domain,
         bodies=bodies,
@@ -137,12 +138,12 @@ def _detector(
     table: ContactTable,
     registry: Registry,
     around: tuple[Sequence[Body], Domain],
-    mesh: bool,
+    wet: bool,
     laws: Sequence[ContactLaw],
 ) -> tuple[Selected[Detector], str]:
     """The detector that a scene names, or the cheapest that is exact for shapes in a domain; and why it is this one."""
-    part, why = _detector_class(table, registry, around, mesh and bool(laws))
-    if part.needs_mesh and not mesh:
+    part, why = _detector_class(table, registry, around, wet and bool(laws))
+    if detection_by(part).on_mesh and not wet:
         remedy = 'Use detector = "auto", or a backend with a mesh.'
         raise SceneError("contact.detector", f"{part.name!r} without a mesh", "a detector that needs none", remedy)
     readers: list[type[Part]] = [part, laws[0].law.part] if table.law else [part]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.model.interfaces import Body, Detector
 from rigidfluid.core.model.piece import Piece
 from rigidfluid.registry import DETECTOR, Registry
@@ -16,7 +17,7 @@ def choose_detector(
 
     Without ``mesh`` none that needs one is asked. The built-in `brute_force` takes all shapes.
     """
-    usable = [part for part in registry.installed(DETECTOR) if mesh or not part.needs_mesh]
+    usable = [part for part in registry.installed(DETECTOR) if mesh or not detection_by(part).on_mesh]
     reasons = {part: reason for part in usable if (reason := part.exact_for(bodies, pieces))}
     return min(reasons.items(), key=lambda found: found[0].cost)
 

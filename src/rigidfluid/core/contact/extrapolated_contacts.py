@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Pose
 
 
@@ -37,6 +38,10 @@ class ExtrapolatedContacts:
         if self._round.any():
             self._measure_balls(pose, point_a, point_b, normal, gap)
         return replace(old, point_a=point_a, point_b=point_b, normal=normal, gap=gap)
+
+    def missed(self, law: ForceLaw, pose: Pose) -> float:
+        """Zero: contacts that come or go between two detections are not known."""
+        return 0.0
 
     def _measure_balls(
         self, pose: Pose, point_a: FloatArray, point_b: FloatArray, normal: FloatArray, gap: FloatArray

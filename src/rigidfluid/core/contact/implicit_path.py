@@ -11,8 +11,8 @@ from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_contacts import KEPT, implicit_contact_step
 from rigidfluid.core.contact.look_ahead import fastest_speed, foreseen
 from rigidfluid.core.contact.substep_path import fly_freely, spring_parts
-from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.wrenches import nothing, power
+from rigidfluid.core.model.detection import FollowedContacts
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
@@ -63,11 +63,10 @@ def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near
     its impulse would be greater than the reduced mass alone asks for.
     """
     part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
-    on_mesh = ExtrapolatedContacts(near, movement.pose) if system.detector.needs_mesh else None
+    at_start = ExtrapolatedContacts(near, movement.pose)
     reach = max(float(near.gap.max()), law.range + 4.0 * fastest_speed(system, movement, size) * size)
     for _ in range(IMPLICIT_PARTS):
-        followed = on_mesh or foreseen(system, law, movement, part, reach)
-        start = followed.start if isinstance(followed, TrackedPairs) else followed.extrapolate(movement.pose)
+        start, followed = system.detection.followed(at_start, law, movement, part, reach)
         if len(start) == 0:
             fly_freely(system, movement, part)
             continue
@@ -82,15 +81,14 @@ def _implicit_step(
     law: ForceLaw,
     movement: M,
     start: Contacts,
-    followed: TrackedPairs | ExtrapolatedContacts,
+    followed: FollowedContacts,
     size: float,
 ) -> tuple[BodyStep, M]:
     """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the movement at
     its end."""
     crossing = implicit_contact_step(law, movement, start, followed.extrapolate, size, system.wall_velocity)
     end, wrench, lost, driven, stored = crossing
-    if isinstance(followed, TrackedPairs):
-        _refuse_unseen(law, followed, end.pose, KEPT * stored)
+    _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     before, after = (each.prescribed_twist(system.motions.controlled) for each in (movement, end))
     mean = Twist(
@@ -101,7 +99,7 @@ def _implicit_step(
     return arrived(end, impulse, lost, actuator_work, 1), end
 
 
-def _refuse_unseen(law: ForceLaw, followed: TrackedPairs, end: Pose, allowed: float) -> None:
+def _refuse_unseen(law: ForceLaw, followed: FollowedContacts, end: Pose, allowed: float) -> None:
     """Raise StepRejected if contacts that came or went untracked hold more than the ``allowed`` energy."""
     missed = followed.missed(law, end)
     if abs(missed) > allowed:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from rigidfluid.core.contact.substep import relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
 from rigidfluid.core.mechanics.motions import body_accelerations
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.state import State
@@ -33,27 +33,10 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
-@dataclass(frozen=True)
-class Sight:
-    """Contacts at any pose, by ``contacts_at``: all up to a gap ``reach`` [length], enough for a ``span`` [time] at the
-    speeds that it was made for. Contacts that are not detected anew but move with their bodies have an infinite
-    reach."""
-
-    contacts_at: Callable[[Pose], Contacts]
-    reach: float
-    span: float
-
-    def widened(self, system: System, movement: BodyDynamics, size: float) -> Sight:
-        """Sight for the present speeds if that reaches farther, else this one: speeds at the start of a step do not
-        show the energy that contacts store at a turning point."""
-        now = look_ahead(system, movement, size) if np.isfinite(self.reach) else self
-        return now if now.reach > self.reach else self
-
-
 def look_ahead(system: System, movement: BodyDynamics, size: float) -> Sight:
     """Sight for a step of this ``size`` [time] at the present speeds, by a detector that needs no mesh; no farther than
     the law where a scene fixes the number of substeps, which are then not planned by contacts to come."""
-    law_range = system.law.range if system.law else 0.0
+    law_range = system.law_range
     if system.substeps:
         return Sight(_detection(system, law_range), law_range, size)
     largest = max(body.bounding_radius for body in system.bodies)

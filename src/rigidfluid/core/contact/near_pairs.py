@@ -49,21 +49,20 @@ class NearPairs:
 
     def within(self, position: FloatArray, reach: float) -> PairList:
         """Pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
+        wide = np.inf if len(self._radii) <= _ALL_PAIRS else reach + self._skin
         for found in self._lists:
             # a list that looks much too far would be right, but slow
-            if found.reach <= reach + 2.0 * self._skin and found.holds(position, reach):
+            if found.reach <= wide + self._skin and found.holds(position, reach):
                 return found
-        made = self._made(position, reach)
+        made = self._made(position, wide)
         self._lists = [made, *self._lists[: _LISTS - 1]]
         return made
 
     def _made(self, position: FloatArray, reach: float) -> PairList:
-        count = len(self._radii)
-        wide = np.inf if count <= _ALL_PAIRS else reach + self._skin
-        first, second = near_pairs(position, self._radii, wide)
+        first, second = near_pairs(position, self._radii, reach)
         order = np.lexsort((second, first))
-        start = np.searchsorted(first[order], np.arange(count + 1))
-        return PairList(start, second[order], position.copy(), wide)
+        start = np.searchsorted(first[order], np.arange(len(self._radii) + 1))
+        return PairList(start, second[order], position.copy(), reach)
 
 
 @njit(cache=True, nogil=True)

@@ -6,7 +6,6 @@ import numpy as np
 
 from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
-from rigidfluid.core.contact.round_contacts import on_round_shapes
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
@@ -24,8 +23,7 @@ def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Conta
     """
     contacts = system.detector.detect(pose, mesh, reach)
     refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
-    if system.detector.needs_mesh:
-        contacts = on_round_shapes(contacts, system.walls, pose)
+    contacts = system.detection.on_shapes(contacts, pose)
     if any(interaction.law.film for interaction in system.interactions):
         return with_effective_radii(contacts, system.bodies, system.walls, pose)
     return contacts

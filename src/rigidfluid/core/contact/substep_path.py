@@ -9,10 +9,10 @@ import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
 from rigidfluid.core.contact.contact_load import contact_load, damping_loss
-from rigidfluid.core.contact.look_ahead import Sight
 from rigidfluid.core.contact.proximity import refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan
 from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
@@ -74,7 +74,7 @@ class SubstepPath:
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
-                wider = sight.widened(system, movement, size) if count else sight
+                wider = system.detection.widened(sight, movement, size) if count else sight
                 if wider is not sight:
                     sight, contacts = wider, wider.contacts_at(movement.pose)
                 planned = min(left, sight.span)

@@ -74,8 +74,7 @@ class TrackedPairs:
         return contacts.body_a * len(self._system.surfaces) + contacts.body_b
 
     def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
-        law_range = self._system.law.range if self._system.law else 0.0
-        met = np.flatnonzero(others & (found.gap < law_range))
+        met = np.flatnonzero(others & (found.gap < self._system.law_range))
         if len(met):
             names = [self._system.surfaces[body[met[0]]] for body in (found.body_a, found.body_b)]
             raise StepRejected(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from rigidfluid.core.contact.body_step import BodyStep
@@ -13,7 +14,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Step, Wrench
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Step, Wrench
 
 
 class DryScheme:
@@ -45,10 +46,14 @@ class DryScheme:
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
         return False
 
-    def repeats_start(self, state: State, path: BodyStep) -> bool:
+    def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
         return False
 
-    def missed_contacts(self, state: State, candidate: State) -> bool:
+    def begun_anew(self, state: State, first_level: int) -> State:
+        """The state as after a start at once; the next step may be as long as ever."""
+        return replace(state, ledger=replace(state.ledger, since_start=0.0))
+
+    def repeats_start(self, state: State, path: BodyStep) -> bool:
         return False
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, undisturbed
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.gap_changes import change_too_fast
 from rigidfluid.core.contact.implicit_path import implicit_coupled
-from rigidfluid.core.contact.look_ahead import Sight, look_ahead, near_contacts
+from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
@@ -29,7 +31,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within, uncoupled
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Step
+from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose, Step
 
 SETTLED = 1e-3
 """Relative change of the bodies' velocities below which the iteration of a step has converged."""
@@ -58,7 +60,7 @@ class FluidScheme(ABC):
         if len(near) == 0:
             return None
         velocities = _velocities(system, near)
-        step = step_to(system, state, StepEnd(time + size, size, state.motions.pose, nothing(state.motions.pose)), None)
+        step = step_to(system, state, StepEnd(time + size, size, state.motions.pose, nothing(state.motions.pose)))
         known = None if state.coupling is None else state.coupling.model
         model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
         before, expected = self._expected_loads(state, model)
@@ -76,9 +78,7 @@ class FluidScheme(ABC):
         if system.implicit:
             path = implicit_coupled(system, system.law, movement, near, size)
         else:
-            sight = Sight(ExtrapolatedContacts(near, state.pose).extrapolate, np.inf, size)
-            if not system.detector.needs_mesh:
-                sight = look_ahead(system, movement, size)
+            sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), movement, size)
             path = SubstepPath(system, system.law, movement, size).advance(sight)
             path = replace(path, friction=movement.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
@@ -98,23 +98,15 @@ class FluidScheme(ABC):
         now, before = flat(path.motions.contact) / arms, size * flat(state.motions.contact) / arms
         return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
 
+    def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
+        return change_too_fast(self._system, state, pose, mesh_at)
+
+    @abstractmethod
+    def begun_anew(self, state: State, first_level: int) -> State: ...
+
     def repeats_start(self, state: State, path: BodyStep) -> bool:
         """Whether nothing touches in a first step."""
         return path.coupling is None and state.past is None
-
-    def missed_contacts(self, state: State, candidate: State) -> bool:
-        """Whether a contact is in range at the end of a step that was beyond the detector's reach at its start, or a
-        pair has more of them than were seen.
-
-        A detector that needs no mesh is asked on the way, and misses none.
-        """
-        system = self._system
-        if system.law is None or not system.detector.needs_mesh:
-            return False
-        count = len(system.surfaces)
-        seen, found = (now.contacts.body_a * count + now.contacts.body_b for now in (state, candidate))
-        pairs, met = np.unique(found[candidate.contacts.gap < system.law.range], return_counts=True)
-        return bool(np.any(met > np.count_nonzero(seen == pairs[:, None], axis=1)))
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
         """The candidate with its coupling, and whether the fixed-point iteration has converged."""

@@ -115,7 +115,6 @@ def _asked(
     system: System, state: State, step: Step, velocities: IntArray, fresh: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Responses W_i and W_s (c, f) to the ``fresh`` velocities; NaN where another body of a question is nearer."""
-    assert state.mesh is not None
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
     position = step.kinematics.centres(step.pose)

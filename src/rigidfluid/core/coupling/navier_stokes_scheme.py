@@ -24,6 +24,11 @@ RESOLVED = 8.0
 class NavierStokesScheme(FluidScheme):
     """`Scheme` of bodies in a fluid with inertia: added mass acts in contacts at once, and the flow remembers them."""
 
+    def begun_anew(self, state: State, first_level: int) -> State:
+        """The state as after a start at once, and a short step next."""
+        level, ledger = max(state.level or 0, first_level), replace(state.ledger, since_start=0.0)
+        return replace(state, level=level, ledger=ledger)
+
     def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
         return load_before(self._system, state, model), expected_load_of(self._system, state, model)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.types import Step
+from rigidfluid.core.model.types import Mesh, Pose, Step
 
 
 class Scheme(Protocol):
@@ -33,11 +34,15 @@ class Scheme(Protocol):
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
         """Whether contact impulses changed so much that a second solution of the step is certain."""
 
+    def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
+        """Whether gaps change by more than a step to ``pose`` can follow, on the mesh that ``mesh_at(pose)`` is."""
+
+    def begun_anew(self, state: State, first_level: int) -> State:
+        """The state at a corner, where rates change at once; ``first_level``: of a step that follows a fluid's layers
+        from there."""
+
     def repeats_start(self, state: State, path: BodyStep) -> bool:
         """Whether a step without a past, as the first one, is solved again along the path that its solution shows."""
-
-    def missed_contacts(self, state: State, candidate: State) -> bool:
-        """Whether a contact is in range at the end of a step that its path did not follow."""
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
         """The ``candidate`` with the coupling that its solution has shown, and whether path and solution agree."""

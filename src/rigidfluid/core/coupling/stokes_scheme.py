@@ -20,6 +20,10 @@ from rigidfluid.core.model.types import Contacts, FloatArray, Step
 class StokesScheme(FluidScheme):
     """`Scheme` of bodies in a fluid without inertia: its drag follows from the present velocities alone."""
 
+    def begun_anew(self, state: State, first_level: int) -> State:
+        """The state, and a short step next."""
+        return replace(state, level=max(state.level or 0, first_level))
+
     def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
         """Load at the start, for both ends; where that is unknown, the fluid's present wrench and all outer ones."""
         before = load_before(self._system, state, model)

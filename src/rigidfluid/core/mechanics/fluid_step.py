@@ -15,7 +15,7 @@ from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import FloatArray, Pose, Step, Twist, Wrench
 
 
 class StepEnd(NamedTuple):
@@ -28,8 +28,9 @@ class StepEnd(NamedTuple):
     impulse: Wrench
 
 
-def step_to(system: System, state: State, end: StepEnd, mesh: Mesh | None) -> Step:
-    """Step from a ``state`` to its ``end``, on ``mesh`` there."""
+def step_to(system: System, state: State, end: StepEnd, points: FloatArray | None = None) -> Step:
+    """Step from a ``state`` to its ``end``, with the mesh's geometry ``points`` (N + K, d) there, None on the present
+    mesh [length]."""
     time, pose, derivative = end.time, end.pose, derivative_weights(end.size, state.past_step)
     kinematics = system.motions.kinematics(pose, time)
     mass_matrix, load = _newton_euler(system, state, end, derivative, kinematics)
@@ -38,7 +39,7 @@ def step_to(system: System, state: State, end: StepEnd, mesh: Mesh | None) -> St
         derivative=derivative,
         extrapolation=extrapolation_weights(end.size, state.past_step),
         pose=system.motions.poses(pose, time),
-        points=None if mesh is None else mesh.geometry,
+        points=points,
         mass_matrix=mass_matrix,
         load=load,
         controlled=system.motions.controlled,

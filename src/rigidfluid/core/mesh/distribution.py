@@ -28,13 +28,12 @@ def partition(mesh: Mesh, parts: int) -> IntArray:
     return owner
 
 
-def distributed(mesh: Mesh | None, ranks: Ranks) -> Mesh:
+def distributed(mesh: Mesh, ranks: Ranks) -> Mesh:
     """Part of the root's ``mesh`` that this rank gets, with all vertices of its cells, both in the order of the whole;
-    alone, the very mesh. The other ranks give None."""
+    alone, the very mesh. No other rank's mesh is read."""
     if ranks.size == 1:
-        assert mesh is not None
         return mesh
-    return shared(ranks.scatter(None if mesh is None else parts_of(mesh, partition(mesh, ranks.size))), ranks)
+    return shared(ranks.scatter(parts_of(mesh, partition(mesh, ranks.size)) if ranks.is_root else None), ranks)
 
 
 def shared(part: Mesh, ranks: Ranks) -> Mesh:

@@ -44,19 +44,19 @@ class Renewal:
     """Conditions on which a mesh is made anew.
 
     Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
-    ``oldest`` ticks old, None for any age. For ``pause`` ticks after a mesh could not be made, none is tried unless a
+    ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a
     cell is nearly tangled.
     """
 
     quality: float
     pause: int
-    oldest: int | None = None
+    oldest: float = np.inf
 
 
 class MeshUpdater:
-    """Moves the mesh of a run, and re-makes it where its quality, its cells' sizes, a gap or its age asks for that.
+    """`Updater` that re-makes the mesh where its quality, its cells' sizes, a gap or its age asks for that.
 
-    Without a fluid ``sizes`` is None and there is no mesh. Each mesh has the cells that ``fields`` ask for, by the flow
+    Each mesh has the cells that ``fields`` ask for, by the flow
     on the mesh before; the first one, which ``inserter`` makes, by a fluid and bodies at rest. All others are made on
     the conditions of ``renewal``. ``watch`` times a stage by its name; the carrying over of the fluid is the stage
     "transfer".
@@ -65,7 +65,7 @@ class MeshUpdater:
     def __init__(
         self,
         system: System,
-        sizes: Sizes | None,
+        sizes: Sizes,
         renewal: Renewal,
         fields: Sequence[SizeField] = (),
         inserter: Inserter = BY_SHAPE,
@@ -78,26 +78,28 @@ class MeshUpdater:
         self._inserter = inserter
         self._watch = watch
         self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
-        self._motion: tuple[MeshMotion, CurvedCells] | None = None
+        self._motion: tuple[MeshMotion, CurvedCells]
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
         self._made: tuple[Reference, FloatArray] | None = None
 
-    def first_mesh(self) -> Mesh | None:
+    def first_mesh(self) -> Mesh:
         """The mesh around the bodies' initial pose."""
-        if self._sizes is None:
-            return None
         s, ranks = self._system, self._system.backend.ranks
         with ranks.raise_on_all():
             around = fluid_domain_at(s, s.pose)
             sizes = with_fields_at_rest(self._sizes, self._fields, around)
-            mesh = self._curved(initial_mesh(around, sizes, self._inserter), around) if ranks.is_root else None
+            mesh = Mesh.empty(s.dimension)
+            if ranks.is_root:
+                mesh = self._curved(initial_mesh(around, sizes, self._inserter), around)
         return distributed(mesh, ranks)
 
-    def deform(self, state: State, pose: Pose) -> Mesh | None:
+    def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
+        """The first mesh as a reference."""
+        return reference_of(mesh, self._system.pose, gaps, 0)
+
+    def deform(self, state: State, pose: Pose) -> Mesh:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
-        if state.reference is None:
-            return None
         _refuse_to_leave(self._system, pose)
         self._refuse_to_cross(pose)
         geometry, worst = self._placed(state.reference, pose)
@@ -112,11 +114,10 @@ class MeshUpdater:
 
     def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
-        if state.reference is None or state.is_on_new_mesh:
+        if state.is_on_new_mesh:
             return state
         if self._waits(state.reference, state, pose) or not self.needs_remesh(state, pose):
             return state
-        assert state.mesh is not None
         try:
             mesh = self._remade(state, state.mesh)
         except MeshError as error:
@@ -134,15 +135,14 @@ class MeshUpdater:
         )
 
     def quality(self, state: State) -> float:
-        """Quality of the worst cell of the mesh where it is now, curved cells included; nan without a mesh [1]."""
-        return np.nan if state.reference is None else self._placed(state.reference, state.pose)[1]
+        """Quality of the worst cell of the mesh where it is now, curved cells included [1]."""
+        return self._placed(state.reference, state.pose)[1]
 
     def _remade(self, state: State, mesh: Mesh) -> Mesh:
-        assert self._sizes is not None
         s, ranks, present = self._system, mesh.ranks, whole(mesh)
         flow = flow_on(s.backend, state.fluid, mesh, state.twist) if self._fields else None
         with ranks.raise_on_all():
-            made = None
+            made = Mesh.empty(s.dimension)
             if present is not None:
                 around = fluid_domain_at(s, state.pose)
                 sizes = self._sizes if flow is None else with_fields(self._sizes, self._fields, around, flow)
@@ -153,7 +153,6 @@ class MeshUpdater:
 
     def _curved(self, mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
         """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
-        assert self._sizes is not None
         if self._sizes.order == 1 or not self._system.backend.curved_cells:
             return mesh
         return with_curved_edges(mesh, fluid_domain)
@@ -168,9 +167,7 @@ class MeshUpdater:
     def is_worn(self, state: State, pose: Pose) -> bool:
         """Whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
         reference, sizes = state.reference, self._sizes
-        assert reference is not None
-        assert sizes is not None
-        if self._renewal.oldest is not None and state.tick >= reference.tick + self._renewal.oldest:
+        if state.tick >= reference.tick + self._renewal.oldest:
             return True
         if _gap_changed(reference.gaps, state.gaps, sizes).any():
             return True
@@ -203,7 +200,6 @@ class MeshUpdater:
         """Reject a step in which a body comes to a periodic surface: it would have to be in two places of the mesh, and
         facets there do not get smaller."""
         s = self._system
-        assert self._sizes is not None
         for number in chain(*s.domain.periodic):
             piece, margin = s.domain.pieces[number], self._sizes.size_body
             radius = np.array([body.bounding_radius for body in s.bodies])
@@ -218,7 +214,7 @@ class MeshUpdater:
                 )
 
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
-        if self._motion is None or self._reference is not reference:
+        if self._reference is not reference:
             s = self._system
             around = FluidDomain(s.bodies, reference.pose, s.domain, s.walls)
             motion = MeshMotion(reference.mesh, around, s.backend.extension, s.window)

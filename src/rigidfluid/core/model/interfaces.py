@@ -182,8 +182,6 @@ class Mechanism(SpatialPart):
 class Detector(Part):
     """Finds which surfaces are near each other.
 
-    With ``needs_mesh`` it is never asked without a mesh.
-
     Parameters
     ----------
     options : PartOptions
@@ -195,6 +193,7 @@ class Detector(Part):
     """
 
     needs_mesh: ClassVar[bool] = False
+    """Whether it looks at the fluid's mesh; then it is never asked without one."""
     cost: ClassVar[float] = math.inf
     """Time for a near pair over that of `sphere` for two balls [1]; ``auto`` takes the cheapest that is exact."""
 
@@ -301,7 +300,8 @@ class FluidBackend(Part):
         The fluid's equations and boundary conditions; None where there is no fluid.
     """
 
-    needs_mesh: ClassVar[bool] = True
+    wet: ClassVar[bool] = True
+    """Whether there is a fluid around the bodies, on a mesh; else it gets meshes without cells."""
     materials: ClassVar[tuple[type[Material], ...]] = (Newtonian,)
     """Materials that it solves for."""
     curved_cells: ClassVar[bool] = False
@@ -330,7 +330,7 @@ class FluidBackend(Part):
         return FactorisedExtension(stiffness, held)
 
     @abstractmethod
-    def initial(self, mesh: Mesh | None, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
 
         A fluid at "rest" was so until its bodies were set in motion with ``twist``.
@@ -346,7 +346,7 @@ class FluidBackend(Part):
         return None
 
     @abstractmethod
-    def advance(self, fluid: FluidState, mesh: Mesh | None, step: Step) -> Advance:
+    def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
 
     @abstractmethod
@@ -358,9 +358,7 @@ class FluidBackend(Part):
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
 
-    def prediction_error(
-        self, before: FluidState, after: FluidState, mesh: Mesh | None, extrapolation: FloatArray
-    ) -> float:
+    def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
         """Kinetic energy of the difference between a velocity and its extrapolation, ½ρ∫|uⁿ⁺¹ - e₀uⁿ - e₁uⁿ⁻¹|².
 
         uⁿ⁺¹ is of ``after``, on its ``mesh``, the others are of ``before``; ``extrapolation`` (2,): e. Zero where
@@ -378,7 +376,7 @@ class FluidBackend(Part):
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
     @abstractmethod
-    def unknowns(self, mesh: Mesh | None, controlled: BoolArray) -> int:
+    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
         """Number of unknowns of one step on this mesh, with the twists of the ``controlled`` motions (N,)
         prescribed."""
 
@@ -399,7 +397,7 @@ class FluidBackend(Part):
         self.forget()
         return {}
 
-    def recall(self, memory: FluidState, mesh: Mesh | None) -> None:
+    def recall(self, memory: FluidState, mesh: Mesh) -> None:
         """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
         self.forget()
 

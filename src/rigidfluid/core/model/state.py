@@ -114,13 +114,13 @@ class Past:
 class State:
     """An accepted state.
 
-    ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now (None without
-    a fluid). ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where none are. The
-    wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step in which an
-    impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that this mesh
-    could not be made anew, None if it has not been tried. ``motions``: what carries the bodies, from which ``pose`` and
-    ``twist`` are then evaluated. ``estimate``: of the latest step's error; None before the first step, and without a
-    tolerance. ``link``: of joints.
+    ``level`` is the latest step's, ``count`` the number of accepted steps, ``mesh`` where the mesh is now, without
+    cells where there is no fluid. ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where
+    none are. The wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step
+    in which an impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that
+    this mesh could not be made anew, None if it has not been tried. ``motions``: what carries the bodies, from which
+    ``pose`` and ``twist`` are then evaluated. ``estimate``: of the latest step's error; None before the first step, and
+    without a tolerance. ``link``: of joints.
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
@@ -132,8 +132,8 @@ class State:
     pose: Pose
     twist: Twist
     past: Past | None
-    mesh: Mesh | None
-    reference: Reference | None
+    mesh: Mesh
+    reference: Reference
     fluid: FluidState
     coupling: Coupling | None
     contacts: Contacts
@@ -153,7 +153,7 @@ class State:
     @property
     def is_on_new_mesh(self) -> bool:
         """Whether its mesh was made for it."""
-        return self.reference is not None and self.reference.tick == self.tick
+        return self.reference.tick == self.tick
 
     @property
     def past_twist(self) -> Twist | None:

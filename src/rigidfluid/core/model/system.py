@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from rigidfluid.core.model.detection import Detection
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interactions import Interaction
@@ -40,7 +41,8 @@ class System:
     ``interactions``: the laws with the contacts that they act in; ``law``: all of them together, None where there are
     none. ``loads``: what contacts must hold; its smallest gap is the least of all laws', and 0 without any.
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
-    ``detector_why``: who chose the detector, and for what reason. ``reach``: the largest gap that is measured [length].
+    ``detection_type(system)``: by which the loop asks the ``detector``; ``detector_why``: who chose that, and for what
+    reason. ``reach``: the largest gap that is measured [length].
     ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
     """
 
@@ -66,6 +68,7 @@ class System:
     backend_type: type[FluidBackend]
     make_backend: Callable[[], FluidBackend]
     detector: Detector
+    detection_type: Callable[[System], Detection]
     detector_why: str
     reach: float
     leverage: FloatArray
@@ -86,6 +89,16 @@ class System:
     def has_fluid(self) -> bool:
         """Whether there is a fluid around the bodies."""
         return self.fluid is not None
+
+    @property
+    def law_range(self) -> float:
+        """Gap below which bodies may repel, zero without a law [length]."""
+        return self.law.range if self.law else 0.0
+
+    @cached_property
+    def detection(self) -> Detection:
+        """Detection of contacts, chosen by the detector's class."""
+        return self.detection_type(self)
 
     @cached_property
     def arms(self) -> FloatArray:

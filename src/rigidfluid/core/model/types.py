@@ -170,6 +170,12 @@ class Mesh:
     part: MeshPart | None = None
     curved: CurvedEdges | None = None
 
+    @staticmethod
+    def empty(dimension: int) -> Mesh:
+        """A mesh without cells: that of a scene without a fluid."""
+        none = np.zeros((0, dimension), dtype=np.int64)
+        return Mesh(np.zeros((0, dimension)), np.zeros((0, dimension + 1), dtype=np.int64), none, none[:, 0])
+
     @property
     def ranks(self) -> Ranks:
         """The processes that hold the whole mesh together."""
@@ -214,8 +220,8 @@ class Step:
 
     ``derivative`` (3,) [1/time]: ∂u/∂t ≈ d₀uⁿ⁺¹ + d₁uⁿ + d₂uⁿ⁻¹, all zero for a steady flow. ``extrapolation`` (2,):
     uⁿ⁺¹ ≈ e₀uⁿ + e₁uⁿ⁻¹.
-    ``pose``: of the bodies, there. ``points`` (N + K, d): the mesh's geometry at the new time; None without a mesh,
-    and for responses on the present one.
+    ``pose``: of the bodies, there. ``points`` (N + K, d): the mesh's geometry at the new time; None for responses
+    on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
     wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
     All these are of the N motions that carry the bodies, by ``kinematics``, and the fluid's wrench on them is Gᵀ of

@@ -24,7 +24,7 @@ from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.errors import OutputError
 
-FORMAT = 8
+FORMAT = 9
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 
@@ -124,8 +124,6 @@ def _staged(path: Path) -> Path:
 
 def _with_shared_cells(state: State) -> State:
     """A moved mesh has the very cells of its reference: backends know a topology by its array."""
-    if state.mesh is None or state.reference is None:
-        return state
     return replace(state, mesh=state.reference.mesh.at(state.mesh.geometry))
 
 

@@ -125,15 +125,13 @@ def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
     return (*stamp, cost.size, error, unknowns, cost.remeshes, count_cells(state.mesh), cost.quality)
 
 
-def count_cells(mesh: Mesh | None) -> int:
-    """Number of cells of the whole mesh; 0 without one."""
-    if mesh is None:
-        return 0
+def count_cells(mesh: Mesh) -> int:
+    """Number of cells of the whole mesh."""
     return len(mesh.cells) if mesh.part is None else int(mesh.part.counts[1])
 
 
 def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) -> Iterator[Row]:
-    if len(probes) == 0 or state.mesh is None:
+    if len(probes) == 0 or count_cells(state.mesh) == 0:
         return
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
     if system.window is not None:  # nothing is known of the fluid outside

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
@@ -20,7 +21,7 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
     return level
 
 
-def begun_anew(system: System, clock: Clock, state: State) -> State:
+def begun_anew(system: System, scheme: Scheme, clock: Clock, state: State) -> State:
     """State without its past, from which nothing can be extrapolated, at a corner or jump and one step after it; else
     the same.
 
@@ -32,10 +33,8 @@ def begun_anew(system: System, clock: Clock, state: State) -> State:
     if state.jumped is not None and state.jumped in (state.tick, state.tick - clock.tick_from(state.past.step)):
         return replace(state, past=None)
     if _is_corner(system, clock, state.tick):
-        level = state.level if state.mesh is None else max(state.level or 0, start_level(clock))
         estimate = state.estimate and state.estimate.restarted
-        ledger = state.ledger if system.quasi_steady else replace(state.ledger, since_start=0.0)
-        return replace(state, past=None, level=level, estimate=estimate, ledger=ledger)
+        return scheme.begun_anew(replace(state, past=None, estimate=estimate), start_level(clock))
     if _is_corner(system, clock, state.tick - clock.tick_from(state.past.step)):
         return replace(state, past=None)
     return state

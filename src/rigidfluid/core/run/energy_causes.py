@@ -39,7 +39,7 @@ def _cause(system: System, clock: Clock, state: State, candidate: State) -> Caus
 
 def _is_remeshed(clock: Clock, state: State) -> bool:
     """Whether the state or the one before was carried to a new mesh: BDF2 differences both."""
-    if state.reference is None or state.reference.tick == 0 or state.level is None:
+    if state.reference.tick == 0 or state.level is None:
         return False
     return state.reference.tick >= state.tick - clock.ticks(state.level)
 

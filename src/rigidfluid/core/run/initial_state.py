@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, reference_of
+from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import MotionState, State
 from rigidfluid.core.model.system import System
@@ -19,7 +19,7 @@ START_LEVEL = 6
 start at once at most half of the time since."""
 
 
-def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, starts_short: bool = False) -> State:
+def initial_state(system: System, mesh_updater: Updater, clock: Clock, starts_short: bool = False) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none."""
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
@@ -34,7 +34,7 @@ def initial_state(system: System, mesh_updater: MeshUpdater, clock: Clock, start
         twist=system.twist,
         past=None,
         mesh=mesh,
-        reference=None if mesh is None else reference_of(mesh, system.pose, gaps, 0),
+        reference=mesh_updater.first_reference(mesh, gaps),
         fluid={},
         contacts=contacts,
         coupling=None,
@@ -70,7 +70,7 @@ def _with_flow(system: System, clock: Clock, state: State) -> State:
 def _faces_start_at_once(system: System, state: State) -> bool:
     """Whether faces drive a fluid at once that was at rest."""
     problem = system.fluid
-    if problem is None or state.mesh is None or problem.initial != "rest":
+    if problem is None or problem.initial != "rest":
         return False
     return faces_start_at_once(problem, state.mesh)
 
@@ -79,7 +79,7 @@ def _power(system: System, state: State, faces: bool) -> Power | None:
     """Power at the start; None where the fluid starts in motion, since nobody has solved for its stresses yet."""
     problem = system.fluid
     at_rest = problem is None or (problem.initial == "rest" and not faces and not _bodies_move(state))
-    return Power() if at_rest or state.mesh is None else None
+    return Power() if at_rest else None
 
 
 def _starts_at_once(system: System, state: State, faces: bool) -> bool:
@@ -90,7 +90,7 @@ def _starts_at_once(system: System, state: State, faces: bool) -> bool:
     hold it. Without inertia free bodies alone take time to follow the faces.
     """
     problem = system.fluid
-    if state.mesh is None or problem is None:
+    if problem is None:
         return False
     given = not isinstance(problem.initial, str)
     driven = faces and (problem.inertia or not system.motions.controlled.all())

@@ -5,15 +5,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
-from rigidfluid.core.mesh.mesh_adaptation import Renewal
+from rigidfluid.core.mesh.inserter import Inserter
+from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, Renewal
+from rigidfluid.core.mesh.no_mesh import NoMesh
 from rigidfluid.core.mesh.regions import RefinedBox, Region, curved_walls
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.mesh.wake import Wake
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
 
 
 def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
@@ -25,22 +30,28 @@ def sizes_of(table: MeshTable, domain: Domain) -> Sizes:
     )
 
 
-def wakes_of(table: MeshTable | None, dimension: int) -> tuple[SizeField, ...]:
+def wakes_of(table: MeshTable, dimension: int) -> tuple[SizeField, ...]:
     """Size field of the wakes behind bodies, if the table asks for them."""
-    if table is None or table.wake is None:
+    if table.wake is None:
         return ()
     return (Wake(table.wake.time, table.wake.size, table.growth, dimension),)
 
 
-def inserter_of(table: MeshTable | None) -> Inserter:
+def inserter_of(table: MeshTable) -> Inserter:
     """Way in which the bodies come into the first mesh."""
-    return BY_SHAPE if table is None else Inserter(table.inserter, table.mesher_timeout)
+    return Inserter(table.inserter, table.mesher_timeout)
 
 
-def renewal_of(table: MeshTable | None, clock: Clock) -> Renewal:
+def renewal_of(table: MeshTable, clock: Clock) -> Renewal:
     """Conditions on which a mesh is made anew; none is tried in the time of a whole step after a failure."""
-    pause = clock.ticks(0)
+    oldest = clock.tick_from(table.remesh_every) if table.remesh_every else np.inf
+    return Renewal(table.quality, clock.ticks(0), oldest)
+
+
+def updater_of(fluid: Fluid | NoFluid, system: System, clock: Clock, watch: Stopwatch) -> Updater:
+    """Keeper of a fluid's mesh; of none without a fluid."""
+    table = fluid.mesh
     if table is None:
-        return Renewal(0.0, pause)
-    oldest = None if table.remesh_every is None else clock.tick_from(table.remesh_every)
-    return Renewal(table.quality, pause, oldest)
+        return NoMesh(system)
+    sizes, wanted = sizes_of(table, system.domain), (*wakes_of(table, system.dimension), *fluid.size_fields)
+    return MeshUpdater(system, sizes, renewal_of(table, clock), wanted, inserter_of(table), watch)

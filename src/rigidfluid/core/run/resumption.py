@@ -34,8 +34,6 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
             pieces = _redistributed(backend, earlier_parts(out, written))
     own = ranks.scatter(pieces)
     reference = own.state.reference
-    assert reference is not None
-    assert own.state.mesh is not None
     mesh = shared(reference.mesh, ranks)
     state = replace(own.state, reference=replace(reference, mesh=mesh), mesh=mesh.at(own.state.mesh.geometry))
     return replace(own, state=state)
@@ -52,7 +50,6 @@ def _joined(backend: FluidBackend, parts: list[State]) -> State:
     if len(parts) == 1:
         return parts[0]
     first, meshes = parts[0], [_meshes(part) for part in parts]
-    assert first.reference is not None
     references, present = ([pair[i] for pair in meshes] for i in range(2))
     reference = joined(references)
     mesh = reference.at(joined(present).geometry)
@@ -63,7 +60,6 @@ def _joined(backend: FluidBackend, parts: list[State]) -> State:
 def _cut(backend: FluidBackend, whole: State) -> list[State]:
     """A part for each process of the ``backend``: cells are shared out as they were when the mesh was made."""
     reference, mesh = _meshes(whole)
-    assert whole.reference is not None
     owner = partition(reference, backend.ranks.size)
     references, present = parts_of(reference, owner), parts_of(mesh, owner)
     fluids = backend.cut(whole.fluid, mesh, present)
@@ -75,8 +71,6 @@ def _cut(backend: FluidBackend, whole: State) -> list[State]:
 
 def _meshes(state: State) -> tuple[Mesh, Mesh]:
     """The mesh when it was made, and now."""
-    assert state.reference is not None
-    assert state.mesh is not None
     return state.reference.mesh, state.mesh
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
@@ -23,12 +22,12 @@ from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wre
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import StepCost, joint_coordinates, records
+from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
 from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
-from rigidfluid.core.run.mesh_keys import inserter_of, renewal_of, sizes_of, wakes_of
+from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.resumption import checkpoint_for
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
@@ -104,16 +103,14 @@ class Simulation:
         processes: int | None = None,
     ) -> None:
         self.model = model = model_of(case)
-        system, time_table, mesh = assemble(model), model.time, model.fluid.mesh
+        system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
         earlier = _earlier(model, out, system.backend) if resume else None
-        self.clock = Clock.for_steps(time_table.step, time_table.shortest, time_table.end)
+        self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         self.watch = Stopwatch()
-        renewal, fields = renewal_of(mesh, self.clock), (*wakes_of(mesh, model.dimension), *model.fluid.size_fields)
-        sizes = None if mesh is None else sizes_of(mesh, model.domain)
-        self.mesh_updater = MeshUpdater(system, sizes, renewal, fields, inserter_of(mesh), self.watch)
-        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, time_table.tolerance)
+        self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
+        self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
         self.history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
@@ -366,7 +363,7 @@ class Simulation:
         if self._writer is None:
             return
         with self.watch("write"):
-            if self.state.mesh is not None:
+            if count_cells(self.state.mesh):
                 self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
 

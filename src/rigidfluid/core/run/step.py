@@ -16,7 +16,7 @@ from rigidfluid.core.mechanics.kinematics import given_twist
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
+from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
@@ -24,12 +24,6 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
-
-CLOSEST_APPROACH = 0.5
-"""A step may close a gap to this fraction of it, no further: a gap is met by many steps, not jumped over."""
-
-WIDEST_OPENING = 1.5
-"""A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +34,14 @@ class Tools:
     system: System
     scheme: Scheme
     clock: Clock
-    mesh_updater: MeshUpdater
+    mesh_updater: Updater
     watch: Stopwatch
 
 
 class _Place(NamedTuple):
     """Mesh, contacts and nearest gaps (n,) where a path ends."""
 
-    mesh: Mesh | None
+    mesh: Mesh
     contacts: Contacts
     gaps: FloatArray
 
@@ -69,7 +63,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         _pushed(path, clock.size(level)),
     )
     with tools.watch("advance"), system.backend.ranks.raise_on_all():
-        step = tools.scheme.prepare(step_to(system, state, end, place.mesh), state, path)
+        step = tools.scheme.prepare(step_to(system, state, end, place.mesh.geometry), state, path)
         step = replace(step, provisional=True) if provisional else step
         advance = system.backend.advance(state.fluid, state.mesh, step)
         refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))

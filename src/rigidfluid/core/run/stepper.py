@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, first_step_again
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, least_gaps, travel
+from rigidfluid.core.contact.gap_changes import CLOSEST_APPROACH, WIDEST_OPENING
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.coupling.schemes import scheme_of
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
+from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -22,7 +23,7 @@ from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
 from rigidfluid.core.run.process import give_back_memory
-from rigidfluid.core.run.step import CLOSEST_APPROACH, WIDEST_OPENING, Tools, attempt
+from rigidfluid.core.run.step import Tools, attempt
 from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.stuck import stuck
@@ -58,19 +59,29 @@ class Stepper:
         self,
         system: System,
         clock: Clock,
-        mesh_updater: MeshUpdater,
+        mesh_updater: Updater,
         watch: Stopwatch,
         tolerance: float | None = None,
     ) -> None:
-        self.system, self._clock, self._mesh_updater, self._watch = system, clock, mesh_updater, watch
+        self._clock, self._mesh_updater, self._watch = clock, mesh_updater, watch
+        self.system = system
         self.counts = Counts()
         self._controller = None if tolerance is None else StepController(clock, tolerance)
         self.propose: Callable[[State], int] = self._controller.propose if self._controller else self.longest
 
     @property
+    def system(self) -> System:
+        """The present system."""
+        return self._system
+
+    @system.setter
+    def system(self, system: System) -> None:
+        self._system, self._scheme = system, scheme_of(system)
+
+    @property
     def scheme(self) -> Scheme:
         """Scheme of the present system's steps."""
-        return scheme_of(self.system)
+        return self._scheme
 
     def longest(self, state: State) -> int:
         """The level of the longest step on the clock's grid, at most twice the last, and after a start at once at most
@@ -82,7 +93,7 @@ class Stepper:
 
     def after(self, state: State) -> State:
         """The next accepted state; raises StepError where even the shortest step is rejected."""
-        state = begun_anew(self.system, self._clock, state)
+        state = begun_anew(self.system, self.scheme, self._clock, state)
         level, path = self._first_level(state)
         while True:
             try:
@@ -130,7 +141,7 @@ class Stepper:
         for number in range(MOST_ATTEMPTS):
             provisional = number == 0 and scheme.is_unsteady(state, path, size)
             candidate, step = attempt(tools, state, level, path, provisional)
-            if level < self._clock.levels and scheme.missed_contacts(state, candidate):
+            if level < self._clock.levels and self.system.detection.has_missed(state.contacts, candidate.contacts):
                 raise _too_fast()
             if number == 0 and scheme.repeats_start(state, path):
                 again = first_step_again(self.system, state, candidate.motions.twist, self._end(state, level), size)
@@ -189,21 +200,8 @@ class Stepper:
 
     def _changes_gaps_too_fast(self, state: State, pose: Pose) -> bool:
         """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
-        if state.mesh is None:
-            return False
-        moved = travel(self.system, state.pose, pose)
-        before = least_gaps(self.system, state.pose, state.gaps)
-        if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
-            return False  # too far away for that: no need to measure
-        try:
-            mesh = self._mesh_updater.deform(state, pose) if self.system.detector.needs_mesh else None
-        except StepRejected:
-            return True
         with self._watch("detect"):
-            _, gaps = detect_contacts_and_gaps(self.system, pose, mesh)
-        film = state.gaps < (self.system.law.range if self.system.law else 0.0)
-        opens = film & (gaps > WIDEST_OPENING * state.gaps)
-        return bool((gaps < CLOSEST_APPROACH * before).any() or opens.any())
+            return self.scheme.changes_gaps_too_fast(state, pose, partial(self._mesh_updater.deform, state))
 
 
 def _too_fast() -> StepRejected:

@@ -36,9 +36,9 @@ def _drives_at_once(condition: BoundaryCondition, inertia: bool, mesh: Mesh) -> 
 def struck(system: System, state: State, time_step: float) -> tuple[State, float] | None:
     """A state before the first step after the impulse of faces that start at once, by which free bodies go with the
     fluid; and the fluid's kinetic energy. None where the backend leaves that to the first step."""
-    assert state.mesh is not None
     size = VANISHING * time_step
-    step = step_to(system, state, StepEnd(size, size, state.motions.pose, nothing(state.motions.pose)), state.mesh)
+    end = StepEnd(size, size, state.motions.pose, nothing(state.motions.pose))
+    step = step_to(system, state, end, state.mesh.geometry)
     after = system.backend.struck(state.mesh, state.pose, state.twist, step)
     if after is None:
         return None

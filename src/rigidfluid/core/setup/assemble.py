@@ -8,6 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
@@ -73,6 +74,7 @@ def assemble(model: Model) -> System:
         backend_type=backend.part,
         make_backend=cache(partial(backend.part, backend.options, problem)),
         detector=detector,
+        detection_type=detection_by(chosen.part),
         detector_why=why,
         reach=_reach(detector, law),
         leverage=leverages(model.shapes, motions, model.time.end),

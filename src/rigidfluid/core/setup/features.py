@@ -53,15 +53,13 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
 
 
 def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
-    backend = system.backend_type
-    yield Feature(
-        "mesh", backend.needs_mesh, f"backend {backend.name!r} needs {'one' if backend.needs_mesh else 'none'}"
-    )
-    if backend.needs_mesh:
+    wet, backend = system.has_fluid, system.backend_type.name
+    yield Feature("mesh", wet, f"backend {backend!r} needs {'one' if wet else 'none'}")
+    if wet:
         turning = np.array([body.radius is None for body in system.bodies])
         yield _count("rotation of the mesh", turning, "no balls")
         yield _window(system)
-    if backend.needs_mesh and mesh is not None:
+    if wet and mesh:
         yield Feature("boxes of finer cells", bool(mesh.refine), f"[[mesh.refine]] names {len(mesh.refine) or 'none'}")
         yield _wake(mesh)
         fields = ", ".join(repr(table.type) for table in mesh.field)

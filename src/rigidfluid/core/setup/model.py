@@ -131,7 +131,7 @@ class Model:
     @property
     def wet(self) -> bool:
         """Whether there is a fluid around the bodies, on a mesh."""
-        return self.fluid.mesh is not None
+        return self.fluid.backend.part.wet
 
     @cached_property
     def all_bodies(self) -> tuple[RigidBody, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
 from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.scene.scene import PrescribedTable
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.rigid_body import RigidBody
@@ -78,9 +79,7 @@ def prescribed_motion(bodies: Sequence[RigidBody], pose: Pose) -> PrescribedMoti
     n, d = pose.position.shape
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(bodies):
-        motion = body.prescribed
-        if motion is None:
-            continue
+        motion = body.prescribed or PrescribedTable()
         twist[i, :d] = motion.velocity or 0.0
         twist[i, d:] = motion.angular_velocity or 0.0
         amplitude[i] = motion.amplitude or 0.0

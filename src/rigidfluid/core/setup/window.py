@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.model.conditions import BoundaryCondition, PrescribedPressure
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
@@ -72,7 +73,7 @@ def _check_parts(model: Model) -> None:
         found = f"a window with backend {model.fluid.backend.part.name!r}, which has no mesh"
         raise SceneError("domain.window", found, "a backend with a mesh", "Remove the window.")
     detector = model.detection[0].part
-    if detector.needs_mesh:
+    if detection_by(detector).on_mesh:
         found = f"{detector.name!r} with a window, whose ends it would take for the domain's"
         allowed = "a detector that needs no mesh"
         raise SceneError("contact.detector", found, allowed, f"Set it to {model.exact_detector.name!r}.")

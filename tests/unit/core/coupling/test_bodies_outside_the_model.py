@@ -15,6 +15,7 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.mesh.no_mesh import NoMesh
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.state import MotionState, Past, State, unloaded
@@ -61,7 +62,8 @@ def accelerations(system: System, force: FloatArray, torque: FloatArray) -> tupl
 
 
 def state_after(system: System, before: Twist, contact_wrench: Wrench) -> State:
-    contacts, gaps = detect_contacts_and_gaps(system, system.pose, None)
+    mesh = NoMesh(system).first_mesh()
+    contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     none = Wrench(np.zeros_like(before.velocity), np.zeros_like(before.angular_velocity))
     return State(
         tick=1,
@@ -70,8 +72,8 @@ def state_after(system: System, before: Twist, contact_wrench: Wrench) -> State:
         pose=system.pose,
         twist=system.twist,
         past=Past(system.pose, before, STEP),
-        mesh=None,
-        reference=None,
+        mesh=mesh,
+        reference=NoMesh(system).first_reference(mesh, gaps),
         fluid={},
         coupling=None,
         contacts=contacts,

@@ -37,7 +37,7 @@ def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArr
     simulation.state = state = replace(simulation.state, twist=falls, motions=motions)
     path = path_to(simulation, moved)
     path = path if coupled else replace(path, coupling=None)
-    step = step_to(simulation.system, state, StepEnd(STEP, STEP, path.pose, path.impulse), None)
+    step = step_to(simulation.system, state, StepEnd(STEP, STEP, path.pose, path.impulse))
     return scheme_of(simulation.system).prepare(step, state, path).turning
 
 

@@ -138,7 +138,7 @@ def test_a_checkpoint_of_another_version_is_refused(scene, tmp_path):
     rigidfluid.run(scene, tmp_path)
     with h5py.File(tmp_path / "state.h5", "a") as file:
         del file.attrs["format"]
-    with pytest.raises(OutputError, match=r"state.h5: found a checkpoint of format 1; allowed is format 8"):
+    with pytest.raises(OutputError, match=r"state.h5: found a checkpoint of format 1; allowed is format 9"):
         rigidfluid.run(scene, tmp_path, resume=True)
 
 

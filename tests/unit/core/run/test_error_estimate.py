@@ -45,7 +45,7 @@ def at(run: Simulation, time: float, step: float, previous: float, force: float 
         past=Past(run.state.pose, twist(time - step), previous),
         contact_wrench=pushed,
         estimate=ErrorEstimate(7, 3, 0.0, 0.0, SPEED, ENERGY),
-        reference=None,
+        reference=replace(run.state.reference, tick=-1),
     )
 
 

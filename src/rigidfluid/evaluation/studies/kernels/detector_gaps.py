@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.size_field import Sizes
@@ -68,7 +69,7 @@ class DetectorGaps(Kernel):
     def reads(self, knob: str) -> bool:
         """Options of other detectors are not read, nor is the mesh's size by a detector without a mesh."""
         if knob == "size":
-            return self._part.needs_mesh
+            return detection_by(self._part).on_mesh
         return not knob.startswith("options.") or knob.startswith(f"options.{self.detector}.")
 
     def run(self, progress: Callable[[float], None]) -> Outcome:
@@ -79,11 +80,11 @@ class DetectorGaps(Kernel):
         errors, seconds, vertices = [], [], 0
         for number in range(self.poses):
             pose, detector = self._pose(rng), self._part(self._part_options(), bodies, [])
-            mesh = self._mesh(bodies, pose) if detector.needs_mesh else None
+            mesh = detection_by(self._part).mesh_at(pose, partial(self._mesh, bodies))
             call = partial(detector.detect, pose, mesh, self.reach)
             seconds.append(fastest(call, REPEATS))
             errors += self._errors(semi_axes, pose, call())
-            vertices = max(vertices, 0 if mesh is None else len(mesh.points))
+            vertices = max(vertices, len(mesh.points))
             progress((number + 1) / self.poses)
         if not errors:
             raise SceneError("reach", self.reach, "a reach that some gap is below", "Widen it, or add bodies or poses.")

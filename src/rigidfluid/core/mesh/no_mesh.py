@@ -1,0 +1,33 @@
+"""Mesh of a run without a fluid: there are no cells, and nothing is to be done."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+
+
+class NoMesh:
+    """`Updater` of a mesh without cells."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self.needs_remesh: Callable[[State, Pose], bool] = lambda state, pose: False
+
+    def first_mesh(self) -> Mesh:
+        return Mesh.empty(self._system.dimension)
+
+    def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
+        return Reference(mesh, self._system.pose, gaps, math.nan, 0)
+
+    def deform(self, state: State, pose: Pose) -> Mesh:
+        return state.mesh
+
+    def remesh_if_needed(self, state: State, pose: Pose) -> State:
+        return state
+
+    def quality(self, state: State) -> float:
+        return math.nan
