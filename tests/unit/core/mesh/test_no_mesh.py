@@ -3,9 +3,9 @@
 import json
 
 import numpy as np
-from rigidfluid.core.setup.load import scene_from_dict
 from scenes import dry_tables
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.records import count_cells
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
