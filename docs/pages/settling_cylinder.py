@@ -63,11 +63,11 @@ def cell_sizes(run: Run) -> np.ndarray:
     """At each output, of all cells the mean factor off the wanted size and the coarsest relative size, (outputs, 2)."""
     mesh, bodies = run.scene.mesh, run.history.bodies
     assert mesh is not None
-    sizes, parts, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), model_of(run.scene), []
+    sizes, model, rows = Sizes(mesh.size, mesh.size_body, mesh.growth), model_of(run.scene), []
     for time, path in read_pvd(run.folder / "fields.pvd"):
         now, fields = int(np.argmin(np.abs(bodies["time"] - time))), read_vtu(path)
         pose = Pose(np.array([[bodies["x"][now], bodies["y"][now]]]), np.array([[bodies["angle"][now]]]))
-        around = FluidDomain(parts.bodies, pose, parts.domain, ())
+        around = FluidDomain(model.shapes, pose, model.domain, ())
         relative = relative_sizes(fields.points, fields.cells[:, :3], around, sizes)
         rows.append((np.maximum(relative, 1.0 / relative).mean(), relative.max()))
     return np.array(rows)

@@ -25,7 +25,7 @@ STEPS = 3
 def answers(simulation):
     """On the present mesh, to each component of an impulse by itself, and of a step to all of them."""
     system, state = simulation.system, simulation.state
-    end = StepEnd(1.0, simulation.scene.time.step, state.pose, nothing(state.pose))
+    end = StepEnd(1.0, simulation.model.time.step, state.pose, nothing(state.pose))
     step = step_to(system, state, end, state.mesh.geometry)
     units = np.eye(step.load.size).reshape(-1, *step.load.shape)
     response = system.backend.response(state.fluid, state.mesh, step, units)

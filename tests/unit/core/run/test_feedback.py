@@ -118,7 +118,7 @@ def test_a_ramp_in_3d_turns_on_about_the_new_axis() -> None:
 
 def act(simulation: Simulation, name: str, size: float) -> None:
     """By forces and torques that jump each tenth."""
-    d = simulation.scene.dimension
+    d = simulation.model.dimension
 
     def change(now: Simulation) -> None:
         phase = round(now.time / 0.1)
@@ -238,7 +238,7 @@ def test_a_velocity_changes_no_scene() -> None:
     given = scene(PADDLE, wet=False)
     simulation = Simulation(given)
     simulation.prescribe("paddle", velocity=[0.1, 0.0])
-    assert simulation.scene is given
+    assert simulation.model is given
 
 
 REFUSED = {
