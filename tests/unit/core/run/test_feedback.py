@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid.api import SceneError, Simulation, scene_from_dict
+from rigidfluid.api import SceneError, Simulation, model_of, scene_from_dict
 
 BALL = {"name": "ball", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.3, 0.5]}
 PADDLE = {"name": "paddle", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.7, 0.5], "fixed": True}
@@ -234,8 +234,8 @@ def test_a_way_back_takes_back_what_was_applied() -> None:
     assert simulation.bodies["ball"].velocity[0] == 0.0
 
 
-def test_a_velocity_changes_no_scene() -> None:
-    given = scene(PADDLE, wet=False)
+def test_a_velocity_changes_no_model() -> None:
+    given = model_of(scene(PADDLE, wet=False))
     simulation = Simulation(given)
     simulation.prescribe("paddle", velocity=[0.1, 0.0])
     assert simulation.model is given
