@@ -23,8 +23,8 @@ from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
-from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
+from rigidfluid.post.studies.kernels.timing import fastest
 
 PAPER = {
     2: {1: (0, 1), 25: (0, 16), 49: (28, 24), 81: (72, 32), 100: (100, 36)},

@@ -22,11 +22,11 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FloatArray, Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
-from rigidfluid.evaluation.studies.kernels.shells import INNER, shell
-from rigidfluid.evaluation.studies.kernels.timing import fastest
 from rigidfluid.marching.field import distance_field
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace
+from rigidfluid.post.studies.kernels.shells import INNER, shell
+from rigidfluid.post.studies.kernels.timing import fastest
 
 RADIUS, OUTER, SIZE = 0.1, 2.0, 0.01
 PAIRS = 50

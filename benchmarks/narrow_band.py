@@ -17,12 +17,12 @@ from nearest_facet import nearest_facet_distances
 from row_command import at_least, row_parser, show_rows
 
 from rigidfluid.core.model.types import IntArray, Mesh
-from rigidfluid.evaluation.studies.kernels.shells import INNER, shell
-from rigidfluid.evaluation.studies.kernels.timing import fastest, timed
 from rigidfluid.marching.field import DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology
 from rigidfluid.marching.workspace import new_workspace
+from rigidfluid.post.studies.kernels.shells import INNER, shell
+from rigidfluid.post.studies.kernels.timing import fastest, timed
 
 INNER_RADIUS, OUTER_RADIUS = 0.1, 2.0
 SIZES = {2: 0.01, 3: 0.0591}

@@ -11,9 +11,9 @@ from page_tools.kept_run import Run, keep_run
 from page_tools.places import RUNS, SCENES, STUDIES
 from page_tools.record import Recorder, read_record
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.evaluation.studies import load_study, run_study
-from rigidfluid.evaluation.studies.results import Results
-from rigidfluid.evaluation.studies.run import TABLE, StudyProgress
+from rigidfluid.post.studies import load_study, run_study
+from rigidfluid.post.studies.results import Results
+from rigidfluid.post.studies.run import TABLE, StudyProgress
 
 
 class Work:

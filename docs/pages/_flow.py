@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from page_tools import Run
 
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.reports.flow import vorticity
-from rigidfluid.reports.plane import cell_by_cell
-from rigidfluid.reports.style import BODY, SIGNED_COLOURMAP
+from rigidfluid.post.reports.flow import vorticity
+from rigidfluid.post.reports.plane import cell_by_cell
+from rigidfluid.post.reports.style import BODY, SIGNED_COLOURMAP
 
 
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from page_tools import Run
 
-from rigidfluid.reports.moment import Moment
-from rigidfluid.reports.moment import moment as seen_at
-from rigidfluid.reports.results import read_results
-from rigidfluid.reports.view_plane import view_plane
+from rigidfluid.post.reports.moment import Moment
+from rigidfluid.post.reports.moment import moment as seen_at
+from rigidfluid.post.reports.results import read_results
+from rigidfluid.post.reports.view_plane import view_plane
 
 
 def slices(run: Run, moments: Sequence[float]) -> list[Moment]:

@@ -6,10 +6,10 @@ import matplotlib
 from matplotlib.figure import Figure
 from page_tools import Page, Work, table
 
-from rigidfluid.evaluation.studies.plot import error_plot
-from rigidfluid.evaluation.studies.results import Results
-from rigidfluid.evaluation.studies.rows import cells, short_text
-from rigidfluid.reports.style import STYLE
+from rigidfluid.post.reports.style import STYLE
+from rigidfluid.post.studies.plot import error_plot
+from rigidfluid.post.studies.results import Results
+from rigidfluid.post.studies.rows import cells, short_text
 
 
 def study_plot(results: Results) -> Figure:

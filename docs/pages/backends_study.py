@@ -7,7 +7,7 @@ import os
 from page_tools import Page, Work, table
 
 from pages._studies import study_plot
-from rigidfluid.evaluation.studies.results import Results
+from rigidfluid.post.studies.results import Results
 
 
 def page(work: Work) -> Page:

@@ -8,7 +8,7 @@ import numpy as np
 from page_tools import Page, Work
 
 from pages._studies import errors_by, scene_rows, study_plot
-from rigidfluid.evaluation.studies.results import Results
+from rigidfluid.post.studies.results import Results
 
 SINGLE, SUBSTEPS, IMPLICIT = "stepping substeps, substeps 1", "stepping substeps", "stepping implicit"
 

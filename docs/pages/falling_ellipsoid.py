@@ -13,7 +13,7 @@ from pages._slices import slices
 from rigidfluid.checks import check
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.types import FloatArray
-from rigidfluid.reports.pictures import mesh_picture, vorticity_picture
+from rigidfluid.post.reports.pictures import mesh_picture, vorticity_picture
 
 SCENE, LONG = "falling_ellipsoid.toml", 1
 """The file, and which of the semi-axes is the long one."""

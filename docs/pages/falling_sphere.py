@@ -12,7 +12,7 @@ from published import SETTLING_SPEED
 
 from pages._slices import slices
 from rigidfluid.checks import check
-from rigidfluid.reports.pictures import speed_picture
+from rigidfluid.post.reports.pictures import speed_picture
 
 SCENE = "falling_sphere.toml"
 COARSE = ["mesh.size_body=0.3", "time.step=0.02"]

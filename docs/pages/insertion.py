@@ -12,7 +12,7 @@ from wall_drift import Drift, wall_drift
 
 from rigidfluid.core.mesh.inserter import Way
 from rigidfluid.errors import MeshError
-from rigidfluid.evaluation.insertion import insert
+from rigidfluid.post.insertion import insert
 
 WAYS: dict[Way, int] = {"fill": 20, "level_set": 5}
 """How many arrangements in the plane are tried in each way; in space it is one."""

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from rigidfluid.core.output.history import History
     from rigidfluid.core.run.run import Progress
     from rigidfluid.core.scene.scene import Scene
-    from rigidfluid.evaluation.comparison.compare import CompareProgress
-    from rigidfluid.evaluation.comparison.comparison import Comparison
-    from rigidfluid.evaluation.insertion.figures import Figures as InsertionFigures
-    from rigidfluid.evaluation.studies.results import Results
-    from rigidfluid.evaluation.studies.run import StudyProgress
+    from rigidfluid.post.comparison.compare import CompareProgress
+    from rigidfluid.post.comparison.comparison import Comparison
+    from rigidfluid.post.insertion.figures import Figures as InsertionFigures
+    from rigidfluid.post.studies.results import Results
+    from rigidfluid.post.studies.run import StudyProgress
 
 FOUND_ERRORS = 1
 BAD_INPUT = 2
@@ -178,7 +178,7 @@ def insert(scene: SceneFile, assignments: Assignments = None, out: MeshFolder = 
     """Make a scene's first mesh, write it for other programs, and say how well the bodies came into it."""
     with _reported():
         from rigidfluid.core.case.load import load_scene
-        from rigidfluid.evaluation.insertion import insert as make_mesh
+        from rigidfluid.post.insertion import insert as make_mesh
 
         loaded = load_scene(scene, assignments or ())
         figures, written = make_mesh(loaded, out, lambda phase: _print_aside(f"{loaded.name}: {phase}"))
@@ -197,7 +197,7 @@ def compare(
 ) -> None:
     """Run a scene with several fluid backends, and say how far the results are apart; exit code 1 if one fails."""
     with _reported("The same command goes on."):
-        from rigidfluid.evaluation.comparison import compare as compare_backends
+        from rigidfluid.post.comparison import compare as compare_backends
 
         with _compare_bar() as show:
             comparison, written = compare_backends(
@@ -235,7 +235,7 @@ def plugins(context: typer.Context) -> None:
 def report(folder: Folder, plane: Plane = "motion", follow: Looked = None) -> None:
     """Make plots and a page from the results in a folder."""
     with _reported():
-        from rigidfluid.reports import report as make_report
+        from rigidfluid.post.reports import report as make_report
 
         for path in make_report(folder, plane, follow):
             _print(f"wrote {path}")
@@ -254,8 +254,8 @@ def movie(
 ) -> None:
     """Make a movie from the results in a folder."""
     with _reported(), _movie_bar() as progress:
-        from rigidfluid.movies import Look
-        from rigidfluid.movies import movie as make_movie
+        from rigidfluid.post.movies import Look
+        from rigidfluid.post.movies import movie as make_movie
 
         path = make_movie(folder, out, Look(show, follow, view, size, fps, plane), progress)
     _print(f"wrote {path}")
@@ -265,7 +265,7 @@ def movie(
 def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> None:
     """Run a scene or a kernel with many settings, and plot the error against the run time."""
     with _reported("The same command goes on with the runs that are not done."):
-        from rigidfluid.evaluation.studies import load_study, run_study
+        from rigidfluid.post.studies import load_study, run_study
 
         loaded = load_study(study)
         folder = out or Path("out") / loaded.name
@@ -536,7 +536,7 @@ def _print_findings(report: Report) -> None:
 
 
 def _print_backends(comparison: Comparison) -> None:
-    from rigidfluid.evaluation.comparison.tables import HEADER, cost_rows, difference_rows, meaning
+    from rigidfluid.post.comparison.tables import HEADER, cost_rows, difference_rows, meaning
 
     for pair in comparison.pairs:
         # without vertical lines it fits into 80 columns

@@ -8,8 +8,8 @@ import pytest
 from vortex_induced import FIXED
 
 import rigidfluid
-from rigidfluid.reports.coefficients import figures, reference
-from rigidfluid.reports.results import read_results
+from rigidfluid.post.reports.coefficients import figures, reference
+from rigidfluid.post.reports.results import read_results
 
 pytestmark = pytest.mark.long
 

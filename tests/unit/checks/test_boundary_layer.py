@@ -18,7 +18,7 @@ from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS
 from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import SceneError
-from rigidfluid.reports.report import report
+from rigidfluid.post.reports.report import report
 
 COARSE = {"size": 0.4, "size_body": 0.06}
 

@@ -25,8 +25,8 @@ import rigidfluid
 from rigidfluid.api import OutputError, Simulation, TimeTable, scene_from_dict
 from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
+from rigidfluid.post.reports.report import report
 from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
-from rigidfluid.reports.report import report
 
 pytestmark = pytest.mark.long
 

@@ -14,7 +14,7 @@ from rigidfluid.core.contact.proximity import interacting
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.geometry_checks import initial_contacts
 from rigidfluid.errors import SceneError, StepError
-from rigidfluid.reports import report
+from rigidfluid.post.reports import report
 
 LAW = {"law": "centre", "range": 0.05, "epsilon": 1e-3}
 

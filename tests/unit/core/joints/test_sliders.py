@@ -14,7 +14,7 @@ from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.reports import report
+from rigidfluid.post.reports import report
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 AXES = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}

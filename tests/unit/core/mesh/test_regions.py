@@ -15,8 +15,8 @@ from rigidfluid.core.model.types import Twist
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
-from rigidfluid.reports.plane import distance_grid
-from rigidfluid.reports.view_plane import ViewPlane
+from rigidfluid.post.reports.plane import distance_grid
+from rigidfluid.post.reports.view_plane import ViewPlane
 
 POINTS = np.random.default_rng(0).uniform(-3.0, 3.0, (400, 2))
 BOX = RefinedBox(np.array([-1.0, 0.0]), np.array([1.0, 2.0]), 0.05)

@@ -16,7 +16,7 @@ from rigidfluid.core.output.run_folder import PICTURES
 from rigidfluid.core.run.run import run as simulate
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import OutputError
-from rigidfluid.reports import report
+from rigidfluid.post.reports import report
 
 SCENE = dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.1, step=0.01)
 HOLD = """

@@ -12,7 +12,7 @@ from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.cycles import cycles, start_remarks
-from rigidfluid.reports.report import report
+from rigidfluid.post.reports.report import report
 
 
 def history(dimension, places, turns, times):

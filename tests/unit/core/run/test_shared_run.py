@@ -21,7 +21,7 @@ from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.output.writer import earlier_run
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import MeshError, OutputError, SceneError, SharedInterrupt, StepRejected
-from rigidfluid.reports import report
+from rigidfluid.post.reports import report
 
 FALL = {
     "time": {"step": 0.004, "end": 0.056},

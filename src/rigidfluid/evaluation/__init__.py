@@ -1,1 +1,0 @@
-"""Running scenes and setting them side by side: studies, backends, meshes alone."""

@@ -1,5 +1,0 @@
-"""The same scene with several fluid backends, and how far the results are apart."""
-
-from rigidfluid.evaluation.comparison.compare import compare
-
-__all__ = ["compare"]

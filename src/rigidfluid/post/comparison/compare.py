@@ -1,0 +1,83 @@
+"""Runs a scene with several backends, compares the results, and writes what was found."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.post.comparison.comparison import Comparison
+from rigidfluid.post.comparison.differences import Pair, pair
+from rigidfluid.post.comparison.page import write_page
+from rigidfluid.post.comparison.runs import Run, backend_run
+from rigidfluid.post.comparison.scenes import backend_scenes
+
+TABLE = "comparison.json"
+
+
+@dataclass(frozen=True, slots=True)
+class CompareProgress:
+    """Progress of a comparison: runs ``done``, a part of the present one included, of ``total``; the ``backend``."""
+
+    done: float
+    total: int
+    backend: str
+
+
+def compare(
+    path: str | Path,
+    backends: Sequence[str],
+    overrides: Sequence[str] = (),
+    out: Path | None = None,
+    *,
+    fresh: bool = False,
+    progress: Callable[[CompareProgress], None] | None = None,
+) -> tuple[Comparison, list[Path]]:
+    """Run a scene once with each of the ``backends``, in processes of their own, and compare the results.
+
+    The first backend is the reference. Runs go to ``<out>/<backend>``, ``out/<scene name>_compare`` without ``out``;
+    ``fresh`` repeats runs that are there already. Returns the comparison, in which a failed run has its error and is in
+    no pair, and the files written. Raises SceneError or PluginError before anything runs, OutputError if the disk
+    refuses.
+    """
+    scenes = backend_scenes(path, backends, overrides)
+    name = scenes[backends[0]].name
+    out = Path("out") / f"{name}_compare" if out is None else Path(out)
+    runs = _runs(scenes, out, fresh, progress or (lambda _: None))
+    comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
+    with writing(out / TABLE):
+        text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+        (out / TABLE).write_text(text + "\n", encoding="utf-8")
+    return comparison, [out / TABLE, *write_page(comparison, name, out)]
+
+
+def _runs(
+    scenes: dict[str, Scene], out: Path, fresh: bool, progress: Callable[[CompareProgress], None]
+) -> tuple[Run, ...]:
+    runs: list[Run] = []
+    for backend, scene in scenes.items():
+        show = _shower(progress, len(runs), len(scenes), backend)
+        show(0.0)
+        runs.append(backend_run(backend, scene, out, fresh=fresh, progress=show))
+    return tuple(runs)
+
+
+def _shower(
+    progress: Callable[[CompareProgress], None], number: int, total: int, backend: str
+) -> Callable[[float], None]:
+    return lambda part: progress(CompareProgress(number + part, total, backend))
+
+
+def _command(path: str | Path, backends: Sequence[str], overrides: Sequence[str]) -> str:
+    options = [word for name in backends for word in ("--backend", name)]
+    options += [word for assignment in overrides for word in ("--set", assignment)]
+    return shlex.join(["rigidfluid", "compare", str(path), *options])
+
+
+def _pairs(runs: Sequence[Run]) -> tuple[Pair, ...]:
+    complete = [(run.backend, run.results) for run in runs if run.results is not None]
+    return tuple(pair(complete[0], other) for other in complete[1:])

@@ -1,0 +1,175 @@
+"""A movie made from a run's folder."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+
+from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.output.writer import writing
+from rigidfluid.errors import OutputError
+from rigidfluid.post.movies.picture import Quantity, Scale, draw_bodies, flow_image, ground
+from rigidfluid.post.movies.projection import draw_projected
+from rigidfluid.post.movies.shot import Shot, Window, shot_of
+from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.style import STYLE, new_figure
+from rigidfluid.post.reports.view_plane import PlaneName
+
+_SAMPLED = 12
+"""Number of pictures that fix the range of the colours."""
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Look:
+    """Appearance of a movie.
+
+    ``show``: quantity of the fluid. ``follow``: name of a body that the picture goes with. ``window``: left, lower,
+    right and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's
+    longer side. ``rate``: pictures a second. ``plane``: plane of a 3D run, as `view_plane` takes it.
+    """
+
+    show: Quantity = "speed"
+    follow: str | None = None
+    window: Window | None = None
+    longer: int = 600
+    rate: int = 15
+    plane: PlaneName = "motion"
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """A state of the run, and the file of its fields, None without a fluid."""
+
+    state: int
+    path: Path | None
+
+
+def movie(folder: Path, out: Path | None = None, look: Look | None = None, progress: Progress | None = None) -> Path:
+    """Make a movie from the results in a folder, of a complete run or not: a picture for each output time.
+
+    A 3D flow is shown in a slice through the first body or the one followed; without a fluid all bodies are seen along
+    the normal of that plane. The file ``out`` is .mp4 or .gif; without it movie.mp4 in the folder, movie.gif if nothing
+    encodes MP4. ``progress`` is told how many pictures are done, of how many. Raises OutputError for missing or
+    unreadable results, another kind of file, or a disk that refuses; SceneError or PluginError if the run's scene
+    cannot be built here, as without one of its plug-ins.
+    """
+    look, results = look or Look(), read_results(Path(folder), motion_only=True)
+    path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
+    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
+    scale = _scale(frames, shot, look)
+    partial = path.with_name(f".{path.name}.part{path.suffix}")
+    with matplotlib.rc_context(STYLE | _encoder()), writing(path):
+        figure, axes, image = _stage(results, shot, look, scale)
+        try:
+            with writer.saving(figure, str(partial), dpi=100):
+                for number, frame in enumerate(frames, start=1):
+                    image.set_data(_picture(results, shot, frame, look, scale))
+                    _label(axes, shot, frame.state, float(results.time[frame.state]))
+                    writer.grab_frame()
+                    if progress is not None:
+                        progress(number, len(frames))
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+    return path
+
+
+def _frames(results: Results) -> list[_Frame]:
+    """The output times whose fields are there, or that have none."""
+    outputs = [(time, path) for time, path in results.outputs if path is None or path.exists()]
+    found = [_Frame(results.state_at(time), path) for time, path in outputs]
+    if len(found) < 2:
+        raise OutputError(
+            "the run", f"{len(found)} output times", "two or more, for a movie", "Run on, or shorten output.every."
+        )
+    return found
+
+
+def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
+    """Scale of the colours, one for the whole movie."""
+    chosen = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).round().astype(int))
+    images = [
+        flow_image(frame.path, look.show, shot.grid(frame.state, look.longer // 2))
+        for frame in (frames[i] for i in chosen)
+        if frame.path is not None
+    ]
+    return Scale.fit(look.show, images)
+
+
+def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
+    grid = shot.grid(frame.state, look.longer)
+    if frame.path is not None:
+        picture = scale.colours(flow_image(frame.path, look.show, grid))
+        draw_bodies(picture, grid, results, frame.state)
+        return picture
+    picture = ground(results, grid)
+    draw = draw_bodies if results.system.dimension == 2 else draw_projected
+    draw(picture, grid, results, frame.state)
+    return picture
+
+
+def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figure, Axes, AxesImage]:
+    """A figure with an empty picture, and the colours beside it where there is a fluid."""
+    size = shot.upper - shot.lower
+    width, height = look.longer / 100.0 * size / size.max()
+    figure = new_figure(max(width, 1.5) + (1.6 if results.series else 0.6), max(height, 1.0) + 0.8)
+    axes = figure.add_subplot(xlabel=shot.plane.labels[0], ylabel=shot.plane.labels[1])
+    axes.grid(visible=False)
+    axes.locator_params(axis="x", nbins=1 if size[1] > 4.0 * size[0] else 4)
+    axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
+    image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
+    if results.series:
+        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": "force/area"}[look.show]
+        colours = ScalarMappable(Normalize(scale.lowest, scale.highest), scale.map)
+        extend = "both" if scale.lowest < 0.0 else "max"
+        figure.colorbar(colours, ax=axes, label=f"{look.show} [{unit}]", shrink=0.8, extend=extend)
+    return figure, axes, image
+
+
+def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:
+    """Set the title to the time, and the axes to the place of the picture."""
+    axes.images[0].set_extent(shot.extent(state))
+    axes.set_title(f"time {time:.4g}")
+
+
+def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMovieWriter]:
+    """Path of the movie, and the writer of its format."""
+    encoder = _encoder_path()
+    path = out or folder / ("movie.mp4" if encoder else "movie.gif")
+    if path.suffix == ".gif":
+        return path, PillowWriter(fps=rate)
+    if path.suffix != ".mp4":
+        raise OutputError("--out", path.name, "a name that ends in .mp4 or .gif", "Choose one of both.")
+    if encoder is None:
+        remedy = "Install rigidfluid[movies], or ffmpeg, or write a .gif."
+        raise OutputError("--out", path.name, "a .gif, since nothing here encodes MP4", remedy)
+    even = "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"
+    return path, FFMpegWriter(fps=rate, codec="h264", extra_args=["-vf", even, "-pix_fmt", "yuv420p"])
+
+
+def _encoder() -> dict[str, str]:
+    """Matplotlib's settings for the encoder."""
+    found = _encoder_path()
+    return {} if found is None else {"animation.ffmpeg_path": found}
+
+
+def _encoder_path() -> str | None:
+    """The program that the package imageio-ffmpeg brings, or an installed one."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError:
+        return shutil.which("ffmpeg")
+    return str(get_ffmpeg_exe())

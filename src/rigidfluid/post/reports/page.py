@@ -1,0 +1,139 @@
+"""One HTML page that needs no other file: the figures that matter, the pictures, what it cost, and the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from rigidfluid.core.output.energy_account import per_cent
+from rigidfluid.core.scene.scene_text import scene_text
+from rigidfluid.post.reports.coefficients import Figures
+from rigidfluid.post.reports.html import document, grid, picture, table
+
+_MOST_BODIES = 8
+_ENERGIES = {
+    "gravity": "supplied by gravity",
+    "boundary": "supplied through the faces",
+    "control": "supplied by what drives controlled bodies",
+    "body_force": "supplied by the force on the fluid",
+    "dissipation": "dissipated by viscosity",
+    "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
+    "transfer_loss": "lost in transfers between meshes",
+    "kinetic": "kinetic, at the end",
+    "contact": "stored in contacts, at the end",
+    "residual": "not accounted for",
+    "residual_steps": "of it by steps of smooth motion",
+    "residual_contacts": "of it at impacts",
+    "residual_remeshing": "of it in steps after new meshes",
+    "residual_mesh": "of it through curved slip faces",
+    "residual_start": "of it in first steps",
+    "path_friction": "of it at most friction of impacts between the fluid's solutions",
+    "put_in": "put in: stored at the start, and the most that was supplied",
+}
+_SHARES = {
+    "created": "created from nowhere at most, by any time",
+    "lost": "lost at most, by any time, beyond friction of impacts",
+    "grad_div": "taken by grad-div stabilisation, until the end",
+    "unaccounted": "not accounted for, at the end",
+}
+
+
+def page(
+    summary: Mapping[str, Any],
+    pictures: Sequence[tuple[Path, str]],
+    notes: Iterable[str],
+    coefficients: Sequence[tuple[str, Figures]],
+) -> str:
+    """Compose the HTML page from summary.json, pictures (PNG files) with captions, notes, and coefficients by body."""
+    scene = escape(scene_text(summary["scene"]))
+    parts = [
+        f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
+        *(f'<p class="note">{escape(note)}</p>' for note in (*_warnings(summary), *notes)),
+        table(_figures(summary)),
+        *_cycles(summary.get("cycles", {})),
+        *_coefficients(coefficients),
+        *(picture(path, caption) for path, caption in pictures),
+        "<h2>Energy balance</h2>",
+        table(_energy(summary["energy"])),
+        "<h2>Cost</h2>",
+        table(_cost(summary)),
+        "<h2>Scene</h2>",
+        f"<details open><summary>With all defaults</summary><pre>{scene}</pre></details>",
+        "<h2>Versions</h2>",
+        table(summary["versions"].items()),
+    ]
+    return document(summary["scene"]["scene"]["name"], parts)
+
+
+def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
+    if summary["reynolds"] is not None:
+        yield "highest Reynolds number, density of the solid", summary["reynolds_solid_density"]
+        yield "highest Reynolds number, density of the fluid", summary["reynolds"]
+    yield "smallest gap [length]", summary["smallest_gap"]
+    places = list(summary["rest_position"].items())
+    for body, place in places[:_MOST_BODIES]:
+        yield f"last position of {body} [length]", ", ".join(f"{value:.5g}" for value in place)
+    if len(places) > _MOST_BODIES:
+        yield "", f"and of {len(places) - _MOST_BODIES} more bodies, in bodies.csv"
+
+
+def _cycles(mechanisms: Mapping[str, Any]) -> Iterator[str]:
+    """A table for each mechanism whose strokes repeat."""
+    for name, found in mechanisms.items():
+        moved, turned = found["displacement"], found["rotation"]
+        if not moved:
+            continue
+        three = len(moved[0]) == 3
+        yield f"<h2>Cycles of {escape(name)}</h2>"
+        yield f"<p>Each takes {found['period']:.5g} [time].</p>"
+        head = ("cycle", *(f"along {axis} [length]" for axis in "xyz"[: len(moved[0])]))
+        spins = ("about x [rad]", "about y [rad]", "about z [rad]") if three else ("turned [rad]",)
+        rows = enumerate(zip(moved, turned, strict=True), start=1)
+        yield grid((*head, *spins), [(number, *place, *(turn if three else (turn,))) for number, (place, turn) in rows])
+
+
+def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:
+    """A table of the first bodies; more have it in the plot."""
+    if not bodies:
+        return
+    yield "<h2>Drag and lift</h2>"
+    yield "<p>Of the second half of the time, by the reference of the plot of coefficients.</p>"
+    head = ("body", "mean drag", "mean lift", "half of the lift's range", "Strouhal number", "by its")
+    rows = []
+    for name, found in bodies[:_MOST_BODIES]:
+        period = ("no period", "") if found.strouhal is None else (found.strouhal, found.by)
+        rows.append((name, found.drag, found.lift, found.swing, *period))
+    yield grid(head, rows)
+    if len(bodies) > _MOST_BODIES:
+        yield f"<p>And of {len(bodies) - _MOST_BODIES} more bodies, in the plot.</p>"
+
+
+def _warnings(summary: Mapping[str, Any]) -> Iterator[str]:
+    """Warnings and remarks of the run, in the words of the command line."""
+    for warning in summary["energy"]["warnings"]:
+        grade = "Serious warning" if warning["serious"] else "Warning"
+        yield f"{grade}: {warning['text']}. {warning['remedy']}"
+    for remark in summary.get("remarks", ()):
+        yield f"{remark['grade'].capitalize()}: {remark['text']}. {remark['remedy']}"
+
+
+def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:
+    for key, meaning in _ENERGIES.items():
+        yield f"{meaning} [energy]", energy[key]
+    for key, meaning in _SHARES.items():
+        yield f"{meaning}, over what was put in", per_cent(energy[key])
+
+
+def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
+    yield "time reached [time]", summary["time"]
+    for key in ("steps", "rejected_steps", "remeshes", "failed_remeshes", "cells", "unknowns"):
+        yield key.replace("_", " "), summary[key]
+    if summary["failed_remeshes"]:
+        yield "latest failed remesh", summary["latest_failed_remesh"]
+    yield "wall time [s]", summary["wall_time"]
+    for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
+        yield f"of it: {stage} [s]", seconds
+    if summary.get("peak_memory") is not None:
+        yield "peak memory of the process [MB]", summary["peak_memory"] / 1e6

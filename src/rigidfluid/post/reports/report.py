@@ -1,0 +1,150 @@
+"""Pictures and a page made from a run's folder, beside its results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from rigidfluid.core.output.writer import writing
+from rigidfluid.core.setup.model import Model
+from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
+from rigidfluid.post.reports.coefficients import Figures, figures, reference
+from rigidfluid.post.reports.contact_plot import contact_plot
+from rigidfluid.post.reports.lines import (
+    energy_plot,
+    force_plot,
+    gap_plot,
+    joint_plot,
+    position_plot,
+    speed_plot,
+    step_plot,
+)
+from rigidfluid.post.reports.mechanisms import mechanism_plot
+from rigidfluid.post.reports.moment import moment, narrowest, nearest_body, shown_outputs
+from rigidfluid.post.reports.narrowest import gap_middle
+from rigidfluid.post.reports.page import page
+from rigidfluid.post.reports.pictures import (
+    gap_picture,
+    mesh_picture,
+    pressure_picture,
+    speed_picture,
+    streamline_picture,
+    vorticity_picture,
+    whole_mesh_picture,
+)
+from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
+from rigidfluid.post.reports.space_view import dry_space_picture, flow_space_picture
+from rigidfluid.post.reports.style import STYLE, save
+from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
+
+FOLDER, PAGE = "report", "report.html"
+
+
+def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, model: Model | None = None) -> list[Path]:
+    """Make plots and one page from the results in a folder; return the files written, last ``report.html``.
+
+    Pictures of a 3D run show the ``plane`` that `view_plane` takes; they ``follow`` a body by name, else that with the
+    least gap. A run of a model made in Python wants the ``model``. Raises OutputError for missing or unreadable
+    results, an unknown body or plane, or a disk that refuses; SceneError or PluginError if the run's scene cannot be
+    built here, as without one of its plug-ins.
+    """
+    out = Path(out)
+    results = read_results(out, model=model)
+    seen = view_plane(results, plane)
+    body = None if follow is None else results.number_of(follow)
+    written: list[Path] = []
+    shown: list[tuple[Path, str]] = []
+    with matplotlib.rc_context(STYLE), writing(out / FOLDER):
+        (out / FOLDER).mkdir(exist_ok=True)
+        for name, caption, figure, kinds in _pictures(results, seen, body):
+            paths = save(figure, out / FOLDER, name, kinds)
+            written += paths
+            shown.append((paths[0], caption))
+        (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
+    return [*written, out / PAGE]
+
+
+_Picture = tuple[str, str, Figure, tuple[str, ...]]
+"""Name, caption, figure and file formats."""
+
+
+def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+    """Pictures of the fluid; each is made when it is asked for."""
+    raster, watched = ("png",), nearest_body(results) if body is None else body
+    where = _slice_location(results, plane, watched)
+    shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
+    yield "speed_field", f"Speed of the fluid. Solids are grey.{where}", speed_picture(shown), raster
+    caption = f"Streamlines, seen by an observer at rest, over the speed.{where}"
+    if where:
+        caption += " None where the flow makes more than 45° with the plane."
+    yield "streamlines", caption, streamline_picture(shown), raster
+    caption = f"Vorticity, positive where the fluid turns counter-clockwise.{where}"
+    yield "vorticity", caption, vorticity_picture(shown), raster
+    yield "pressure", f"Dynamic pressure.{where}", pressure_picture(shown), raster
+    yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1]), raster
+    if where:
+        yield (
+            "space",
+            f"Bodies, the paths of a few, and the speed.{where}",
+            flow_space_picture(results, shown, plane),
+            raster,
+        )
+    whose = "the body that came nearest to another surface" if body is None else results.names[body]
+    yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(shown), raster
+    output, nearest = narrowest(results, body)
+    middle = gap_middle(results, results.state_at(results.series[output][0]), nearest, plane)
+    if middle is not None:
+        caption = f"The smallest gap among the output times.{_slice_location(results, plane, nearest)}"
+        yield "smallest_gap", caption, gap_picture(moment(results, output, plane, nearest), middle), raster
+
+
+def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
+    """Sentence that locates the slice of a 3D run; empty in 2D."""
+    return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
+
+
+def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+    """All pictures; each is made when it is asked for."""
+    both = ("png", "svg")
+    if results.series:
+        yield from _flow_pictures(results, plane, body)
+    elif results.system.dimension == 3:
+        times = [results.outputs[output][0] for output in shown_outputs(results)]
+        yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
+    yield "position", "Where the bodies are.", position_plot(results, plane), both
+    if results.system.motions.names:
+        yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
+    yield "speed", "How fast the bodies are.", speed_plot(results), both
+    if np.isfinite(results.bodies["gap"]).any():
+        yield "gap", "Distance from each body to the nearest other surface.", gap_plot(results), both
+    if turning(results).any():
+        yield "rotation", "How bodies turn.", rotation_plot(results), both
+        yield "torque", "Torques about the bodies' centres.", torque_plot(results), both
+    yield "force", "What the fluid and what contacts do to each body.", force_plot(results), both
+    by = reference(results)
+    if by is not None:
+        caption = coefficient_caption(by, results.system.dimension)
+        yield "coefficients", caption, coefficient_plot(results, by), both
+    if results.contact_counts.any():
+        yield "contacts", "Contacts: how many, the largest force, the least gap.", contact_plot(results), both
+    if results.joints:
+        yield "joints", "How far joints have moved, and what acts in them.", joint_plot(results), both
+    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
+    if results.model.time.tolerance is not None:
+        yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _figures(results: Results) -> list[tuple[str, Figures]]:
+    """The coefficients of each body, where there are any."""
+    by = reference(results)
+    return [] if by is None else list(zip(results.names, figures(results, by), strict=True))
+
+
+def _notes(results: Results) -> Iterator[str]:
+    if not results.series:
+        yield "This run has no fluid, and so no pictures of the flow."

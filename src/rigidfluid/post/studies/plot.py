@@ -1,0 +1,116 @@
+"""The plot of a study: error against run time, both logarithmic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from rigidfluid.post.reports.style import BLACK, PALETTE, new_figure
+from rigidfluid.post.studies.model import Settings
+from rigidfluid.post.studies.results import Results
+from rigidfluid.post.studies.rows import short_text
+
+_MARKERS = "osD^vP*X"
+CROWDED = 300.0
+"""Ratio of times from which on only powers of ten have a label, as others would run into each other."""
+
+
+def error_plot(results: Results) -> Figure:
+    """Plot a line for each value of the group, through its runs in the order of the study file, and the Pareto front.
+
+    With two keys in the group the first gives the colour, the second the marker. ``results`` has at least one point.
+    """
+    figure = new_figure(9.0, 5.0)
+    axes = figure.subplots()
+    shown = [*_draw_lines(axes, results), _draw_front(axes, results)]
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    seconds, errors = zip(*results.points.values(), strict=True)
+    subdivisions = (1.0, 2.0, 5.0) if max(seconds) < CROWDED * min(seconds) else (1.0,)
+    axes.xaxis.set_major_locator(LogLocator(subs=subdivisions))
+    axes.set_xlim(*_limits(seconds))
+    axes.set_ylim(*_limits(errors))
+    axes.set_xlabel(f"{results.study.tables.study.clock} [s]")
+    axes.set_ylabel(error_label(results))
+    axes.grid(which="minor", alpha=0.12)
+    figure.legend(handles=shown, loc="outside right upper")
+    return figure
+
+
+def error_label(results: Results) -> str:
+    """Label of the error axis: the quantity and its reference."""
+    kind = "relative error" if results.is_relative else "error"
+    return f"{kind} of {results.target.of}\nagainst {results.target.against}"
+
+
+def _draw_lines(axes: Axes, results: Results) -> list[Artist]:
+    """Draw the lines; return the artists that stand for them in the legend."""
+    series = _series(results)
+    colours = dict(zip(dict.fromkeys(words[0] for words in series), cycle(PALETTE)))
+    markers = dict(zip(dict.fromkeys(words[-1] for words in series), cycle(_MARKERS)))
+    drawn: list[Artist] = []
+    for words, keys in series.items():
+        colour, marker = colours[words[0]], markers[words[-1]]
+        drawn += axes.plot(*_coordinates(results, keys), color=colour, marker=marker, linewidth=1.0, label=words[0])
+    if len(results.study.tables.study.group) < 2:
+        return drawn
+    named: list[Artist] = [Line2D([], [], color=colour, label=word) for word, colour in colours.items()]
+    for word, marker in markers.items():
+        named.append(Line2D([], [], color=BLACK, marker=marker, linestyle="none", label=word))
+    return named
+
+
+def _series(results: Results) -> dict[tuple[str, ...], list[str]]:
+    """Fingerprints of the points by values of the group, all in the order of the study file."""
+    series: dict[tuple[str, ...], list[str]] = {}
+    for key, settings in _settings(results).items():
+        words = tuple(_words(results, knob, settings.get(knob)) for knob in results.study.tables.study.group)
+        series.setdefault(words or ("runs",), []).append(key)
+    return series
+
+
+def _settings(results: Results) -> dict[str, Settings]:
+    return {key: settings for key, settings in zip(results.prints, results.plan, strict=True) if key in results.points}
+
+
+def _limits(values: Sequence[float]) -> tuple[float, float]:
+    """A tenth more than the values span on a logarithmic scale, and never less than a factor of 1.5 to either side."""
+    low, high = min(values), max(values)
+    room = max((high / low) ** 0.1, 1.5)
+    return low / room, high * room
+
+
+def _words(results: Results, knob: str, value: object) -> str:
+    """A setting in few words; None for runs that do not read it."""
+    short = knob.rpartition(".")[2]
+    if value is None:
+        return f"without {short}"
+    text = short_text(value, results.study.tables.vary[knob])
+    return text if isinstance(value, dict) else f"{short} {text}"
+
+
+def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
+    return [results.points[key][0] for key in keys], [results.points[key][1] for key in keys]
+
+
+def _draw_front(axes: Axes, results: Results) -> Artist:
+    """Mark the front's runs and write their knobs beside them, but for the group, which the lines tell."""
+    seconds, errors = _coordinates(results, results.front)
+    axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
+    (rings,) = axes.plot(
+        seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0
+    )
+    shown = [key for key in results.study.knobs if key not in results.study.tables.study.group]
+    settings = _settings(results)
+    for key in results.front:
+        words = "\n".join(_words(results, knob, settings[key][knob]) for knob in shown if knob in settings[key])
+        axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)
+    return rings

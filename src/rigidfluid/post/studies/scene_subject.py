@@ -1,0 +1,73 @@
+"""Subject of a study that runs a scene."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from copy import deepcopy
+from typing import Any
+
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.run.run import run
+from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.post.studies.figure import check_figure, read_figure
+from rigidfluid.post.studies.model import ErrorTable, Settings, Study
+from rigidfluid.post.studies.subject import Outcome, Target, tried
+
+
+class SceneSubject:
+    """Runs of the study's scene, kept in memory; the scene file is read once.
+
+    Raises SceneError if the scene cannot be read or has no such figure, and the first error if no setting is valid.
+    """
+
+    def __init__(self, study: Study) -> None:
+        assert study.scene is not None
+        assert study.tables.error is not None
+        self._fixed = study.tables.set
+        self._figure = study.tables.error.figure
+        self._clock = study.tables.study.seconds
+        self._data = read_toml(study.scene)
+        self._warm: set[str] = set()
+        scenes, _ = tried(study.settings(), self._scene)
+        check_figure(self._figure, scenes[0])
+        self.target = _target(study.tables.study.label, study.tables.error)
+
+    def read(self, settings: Settings) -> Settings:
+        """All settings: a scene refuses what it does not read."""
+        return settings
+
+    def identity(self, settings: Settings) -> str:
+        """The scene's tables with these settings, the figure, and the clock."""
+        decisive = [self._tables(settings), self._figure.model_dump(), self._clock]
+        return json.dumps(decisive, sort_keys=True, default=str)
+
+    def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
+        """One run from start to end; the time of its set-up but not of the checks of the scene is in the seconds."""
+        scene = self._scene(settings)
+        self._warm_up(scene)
+        history = run(scene, progress=lambda now: progress(now.time / now.end))
+        summary = history.summary
+        figure = read_figure(self._figure, history)
+        return Outcome(figure, summary[f"{self._clock}_time"], summary["unknowns"], summary["steps"])
+
+    def _tables(self, settings: Settings) -> dict[str, Any]:
+        tables = deepcopy(self._data)
+        for key, value in (self._fixed | settings).items():
+            assign(tables, key, value)
+        return tables
+
+    def _scene(self, settings: Settings) -> Scene:
+        return scene_from_dict(self._tables(settings))
+
+    def _warm_up(self, scene: Scene) -> None:
+        """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""
+        if scene.fluid.backend not in self._warm:
+            run(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
+            self._warm.add(scene.fluid.backend)
+
+
+def _target(label: str, error: ErrorTable) -> Target:
+    against = "the finest run" if error.reference is None else f"{error.reference:g}"
+    return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative)

@@ -1,0 +1,57 @@
+"""The CSV that holds a study's rows."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+from rigidfluid.core.output.writer import writing
+from rigidfluid.errors import OutputError
+from rigidfluid.post.studies.results import Results
+from rigidfluid.post.studies.rows import FAILED, Row, cells
+from rigidfluid.post.studies.subject import Outcome
+
+_RESULTS = ("figure", "error", "seconds", "unknowns", "steps", "status", "message", "identity")
+
+
+def write_rows(path: Path, results: Results) -> None:
+    """Write the rows there are, in the order of the plan; a kill at any time leaves the old file or the new one.
+
+    Raises OutputError if the disk refuses.
+    """
+    fresh, knobs = path.with_suffix(".part"), results.study.knobs
+    with writing(path), fresh.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow([*knobs, *_RESULTS])
+        for settings, key in zip(results.plan, results.prints, strict=True):
+            if key in results.rows:
+                table.writerow([*cells(knobs, settings), *_results(results.rows[key], results.errors.get(key)), key])
+    with writing(path):
+        fresh.replace(path)
+
+
+def _results(row: Row, error: float | None) -> list[object]:
+    if row.outcome is None:
+        return ["", "", "", "", "", row.status, row.message]
+    outcome = row.outcome
+    return [outcome.figure, error, outcome.seconds, outcome.unknowns, outcome.steps, row.status, ""]
+
+
+def read_rows(path: Path) -> dict[str, Row]:
+    """Rows of this study and of earlier versions, by fingerprint; none without the file. Raises OutputError."""
+    if not path.exists():
+        return {}
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            return {line["identity"]: _row(line) for line in csv.DictReader(file)}
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        found = f"{type(error).__name__}: {error}"
+        raise OutputError(str(path), found, "the table of an earlier study", "Use --fresh to start anew.") from None
+
+
+def _row(line: Mapping[str, str]) -> Row:
+    if line["status"] == FAILED:
+        return Row(None, line["message"])
+    whole = (int(line[name]) for name in ("unknowns", "steps"))
+    return Row(Outcome(float(line["figure"]), float(line["seconds"]), *whole))

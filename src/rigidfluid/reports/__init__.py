@@ -1,5 +1,0 @@
-"""Plots and a page made from the folder that a run has written."""
-
-from rigidfluid.reports.report import report
-
-__all__ = ["report"]

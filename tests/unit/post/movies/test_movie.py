@@ -1,0 +1,224 @@
+"""A run as a movie: a picture for each output time, with the bodies where they were; and wrong wishes."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from falling import SCENES, falling_disk
+from PIL import Image
+from typer.testing import CliRunner
+
+import rigidfluid
+from rigidfluid.cli import app
+from rigidfluid.core.case.load import load_scene
+from rigidfluid.errors import OutputError
+from rigidfluid.post.movies import Look, movie
+from rigidfluid.post.movies.picture import Scale, draw_bodies, flow_image
+from rigidfluid.post.movies.projection import draw_projected
+from rigidfluid.post.movies.shot import shot_of
+from rigidfluid.post.reports.results import Results, read_results
+
+
+@pytest.fixture(scope="module")
+def dry(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("dry")
+    rigidfluid.run(load_scene(SCENES / "dry_bounce.toml", ["time.end=0.02", "output.every=0.005"]), out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def wet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("wet")
+    mesh, time = {"size": 0.4, "size_body": 0.1}, {"step": 0.004, "end": 0.012}
+    rigidfluid.run(falling_disk(mesh=mesh, time=time, output={"every": 0.004}), out)
+    return out
+
+
+def frames(path: Path) -> list[np.ndarray]:
+    with Image.open(path) as file:
+        found = []
+        for number in range(file.n_frames):
+            file.seek(number)
+            found.append(np.asarray(file.convert("RGB")))
+    return found
+
+
+@pytest.mark.parametrize("run", ["dry", "wet"])
+def test_a_picture_for_each_output_time_and_no_two_alike(
+    run: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    shown = frames(movie(request.getfixturevalue(run), tmp_path / "a.gif", Look(longer=120)))
+    assert len(shown) == {"dry": 5, "wet": 4}[run]
+    assert all((one != other).any() for one, other in pairwise(shown))
+    assert [path.name for path in tmp_path.iterdir()] == ["a.gif"]
+
+
+def grey(results: Results, state: int, **look: object) -> tuple[np.ndarray, np.ndarray]:
+    """Where the bodies' grey is, as points (N, 2); and the grid's area of a point times their number."""
+    grid = shot_of(results, look.get("follow"), look.get("window")).grid(state, 400)
+    picture = np.ones((grid.rows, grid.columns, 3))
+    draw_bodies(picture, grid, results, state)
+    j, i = np.nonzero((picture < 1.0).any(axis=2))
+    return grid.origin + i[:, None] * grid.right + j[:, None] * grid.up, len(i) * grid.right[0] * grid.up[1]
+
+
+def test_bodies_are_where_they_were_and_as_large(wet: Path) -> None:
+    results = read_results(wet, motion_only=True)
+    points, area = grey(results, -1)
+    np.testing.assert_allclose(points.mean(axis=0), results.vectors("")[-1, 0], atol=0.01)
+    assert area == pytest.approx(results.system.bodies[0].volume, rel=0.05)
+
+
+def test_a_picture_that_follows_a_body_has_it_in_the_middle(wet: Path) -> None:
+    results = read_results(wet, motion_only=True)
+    shot = shot_of(results, "disk", None)
+    for state in (0, -1):
+        grid = shot.grid(state, 100)
+        middle = grid.coordinates(results.vectors("")[state, 0])
+        np.testing.assert_allclose(middle, (0.5 * (grid.columns - 1), 0.5 * (grid.rows - 1)), atol=1e-9)
+
+
+def test_the_mark_turns_with_the_body(dry: Path) -> None:
+    results = read_results(dry, motion_only=True)
+    for angle in (0.0, 2.0):
+        results.bodies["angle"][0, 0] = angle
+        grid = shot_of(results, None, None).grid(0, 400)
+        picture = np.ones((grid.rows, grid.columns, 3))
+        draw_bodies(picture, grid, results, 0)
+        j, i = np.nonzero((picture == 0.0).all(axis=2))
+        way = grid.origin + i[:, None] * grid.right + j[:, None] * grid.up - results.vectors("")[0, 0]
+        way = way[np.linalg.norm(way, axis=1) < 0.11].mean(axis=0)
+        assert np.arctan2(way[1], way[0]) == pytest.approx(angle, abs=0.1)
+
+
+def test_the_fluid_is_shown_as_it_is_in_the_files(wet: Path) -> None:
+    results = read_results(wet, motion_only=True)
+    grid = shot_of(results, None, None).grid(-1, 200)
+    image = flow_image(results.series[-1][1], "speed", grid)
+    fastest = np.nanmax(image)
+    assert fastest == pytest.approx(-results.bodies["vy"][-1, 0], rel=0.1)
+    assert np.isnan(image).sum() * grid.right[0] * grid.up[1] == pytest.approx(results.system.bodies[0].volume, rel=0.1)
+    colours = Scale.fit("speed", [image]).colours(image)
+    assert colours.shape == (*image.shape, 3)
+    assert Scale.fit("vorticity", [image]).lowest == -Scale.fit("vorticity", [image]).highest
+
+
+def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:
+    settings = ["mesh.size=3.0", "mesh.size_body=0.8", "time.end=0.02", "time.step=0.01", "output.every=0.01"]
+    rigidfluid.run(load_scene(SCENES / "falling_sphere.toml", settings), tmp_path / "run")
+    results = read_results(tmp_path / "run", motion_only=True)
+    shot = shot_of(results, None, None)
+    assert shot.plane.up.tolist() == [0.0, 1.0, 0.0]
+    grid = shot.grid(0, 60)
+    assert abs(grid.plane.normal @ (results.vectors("")[0, 0] - grid.origin)) < 1e-12
+    assert len(frames(movie(tmp_path / "run", tmp_path / "a.gif", Look(show="vorticity", longer=60)))) == 3
+
+
+@pytest.fixture(scope="module")
+def balls(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small ball before a large one, and an ellipsoid beside both, turned about the line of sight; no fluid."""
+    out = tmp_path_factory.mktemp("balls")
+    bodies = [
+        {"name": "before", "type": "sphere", "radius": 0.1, "position": [0.5, 0.5, 0.8]},
+        {"name": "behind", "type": "sphere", "radius": 0.3, "position": [0.5, 0.5, 0.35]},
+        {"name": "beside", "type": "ellipsoid", "semi_axes": [0.3, 0.1, 0.1], "position": [1.4, 0.5, 0.5]}
+        | {"orientation": [np.cos(0.4), 0.0, 0.0, np.sin(0.4)]},
+    ]
+    data = {
+        "scene": {"name": "balls", "dimension": 3},
+        "fluid": {"backend": "dry", "gravity": [0.0, -1.0, 0.0]},
+        "domain": {"lower": [0.0, 0.0, 0.0], "upper": [2.0, 1.0, 1.0]},
+        "body": [{"density": 1.0} | body for body in bodies],
+        "time": {"end": 0.1, "step": 0.05},
+        "output": {"every": 0.05},
+    }
+    rigidfluid.run(rigidfluid.scene_from_dict(data), out)
+    return out
+
+
+def test_without_a_fluid_3d_shows_all_bodies_those_in_front_over_those_behind(balls: Path, tmp_path: Path) -> None:
+    results = read_results(balls, motion_only=True)
+    grid = shot_of(results, None, None).grid(0, 400)
+    picture = np.zeros((grid.rows, grid.columns, 3))
+    draw_projected(picture, grid, results, 0)
+    shown = (picture > 0.0).any(axis=2)
+    x = (grid.points() - grid.origin) @ grid.plane.right + grid.origin[0]
+    pixel = grid.right[0] * grid.up[1]
+    assert shown[x < 1.0].sum() * pixel == pytest.approx(np.pi * 0.3**2, rel=0.02)
+    own = grid.points()[shown & (x > 1.0)] - [1.4, 0.5, grid.origin[2]]
+    assert len(own) * pixel == pytest.approx(np.pi * 0.3 * 0.1, rel=0.03)
+    along = np.linalg.eigh(own.T @ own)[1][:, -1]
+    assert np.arctan(along[1] / along[0]) == pytest.approx(0.8, abs=0.01)
+    alone = np.zeros_like(picture)
+    draw_projected(
+        alone,
+        grid,
+        replace(
+            results,
+            bodies={k: v[:, :1] for k, v in results.bodies.items()},
+            system=replace(results.system, bodies=results.system.bodies[:1]),
+        ),
+        0,
+    )
+    before = (alone > 0.0).any(axis=2)
+    assert before.sum() * pixel == pytest.approx(np.pi * 0.1**2, rel=0.03)
+    np.testing.assert_array_equal(picture[before], alone[before])
+    assert len(frames(movie(balls, tmp_path / "a.gif", Look(longer=60)))) == 3
+
+
+def test_any_plane_can_be_asked_for_in_3d_alone(balls: Path, dry: Path) -> None:
+    results = read_results(balls, motion_only=True)
+    assert shot_of(results, None, None, "xz").plane.labels == ("x [length]", "z [length]")
+    with pytest.raises(OutputError, match="--plane: found xz; allowed is xy, since the run is in 2D"):
+        shot_of(read_results(dry, motion_only=True), None, None, "xz")
+
+
+def test_a_run_that_was_killed_gives_a_movie(wet: Path, tmp_path: Path) -> None:
+    killed = Path(shutil.copytree(wet, tmp_path / "killed"))
+    (killed / "summary.json").unlink()
+    table = killed / "bodies.csv"
+    table.write_bytes(table.read_bytes()[:-20])
+    assert len(read_results(killed, motion_only=True).time) == len(read_results(wet).time) - 1
+    assert len(frames(movie(killed, tmp_path / "a.gif", Look(longer=60)))) == 4
+    (killed / "state.h5").unlink()
+    with pytest.raises(OutputError, match=r"state\.h5"):
+        movie(killed)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "texts"),
+    [
+        (["--plane", "zx"], ("--plane", "zx")),
+        (["--follow", "nobody"], ("--follow", "nobody", "left_disk")),
+        (["--out", "a.avi"], ("--out", "a.avi", ".mp4 or .gif")),
+        (["--view", "1", "0", "0", "1"], ("--view", "in this order")),
+        (["--show", "colour"], ("--show", "colour")),
+        (["--size", "1"], ("--size",)),
+    ],
+)
+def test_wrong_wishes(arguments: list[str], texts: tuple[str, ...], dry: Path) -> None:
+    result = CliRunner().invoke(app, ["movie", str(dry), *arguments])
+    assert result.exit_code == 2
+    assert all(text in result.stderr for text in texts)
+
+
+def test_one_output_time_is_no_movie(wet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    results = read_results(wet, motion_only=True)
+    alone = replace(results, series=results.series[:1])
+    monkeypatch.setattr("rigidfluid.post.movies.make_movie.read_results", lambda *_, **__: alone)
+    with pytest.raises(OutputError, match="found 1 output times; allowed is two or more"):
+        movie(wet, tmp_path / "a.gif")
+
+
+def test_without_an_encoder_a_gif_is_made_and_an_mp4_refused(
+    dry: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rigidfluid.post.movies.make_movie._encoder_path", lambda: None)
+    with pytest.raises(OutputError, match=r"Install rigidfluid\[movies\]"):
+        movie(dry, tmp_path / "a.mp4")
+    assert movie(dry, look=Look(longer=60)).name == "movie.gif"

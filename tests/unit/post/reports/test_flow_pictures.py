@@ -1,0 +1,122 @@
+"""Vorticity and sampling of known fields, and the shape of pictures of long thin domains."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.post.reports.flow import EDGES, vorticity
+from rigidfluid.post.reports.moment import Moment
+from rigidfluid.post.reports.pictures import (
+    pressure_picture,
+    speed_picture,
+    streamline_picture,
+    vorticity_picture,
+    whole_mesh_picture,
+)
+from rigidfluid.post.reports.raster import Grid, Sampling
+from rigidfluid.post.reports.section import Section
+from rigidfluid.post.reports.view_plane import ViewPlane
+
+SPIN = np.array([0.3, -0.7, 1.9])
+
+
+def square(side: int, size: tuple[float, float] = (1.0, 1.0)) -> Fields:
+    """Quadratic triangles on a rectangle, at rest."""
+    x, y = (np.linspace(0.0, length, 2 * side + 1) for length in size)
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    width = 2 * side + 1
+    first = (2 * np.arange(side)[:, None] * width + 2 * np.arange(side)).reshape(-1, 1)
+    lower = first + [0, 2, 2 * width + 2, 1, width + 2, width + 1]
+    upper = first + [0, 2 * width + 2, 2 * width, width + 1, 2 * width + 1, width]
+    return Fields(points, np.vstack([lower, upper]), np.zeros_like(points), np.zeros(len(points)))
+
+
+def with_velocity(fields: Fields, velocity: FloatArray) -> Fields:
+    return Fields(fields.points, fields.cells, velocity, fields.pressure)
+
+
+def curved_cell(dimension: int) -> Fields:
+    """One cell whose middle nodes are off the straight lines between its corners, at rest."""
+    corners = np.vstack([np.zeros(dimension), np.eye(dimension)])
+    middles = corners[np.array(EDGES[dimension + 1])].mean(axis=1)
+    middles += np.random.default_rng(0).uniform(-0.06, 0.06, middles.shape)
+    points = np.vstack([corners, middles])
+    return Fields(points, np.arange(len(points))[None], np.zeros_like(points), np.zeros(len(points)))
+
+
+def test_a_rigid_rotation_has_twice_its_spin_also_in_curved_cells() -> None:
+    plane = curved_cell(2)
+    turning = SPIN[2] * np.stack([-plane.points[:, 1], plane.points[:, 0]], axis=1)
+    np.testing.assert_allclose(vorticity(with_velocity(plane, turning)), 2.0 * SPIN[2], rtol=1e-13)
+    space = curved_cell(3)
+    turning = np.cross(SPIN, space.points)
+    for axis in range(3):
+        found = vorticity(with_velocity(space, turning), np.eye(3)[axis])
+        np.testing.assert_allclose(found, 2.0 * SPIN[axis], rtol=1e-12)
+
+
+def test_poiseuille_flow_has_a_vorticity_linear_across_the_channel() -> None:
+    fields = square(3)
+    y = fields.points[:, 1]
+    fields = with_velocity(fields, np.stack([y * (1.0 - y), 0.0 * y], axis=1))
+    np.testing.assert_allclose(vorticity(fields), (2.0 * y - 1.0)[fields.cells], atol=1e-13)
+
+
+def test_a_quadratic_field_is_sampled_exactly_and_nothing_outside_the_mesh() -> None:
+    fields = square(3)
+    grid = Grid(np.array([-0.25, 0.1]), np.array([0.05, 0.0]), np.array([0.0, 0.05]), 40, 10)
+    x = np.add.outer(np.zeros(10), -0.25 + 0.05 * np.arange(40))
+    y = np.add.outer(0.1 + 0.05 * np.arange(10), np.zeros(40))
+    values = fields.points[:, 0] ** 2 - 3.0 * fields.points[:, 0] * fields.points[:, 1]
+    image = Sampling.locate(fields, grid).image(values[fields.cells])
+    inside = (x > 1e-6) & (x < 1.0 - 1e-6)
+    np.testing.assert_allclose(image[inside], (x**2 - 3.0 * x * y)[inside], atol=1e-13)
+    assert np.isnan(image[(x < -1e-6) | (x > 1.0 + 1e-6)]).all()
+
+
+def test_a_slice_through_a_tetrahedron_is_sampled_exactly() -> None:
+    corners = np.vstack([np.zeros(3), np.eye(3)])
+    points = np.vstack([corners, corners[np.array(EDGES[4])].mean(axis=1)])
+    fields = Fields(points, np.arange(10)[None], np.zeros_like(points), np.zeros(10))
+    grid = Grid(np.array([0.02, 0.02, 0.25]), np.array([0.1, 0.0, 0.0]), np.array([0.0, 0.1, 0.0]), 10, 10)
+    x, y = 0.02 + 0.1 * np.arange(10)[None, :], 0.02 + 0.1 * np.arange(10)[:, None]
+    image = Sampling.locate(fields, grid).image((points[:, 0] * points[:, 1] + points[:, 2] ** 2)[None])
+    inside = x + y < 0.75
+    np.testing.assert_allclose(image[inside], (x * y + 0.0625)[inside], atol=1e-13)
+    assert np.isnan(image[~inside]).all()
+
+
+def moment(fields: Fields) -> Moment:
+    """All of a plane field."""
+    section = Section.cut(fields, ViewPlane.coordinate_plane(0, 1, 2), np.zeros(2))
+    return Moment(time=0.0, section=section, centre=np.zeros(2), width=0.1, gap=0.1)
+
+
+def swirl(size: tuple[float, float]) -> Moment:
+    fields = square(4, size)
+    x, y = fields.points.T
+    return moment(with_velocity(fields, np.stack([-y, x], axis=1)))
+
+
+@pytest.mark.parametrize("size", [(1.0, 30.0), (30.0, 1.0), (1.0, 1.0)])
+def test_pictures_of_any_domain_fit_on_a_page(size: tuple[float, float]) -> None:
+    shown = [swirl(size)] * 4
+    for figure in (speed_picture(shown), streamline_picture(shown), vorticity_picture(shown), pressure_picture(shown)):
+        assert np.all(np.array(figure.get_size_inches()) < 18.0)
+    assert np.all(np.array(whole_mesh_picture(shown[0]).get_size_inches()) < 18.0)
+
+
+def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
+    def lines(moment: Moment) -> list[FloatArray]:
+        return [path for one in streamline_picture([moment]).axes[0].collections[1:] for path in one.get_segments()]
+
+    turning = swirl((1.0, 1.0))
+    ends = np.array([[path[0], path[-1]] for path in lines(turning)])
+    radius = np.linalg.norm(ends, axis=2)
+    assert len(ends) > 50
+    np.testing.assert_allclose(
+        radius[:, 0], radius[:, 1], atol=0.005
+    )  # circles; lines are bent to parts of the picture
+    assert lines(moment(square(4))) == []
