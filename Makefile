@@ -66,7 +66,7 @@ clean:
 	touch $@
 
 .venv/.installed-plugins: $(PLUGINS:%=%/pyproject.toml) | .venv/.installed-test
-	$(BIN)/python -m pip install --quiet --editable '.[pictures]' $(PLUGINS:%=--editable %)
+	$(BIN)/python -m pip install --quiet --editable . 'pyvista>=0.44' $(PLUGINS:%=--editable %)
 	touch $@
 
 .venv/.installed-%: pyproject.toml | .venv/.created

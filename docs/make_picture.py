@@ -15,7 +15,8 @@ import rigidfluid
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.post.reports.plane import corner_triangles, fine_triangles
-from rigidfluid.post.reports.style import BLACK, BODY, COLOURMAP, ORANGE, STYLE, VERMILLION, new_figure
+from rigidfluid.post.reports.scale import COLOURMAP
+from rigidfluid.post.reports.style import BLACK, BODY, ORANGE, STYLE, VERMILLION, new_figure
 
 HERE = Path(__file__).parent
 sys.path.append(str(HERE.parent / "tests" / "support"))

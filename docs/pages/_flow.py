@@ -11,7 +11,8 @@ from page_tools import Run
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.post.reports.flow import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell
-from rigidfluid.post.reports.style import BODY, SIGNED_COLOURMAP
+from rigidfluid.post.reports.scale import SIGNED_COLOURMAP
+from rigidfluid.post.reports.style import BODY
 
 
 def vorticity_pictures(run: Run, moments: Sequence[float], height: float, scale: float) -> Figure:

@@ -12,7 +12,8 @@ from page_tools import Page, Run, Work, table
 
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.post.reports.plane import fine_triangles
-from rigidfluid.post.reports.style import BODY, COLOURMAP
+from rigidfluid.post.reports.scale import COLOURMAP
+from rigidfluid.post.reports.style import BODY
 
 COARSER = ["mesh.size_body=2.4e-4", "mesh.size=1.2e-3", "mesh.refine.0.size=4e-4"]
 

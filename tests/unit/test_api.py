@@ -14,7 +14,7 @@ from rigidfluid import api
 
 SOURCE = Path(api.__file__).parent
 PUBLIC = ("rigidfluid.api", "rigidfluid.commands", "rigidfluid.testing", "rigidfluid.taylor_hood")
-HEAVY = {"numba", "h5py", "netgen", "skfem", "pyvista", "matplotlib", "pypardiso"}
+HEAVY = {"numba", "h5py", "netgen", "skfem", "matplotlib", "pypardiso"}
 
 
 def test_every_name_is_there() -> None:

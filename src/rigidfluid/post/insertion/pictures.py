@@ -13,7 +13,8 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
 from rigidfluid.post.insertion.figures import BINS, Figures
-from rigidfluid.post.reports.style import BLACK, BLUE, BODY, COLOURMAP, PALETTE, new_figure
+from rigidfluid.post.reports.scale import COLOURMAP
+from rigidfluid.post.reports.style import BLACK, BLUE, BODY, PALETTE, new_figure
 
 _FINE = 0.25
 """Width of the lines of cells [point]."""

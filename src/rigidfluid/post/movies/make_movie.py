@@ -11,23 +11,24 @@ import matplotlib
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.writer import writing
 from rigidfluid.errors import OutputError
-from rigidfluid.post.movies.picture import Quantity, Scale, draw_bodies, flow_image, ground
-from rigidfluid.post.movies.projection import draw_projected
+from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
 from rigidfluid.post.movies.shot import Shot, Window, shot_of
+from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
-from rigidfluid.post.reports.style import STYLE, new_figure
+from rigidfluid.post.reports.scale import Quantity, Scale
+from rigidfluid.post.reports.style import SKY, STYLE, VERMILLION, new_figure
 from rigidfluid.post.reports.view_plane import PlaneName
 
 _SAMPLED = 12
 """Number of pictures that fix the range of the colours."""
+_SHARE = 99.5
+"""Per cent of the points whose value has a colour of its own."""
 
 Progress = Callable[[int, int], None]
 
@@ -106,18 +107,21 @@ def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
         for frame in (frames[i] for i in chosen)
         if frame.path is not None
     ]
-    return Scale.fit(look.show, images)
+    return Scale.fit(look.show, images, _SHARE)
 
 
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
     grid = shot.grid(frame.state, look.longer)
     if frame.path is not None:
-        picture = scale.colours(flow_image(frame.path, look.show, grid))
+        picture = paint_flow(flow_image(frame.path, look.show, grid), scale)
         draw_bodies(picture, grid, results, frame.state)
         return picture
     picture = ground(results, grid)
-    draw = draw_bodies if results.system.dimension == 2 else draw_projected
-    draw(picture, grid, results, frame.state)
+    if results.system.dimension == 2:
+        draw_bodies(picture, grid, results, frame.state)
+    else:
+        canvas = Canvas(picture, np.full(picture.shape[:2], -np.inf), grid)
+        canvas.paint_bodies(body_shells(results), results, frame.state, SKY, VERMILLION)
     return picture
 
 
@@ -132,10 +136,7 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
     axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
     image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
     if results.series:
-        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": "force/area"}[look.show]
-        colours = ScalarMappable(Normalize(scale.lowest, scale.highest), scale.map)
-        extend = "both" if scale.lowest < 0.0 else "max"
-        figure.colorbar(colours, ax=axes, label=f"{look.show} [{unit}]", shrink=0.8, extend=extend)
+        scale.draw_bar(figure, [axes], results.system.dimension, exceeded=True)
     return figure, axes, image
 
 

@@ -2,70 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.bodies import rotations
-from rigidfluid.post.reports.raster import Grid, Sampling
+from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
+from rigidfluid.post.reports.scale import Quantity, Scale
 from rigidfluid.post.reports.section import Section
-from rigidfluid.post.reports.style import BODY, COLOURMAP, SIGNED_COLOURMAP
-
-Quantity = Literal["speed", "vorticity", "pressure"]
-SIGNED: tuple[Quantity, ...] = ("vorticity", "pressure")
+from rigidfluid.post.reports.style import BODY
 
 _OUTSIDE, _NOTHING, _MARK, _EDGE = to_rgb("#d9d9d9"), to_rgb("white"), to_rgb("black"), to_rgb("#404040")
 _HAND = 0.12
 """Half the width of the mark over the body's bounding radius."""
 
 
-@dataclass(frozen=True)
-class Scale:
-    """Range of colours of a ``quantity``, between ``lowest`` and ``highest``."""
-
-    quantity: Quantity
-    lowest: float
-    highest: float
-
-    @classmethod
-    def fit(cls, quantity: Quantity, images: list[FloatArray]) -> Scale:
-        """Fit the range to 99.5 per cent of the points of some images; symmetric about zero for signed quantities."""
-        known = np.concatenate([image[np.isfinite(image)] for image in images] or [np.zeros(1)])
-        highest = float(np.percentile(np.abs(known), 99.5)) if known.size else 0.0
-        return cls(quantity, -highest if quantity in SIGNED else 0.0, highest or 1.0)
-
-    @property
-    def map(self) -> str:
-        """Matplotlib's name of the colours."""
-        return SIGNED_COLOURMAP if self.quantity in SIGNED else COLOURMAP
-
-    def colours(self, image: FloatArray) -> FloatArray:
-        """RGB (rows, columns, 3) of values; grey where there is no fluid."""
-        share = (image - self.lowest) / (self.highest - self.lowest)
-        found = colormaps[self.map](np.nan_to_num(share))[..., :3]
-        return np.where(np.isfinite(image)[..., None], found, _OUTSIDE)
-
-
 def flow_image(path: Path, quantity: Quantity, grid: Grid) -> FloatArray:
     """A quantity of the fields in a file at the points of a grid, (rows, columns), nan outside the fluid."""
     section = Section.cut(read_vtu(path), grid.plane, grid.origin)
-    return Sampling.locate(section.fields, grid).image(_nodal_values(section, quantity))
+    return section.image(section.values(quantity), grid)
 
 
-def _nodal_values(section: Section, quantity: Quantity) -> FloatArray:
-    """Values of a quantity at the nodes of each cell, (M, b)."""
-    if quantity == "vorticity":
-        return section.vorticity
-    values = section.speed if quantity == "speed" else section.fields.pressure
-    return np.asarray(values[section.fields.cells])
+def paint_flow(image: FloatArray, scale: Scale) -> FloatArray:
+    """A picture (rows, columns, 3) of values (rows, columns), grey where they are nan."""
+    return np.where(np.isfinite(image)[..., None], scale.colours(np.nan_to_num(image)), _OUTSIDE)
 
 
 def ground(results: Results, grid: Grid) -> FloatArray:

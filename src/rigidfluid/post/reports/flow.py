@@ -1,4 +1,4 @@
-"""Quadratic fields within their cells: the basis, velocity gradients and the vorticity."""
+"""Quadratic fields within their cells: velocity gradients and the vorticity."""
 
 from __future__ import annotations
 
@@ -8,13 +8,6 @@ from rigidfluid.core.model.types import Fields, FloatArray
 
 EDGES = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
 """Which corners each middle node is between, in VTK's order, by the number of corners."""
-
-
-def basis(coordinates: FloatArray) -> FloatArray:
-    """The quadratic basis (P, b), corners first, at barycentric ``coordinates`` (P, d+1)."""
-    first, second = np.transpose(EDGES[coordinates.shape[1]])
-    middles = 4.0 * coordinates[:, first] * coordinates[:, second]
-    return np.hstack([coordinates * (2.0 * coordinates - 1.0), middles])
 
 
 def node_coordinates(count: int) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,8 +11,9 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.model.types import FloatArray
 from rigidfluid.post.reports.moment import Moment, View
-from rigidfluid.post.reports.raster import Grid, Sampling
-from rigidfluid.post.reports.style import BLACK, BODY, COLOURMAP, SIGNED_COLOURMAP, new_figure
+from rigidfluid.post.reports.raster import Grid
+from rigidfluid.post.reports.scale import Quantity, Scale
+from rigidfluid.post.reports.style import BLACK, BODY, new_figure
 
 SHARE = 99.0
 """Per cent of the nodes whose vorticity or pressure has a colour of its own: at one sharp corner both are without
@@ -25,18 +25,6 @@ TALLEST, NARROWEST = 8.0, 1.4
 _GRID = 400  # points along the longer side from which streamlines are drawn
 _CALM = 1e-4  # of the highest speed: where the fluid is slower, rounding decides where it goes
 _OUT_OF_PLANE = 45.0  # degrees between velocity and slice from which on a line in the slice tells little
-
-
-@dataclass(frozen=True)
-class Colours:
-    """Colours of a picture: a ``label``, a ``map``, the range ``lowest`` to ``highest``, and the ``values`` of a moment
-    at its nodes (N,), or at those of each cell (M, b)."""
-
-    label: str
-    map: str
-    lowest: float
-    highest: float
-    values: Callable[[Moment], FloatArray]
 
 
 Over = Callable[[Axes, Moment, View], object]
@@ -57,13 +45,12 @@ def streamline_picture(shown: Sequence[Moment]) -> Figure:
 
 def vorticity_picture(shown: Sequence[Moment]) -> Figure:
     """Vorticity in the whole domain, of a slice the component to the observer."""
-    return _signed_picture(shown, "vorticity [1/time]", lambda moment: moment.section.vorticity)
+    return _signed_picture(shown, "vorticity")
 
 
 def pressure_picture(shown: Sequence[Moment]) -> Figure:
     """Dynamic pressure in the whole domain."""
-    unit = "force/area" if shown[0].section.is_slice else "force/length"
-    return _signed_picture(shown, f"pressure [{unit}]", lambda moment: moment.section.fields.pressure)
+    return _signed_picture(shown, "pressure")
 
 
 def whole_mesh_picture(moment: Moment) -> Figure:
@@ -89,16 +76,15 @@ def _mesh_panels(shown: Sequence[Moment], views: Sequence[View]) -> Figure:
     return figure
 
 
-def _panels(shown: Sequence[Moment], views: Sequence[View], colours: Colours, over: Over | None = None) -> Figure:
+def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: Over | None = None) -> Figure:
     """One panel a moment, solids grey, the same colours for the same value in all."""
     figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
-        drawn = axes.tripcolor(
-            *moment.section.triangles(colours.values(moment)),
+        axes.tripcolor(
+            *moment.section.triangles(moment.section.values(scale.quantity)),
             shading="gouraud",
-            cmap=colours.map,
-            vmin=colours.lowest,
-            vmax=colours.highest or 1.0,
+            cmap=scale.map,
+            norm=scale.norm,
         )
         if over is not None:
             over(axes, moment, view)
@@ -106,8 +92,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], colours: Colours, ov
             axes.plot(*outline.T, color=BLACK, linewidth=0.8)
         _look_at(axes, view)
         axes.set_title(f"time {moment.time:.4g}")
-    extend = "both" if colours.lowest < 0.0 else "neither"
-    figure.colorbar(drawn, ax=panels, label=colours.label, shrink=0.8, extend=extend)
+    scale.draw_bar(figure, panels, 3 if shown[0].section.is_slice else 2)
     return figure
 
 
@@ -140,20 +125,18 @@ def _look_at(axes: Axes, view: View) -> None:
     axes.locator_params(axis="y", nbins=4 if width < 4.0 * height else 2)
 
 
-def _speed(shown: Sequence[Moment], views: Sequence[View]) -> Colours:
+def _speed(shown: Sequence[Moment], views: Sequence[View]) -> Scale:
     """From rest to the highest speed that is seen."""
     sections = [moment.section for moment in shown]
     seen = [one.speed[view.holds(one.flat_points)] for one, view in zip(sections, views, strict=True)]
     fastest = max(float(values.max(initial=0.0)) for values in seen)
-    return Colours("speed [length/time]", COLOURMAP, 0.0, fastest, lambda moment: moment.section.speed)
+    return Scale("speed", 0.0, fastest)
 
 
-def _signed_picture(shown: Sequence[Moment], label: str, of: Callable[[Moment], FloatArray]) -> Figure:
+def _signed_picture(shown: Sequence[Moment], quantity: Quantity) -> Figure:
     """Values about zero, with colours for those of most nodes."""
-    size = np.concatenate([np.abs(of(moment)).ravel() for moment in shown])
-    highest = float(np.percentile(size, SHARE))
-    colours = Colours(label, SIGNED_COLOURMAP, -highest, highest, of)
-    return _panels(shown, [View.whole(moment) for moment in shown], colours)
+    scale = Scale.fit(quantity, [moment.section.values(quantity) for moment in shown], SHARE)
+    return _panels(shown, [View.whole(moment) for moment in shown], scale)
 
 
 def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:
@@ -163,10 +146,9 @@ def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:
 def _draw_streamlines(axes: Axes, moment: Moment, view: View) -> None:
     """Lines along the velocity, none where the fluid rests to rounding, or goes through the slice rather than along."""
     section, grid = moment.section, Grid.between(view.lower, view.upper, _GRID)
-    sampling = Sampling.locate(section.fields, grid.lifted(section.plane, section.through))
-    velocity = section.fields.velocity[section.fields.cells]
-    u, v = (sampling.image(velocity @ direction) for direction in (section.plane.right, section.plane.up))
-    speed = np.linalg.norm([sampling.image(component) for component in np.moveaxis(velocity, 2, 0)], axis=0)
+    in_space = grid.lifted(section.plane, section.through)
+    u, v = (section.image(component, in_space) for component in section.plane.flat(section.fields.velocity).T)
+    speed = section.image(section.speed, in_space)
     along = np.hypot(u, v)  # nan outside the mesh, as the speed is
     moving = (along > _CALM * section.speed.max()) & (along >= np.cos(np.radians(_OUT_OF_PLANE)) * speed)
     if not moving.any():

@@ -1,4 +1,4 @@
-"""Fields on a grid of points in a plane, in 2D the plane itself, in 3D a slice."""
+"""Triangles on a grid of points in a plane: slices of a flow that lie in it, and surfaces that it is looked at."""
 
 from __future__ import annotations
 
@@ -6,10 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import Fields, FloatArray, IntArray
-from rigidfluid.post.reports.flow import basis, node_coordinates
-from rigidfluid.post.reports.plane import QUARTERS
-from rigidfluid.post.reports.slice import EIGHTHS
+from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.post.reports.view_plane import ViewPlane
 
 _ROUNDING = 1e-9
@@ -71,66 +68,60 @@ class Grid:
 
 @dataclass(frozen=True)
 class Sampling:
-    """Points of a grid that lie in a mesh: their ``place`` (P,) in the grid row by row, ``cell`` (P,), and
-    ``weights`` (P, b) of its nodes; ``shape`` of the grid."""
+    """Points of a grid that triangles cover: their ``place`` (P,) in the grid row by row, ``triangle`` (P,), and
+    ``weights`` (P, 3) of its corners; ``shape`` of the grid."""
 
     shape: tuple[int, int]
     place: IntArray
-    cell: IntArray
+    triangle: IntArray
     weights: FloatArray
 
     @classmethod
-    def locate(cls, fields: Fields, grid: Grid) -> Sampling:
-        """Find the points in the cells, each cut into four triangles or eight tetrahedra between its nodes."""
-        parts, inner = _parts(fields)
-        corners = fields.points[parts]
-        near, lowest, counts = _rectangles(corners, grid)
-        corners, each = corners[near], counts.prod(axis=1)
-        part = np.repeat(np.arange(len(near)), each)
-        number = np.arange(len(part)) - (np.cumsum(each) - each)[part]
-        i, j = lowest[part].T + np.divmod(number, counts[part, 0])[::-1]
-        own = _barycentric(corners, part, grid.origin + i[:, None] * grid.right + j[:, None] * grid.up)
-        inside = own.min(axis=1) >= -_ROUNDING
-        part, own = near[part[inside]], own[inside]
-        coordinates = np.einsum("pk,pkl->pl", own, inner[part % len(inner)])
-        place = (j * grid.columns + i)[inside]
-        return cls((grid.rows, grid.columns), place, part // len(inner), basis(coordinates))
+    def locate(cls, corners: FloatArray, grid: Grid) -> Sampling:
+        """Find the points that triangles with ``corners`` (T, 3, d) cover, seen at right angles to the plane."""
+        where = grid.coordinates(corners)
+        near, lowest, counts = _rectangles(where, grid)
+        each = counts.prod(axis=1)
+        number = np.repeat(np.arange(len(near)), each)
+        within = np.arange(len(number)) - (np.cumsum(each) - each)[number]
+        row, column = np.divmod(within, counts[number, 0])
+        points = lowest[number] + np.stack([column, row], axis=1)
+        weights = _barycentric(where[near][number], points)
+        inside = weights.min(axis=1) >= -_ROUNDING
+        place = points[inside] @ [1, grid.columns]
+        return cls((grid.rows, grid.columns), place, near[number[inside]], weights[inside])
+
+    def values(self, values: FloatArray) -> FloatArray:
+        """Values (T, 3, …) at the corners as (P, …) at the points, linear between corners."""
+        return np.asarray(np.einsum("pk,pk...->p...", self.weights, values[self.triangle]))
 
     def image(self, values: FloatArray) -> FloatArray:
-        """Values (M, b) at the nodes of the cells as (rows, columns) at the grid's points, nan outside the mesh."""
+        """Values (T, 3) at the corners as (rows, columns) at the grid's points, nan where no triangle is."""
         image = np.full(self.shape[0] * self.shape[1], np.nan)
-        image[self.place] = np.einsum("pb,pb->p", self.weights, values[self.cell])
-        return image.reshape(self.shape)
-
-    def cells(self) -> IntArray:
-        """The number of the cell at each point of the grid, (rows, columns), -1 outside the mesh."""
-        image = np.full(self.shape[0] * self.shape[1], -1, dtype=np.int64)
-        image[self.place] = self.cell
+        image[self.place] = self.values(values)
         return image.reshape(self.shape)
 
 
-def _parts(fields: Fields) -> tuple[IntArray, FloatArray]:
-    """Linear simplices, their nodes (k M, d+1), cell by cell; and their corners in a cell's coordinates (k, …, d+1)."""
-    parts = QUARTERS if fields.points.shape[1] == 2 else EIGHTHS
-    corners = parts.shape[1]
-    return fields.cells[:, parts].reshape(-1, corners), node_coordinates(corners)[parts]
+def _rectangles(where: FloatArray, grid: Grid) -> tuple[IntArray, IntArray, IntArray]:
+    """Which triangles may cover points of the grid, and of each the lowest i and j, and how many of both.
 
-
-def _rectangles(corners: FloatArray, grid: Grid) -> tuple[IntArray, IntArray, IntArray]:
-    """Which simplices may hold points of the grid, and of each the lowest i and j, and how many of both."""
-    where = grid.coordinates(corners)
+    Triangles seen from the side, without an area, cover none.
+    """
     last = np.array([grid.columns - 1, grid.rows - 1])
     lowest = np.maximum(np.ceil(where.min(axis=1) - _ROUNDING), 0).astype(np.int64)
     highest = np.minimum(np.floor(where.max(axis=1) + _ROUNDING), last).astype(np.int64)
-    near = (highest >= lowest).all(axis=1)
-    if corners.shape[2] == 3:
-        height = (corners - grid.origin) @ grid.plane.normal
-        near &= (height.min(axis=1) <= 0.0) & (height.max(axis=1) >= 0.0)
+    sides = where[:, 1:] - where[:, :1]
+    near = (highest >= lowest).all(axis=1) & (np.abs(_cross(sides[:, 0], sides[:, 1])) > _ROUNDING)
     return np.flatnonzero(near), lowest[near], (highest - lowest + 1)[near]
 
 
-def _barycentric(corners: FloatArray, part: IntArray, points: FloatArray) -> FloatArray:
-    """Coordinates (P, d+1) of ``points`` (P, d), each in its ``part`` of the simplices."""
-    inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).swapaxes(1, 2))
-    others = np.einsum("pkl,pl->pk", inverse[part], points - corners[part, 0])
-    return np.hstack([1.0 - others.sum(axis=1, keepdims=True), others])
+def _barycentric(corners: FloatArray, points: FloatArray) -> FloatArray:
+    """Coordinates (P, 3) of ``points`` (P, 2), each in its triangle with ``corners`` (P, 3, 2)."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    away, area = points - corners[:, 0], _cross(first, second)
+    one, two = _cross(away, second) / area, _cross(first, away) / area
+    return np.stack([1.0 - one - two, one, two], axis=1)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

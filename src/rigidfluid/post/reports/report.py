@@ -38,7 +38,7 @@ from rigidfluid.post.reports.pictures import (
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
-from rigidfluid.post.reports.space_view import dry_space_picture, flow_space_picture
+from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE, save
 from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
 

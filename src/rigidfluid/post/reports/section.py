@@ -11,6 +11,8 @@ from matplotlib.tri import Triangulation
 from rigidfluid.core.model.types import Fields, FloatArray
 from rigidfluid.post.reports.flow import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
+from rigidfluid.post.reports.raster import Grid, Sampling
+from rigidfluid.post.reports.scale import Quantity
 from rigidfluid.post.reports.slice import Slice, cut_cells, cut_faces
 from rigidfluid.post.reports.view_plane import ViewPlane
 
@@ -50,6 +52,16 @@ class Section:
         """ω at the nodes of each cell, in 3D its component to the observer, (M, b) [1/time]."""
         return vorticity(self.fields, self.plane.normal if self.is_slice else None)
 
+    def values(self, quantity: Quantity) -> FloatArray:
+        """A quantity at the nodes (N,), or at those of each cell (M, b)."""
+        match quantity:
+            case "speed":
+                return self.speed
+            case "vorticity":
+                return self.vorticity
+            case "pressure":
+                return self.fields.pressure
+
     def triangles(self, values: FloatArray) -> tuple[Triangulation, FloatArray]:
         """Triangles in the plane and values at their corners, of ``values`` (N,) at the nodes, or (M, b) at those of
         each cell, which jump from cell to cell."""
@@ -59,6 +71,14 @@ class Section:
         if values.ndim == 2:
             return cell_by_cell(self.fields), values.ravel()
         return fine_triangles(self.fields), values
+
+    def image(self, values: FloatArray, grid: Grid) -> FloatArray:
+        """Values, as `triangles` takes them, at the points of a ``grid`` in the plane, (rows, columns), nan outside
+        the mesh."""
+        triangulation, at_nodes = self.triangles(values)
+        flat = np.stack([triangulation.x, triangulation.y], axis=1)[triangulation.triangles]
+        sampling = Sampling.locate(self.plane.lifted(flat, self.through), grid)
+        return sampling.image(at_nodes[triangulation.triangles])
 
     @property
     def edges(self) -> FloatArray:

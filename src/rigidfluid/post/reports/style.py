@@ -18,8 +18,6 @@ PALETTE = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 BODY = "#8c8c8c"
 SOLID = "#d8d8d8"
 """Bodies under a light."""
-COLOURMAP = "viridis"
-SIGNED_COLOURMAP = "RdBu_r"
 
 STYLE: Any = {
     "font.size": 10.0,

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
+from matplotlib import colormaps as cm
+from matplotlib.colors import to_rgb
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -18,10 +20,12 @@ from rigidfluid.cli import app
 from rigidfluid.core.case.load import load_scene
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies import Look, movie
-from rigidfluid.post.movies.picture import Scale, draw_bodies, flow_image
-from rigidfluid.post.movies.projection import draw_projected
+from rigidfluid.post.movies.picture import draw_bodies, flow_image, paint_flow
 from rigidfluid.post.movies.shot import shot_of
+from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.scale import Scale
+from rigidfluid.post.reports.style import SKY, VERMILLION
 
 
 @pytest.fixture(scope="module")
@@ -103,9 +107,15 @@ def test_the_fluid_is_shown_as_it_is_in_the_files(wet: Path) -> None:
     fastest = np.nanmax(image)
     assert fastest == pytest.approx(-results.bodies["vy"][-1, 0], rel=0.1)
     assert np.isnan(image).sum() * grid.right[0] * grid.up[1] == pytest.approx(results.system.bodies[0].volume, rel=0.1)
-    colours = Scale.fit("speed", [image]).colours(image)
-    assert colours.shape == (*image.shape, 3)
-    assert Scale.fit("vorticity", [image]).lowest == -Scale.fit("vorticity", [image]).highest
+    scale = Scale.fit("speed", [image], 100.0)
+    picture = paint_flow(image, scale)
+    outside = np.isnan(image)
+    np.testing.assert_array_equal(picture[outside], np.full((outside.sum(), 3), to_rgb("#d9d9d9")))
+    np.testing.assert_array_equal(picture[~outside], scale.colours(image[~outside]))
+    np.testing.assert_allclose(scale.colours(np.array([0.0, fastest])), [cm["viridis"](x)[:3] for x in (0.0, 1.0)])
+    assert (scale.lowest, scale.highest) == (0.0, fastest)
+    signed = Scale.fit("vorticity", [image], 50.0)
+    assert signed.lowest == -signed.highest == -np.nanmedian(np.abs(image))
 
 
 def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:
@@ -144,9 +154,10 @@ def balls(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_without_a_fluid_3d_shows_all_bodies_those_in_front_over_those_behind(balls: Path, tmp_path: Path) -> None:
     results = read_results(balls, motion_only=True)
     grid = shot_of(results, None, None).grid(0, 400)
-    picture = np.zeros((grid.rows, grid.columns, 3))
-    draw_projected(picture, grid, results, 0)
-    shown = (picture > 0.0).any(axis=2)
+    shells = body_shells(results)
+    canvas = Canvas.blank(grid)
+    canvas.paint_bodies(shells, results, 0, SKY, VERMILLION)
+    picture, shown = canvas.picture, np.isfinite(canvas.depth)
     x = (grid.points() - grid.origin) @ grid.plane.right + grid.origin[0]
     pixel = grid.right[0] * grid.up[1]
     assert shown[x < 1.0].sum() * pixel == pytest.approx(np.pi * 0.3**2, rel=0.02)
@@ -154,18 +165,11 @@ def test_without_a_fluid_3d_shows_all_bodies_those_in_front_over_those_behind(ba
     assert len(own) * pixel == pytest.approx(np.pi * 0.3 * 0.1, rel=0.03)
     along = np.linalg.eigh(own.T @ own)[1][:, -1]
     assert np.arctan(along[1] / along[0]) == pytest.approx(0.8, abs=0.01)
-    alone = np.zeros_like(picture)
-    draw_projected(
-        alone,
-        grid,
-        replace(
-            results,
-            bodies={k: v[:, :1] for k, v in results.bodies.items()},
-            system=replace(results.system, bodies=results.system.bodies[:1]),
-        ),
-        0,
-    )
-    before = (alone > 0.0).any(axis=2)
+    first = Canvas.blank(grid)
+    only = {name: values[:, :1] for name, values in results.bodies.items()}
+    system = replace(results.system, bodies=results.system.bodies[:1])
+    first.paint_bodies(shells[:1], replace(results, bodies=only, system=system), 0, SKY, VERMILLION)
+    alone, before = first.picture, np.isfinite(first.depth)
     assert before.sum() * pixel == pytest.approx(np.pi * 0.1**2, rel=0.03)
     np.testing.assert_array_equal(picture[before], alone[before])
     assert len(frames(movie(balls, tmp_path / "a.gif", Look(longer=60)))) == 3

@@ -15,7 +15,7 @@ from rigidfluid.post.reports.pictures import (
     vorticity_picture,
     whole_mesh_picture,
 )
-from rigidfluid.post.reports.raster import Grid, Sampling
+from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.section import Section
 from rigidfluid.post.reports.view_plane import ViewPlane
 
@@ -64,27 +64,39 @@ def test_poiseuille_flow_has_a_vorticity_linear_across_the_channel() -> None:
     np.testing.assert_allclose(vorticity(fields), (2.0 * y - 1.0)[fields.cells], atol=1e-13)
 
 
-def test_a_quadratic_field_is_sampled_exactly_and_nothing_outside_the_mesh() -> None:
-    fields = square(3)
+def test_a_linear_field_is_sampled_exactly_and_nothing_outside_the_mesh() -> None:
+    section = moment(square(3)).section
     grid = Grid(np.array([-0.25, 0.1]), np.array([0.05, 0.0]), np.array([0.0, 0.05]), 40, 10)
     x = np.add.outer(np.zeros(10), -0.25 + 0.05 * np.arange(40))
     y = np.add.outer(0.1 + 0.05 * np.arange(10), np.zeros(40))
-    values = fields.points[:, 0] ** 2 - 3.0 * fields.points[:, 0] * fields.points[:, 1]
-    image = Sampling.locate(fields, grid).image(values[fields.cells])
+    values = 1.0 + section.fields.points @ [1.0, -3.0]
     inside = (x > 1e-6) & (x < 1.0 - 1e-6)
-    np.testing.assert_allclose(image[inside], (x**2 - 3.0 * x * y)[inside], atol=1e-13)
-    assert np.isnan(image[(x < -1e-6) | (x > 1.0 + 1e-6)]).all()
+    for at_nodes in (values, values[section.fields.cells]):
+        image = section.image(at_nodes, grid)
+        np.testing.assert_allclose(image[inside], (1.0 + x - 3.0 * y)[inside], atol=1e-13)
+        assert np.isnan(image[(x < -1e-6) | (x > 1.0 + 1e-6)]).all()
 
 
-def test_a_slice_through_a_tetrahedron_is_sampled_exactly() -> None:
+def test_a_quadratic_field_is_sampled_between_its_nodes_with_the_second_order() -> None:
+    grid = Grid(np.array([0.013, 0.027]), np.array([0.02, 0.0]), np.array([0.0, 0.02]), 48, 48)
+    x, y = np.moveaxis(grid.points(), -1, 0)
+    errors = []
+    for side in (4, 8):
+        section = moment(square(side)).section
+        u, v = section.fields.points.T
+        errors.append(np.abs(section.image(u**2 - 3.0 * u * v, grid) - (x**2 - 3.0 * x * y)).max())
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_slice_through_a_tetrahedron_is_sampled_in_its_plane() -> None:
     corners = np.vstack([np.zeros(3), np.eye(3)])
     points = np.vstack([corners, corners[np.array(EDGES[4])].mean(axis=1)])
     fields = Fields(points, np.arange(10)[None], np.zeros_like(points), np.zeros(10))
     grid = Grid(np.array([0.02, 0.02, 0.25]), np.array([0.1, 0.0, 0.0]), np.array([0.0, 0.1, 0.0]), 10, 10)
     x, y = 0.02 + 0.1 * np.arange(10)[None, :], 0.02 + 0.1 * np.arange(10)[:, None]
-    image = Sampling.locate(fields, grid).image((points[:, 0] * points[:, 1] + points[:, 2] ** 2)[None])
+    image = Section.cut(fields, grid.plane, grid.origin).image(points @ [1.0, 2.0, 3.0], grid)
     inside = x + y < 0.75
-    np.testing.assert_allclose(image[inside], (x * y + 0.0625)[inside], atol=1e-13)
+    np.testing.assert_allclose(image[inside], (x + 2.0 * y + 0.75)[inside], atol=1e-13)
     assert np.isnan(image[~inside]).all()
 
 

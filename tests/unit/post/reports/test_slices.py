@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import rigidfluid
 from rigidfluid.cli import app
+from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Fields, FloatArray
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.bodies import cut, rotations
+from rigidfluid.post.reports.canvas import Canvas, Shell
 from rigidfluid.post.reports.coefficients import reference
 from rigidfluid.post.reports.flow import EDGES
 from rigidfluid.post.reports.narrowest import gap_middle
+from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.section import Section
-from rigidfluid.post.reports.space import Camera, Space, box_edges, surface_triangles
-from rigidfluid.post.reports.space_matplotlib import draw_space
-from rigidfluid.post.reports.space_pyvista import pyvista_images
-from rigidfluid.post.reports.space_view import dry_space_picture
-from rigidfluid.post.reports.style import SOLID
+from rigidfluid.post.reports.space import box_edges, dry_space_picture
+from rigidfluid.post.reports.style import SOLID, VERMILLION
 from rigidfluid.post.reports.view_plane import ViewPlane, plane_of_motion, view_plane
 
 OBLIQUE = ViewPlane(np.array([0.6, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]))
@@ -158,46 +158,83 @@ def test_the_smallest_gap_is_found_in_the_plane_and_in_no_other(gap: float, tilt
 
 
 @pytest.mark.parametrize("kind", ["sphere", "ellipsoid"])
-def test_surfaces_of_bodies_enclose_their_volume(kind: str, tilted: Results, tmp_path: Path) -> None:
-    results = tilted if kind == "ellipsoid" else run(tmp_path, [{}], None)
-    triangles = surface_triangles(results.system.bodies[0], 1000)
-    assert np.linalg.det(triangles).sum() / 6.0 == pytest.approx(results.system.bodies[0].volume, rel=0.02)
-    assert np.linalg.norm(np.diff(box_edges(np.array([[0, 0, 0], [1.0, 2.0, 4.0]])), axis=1), axis=2).sum() == 28.0
-
-
-@pytest.mark.parametrize("program", ["", "raise SystemExit(3)", "import os; os.abort()"])
-def test_a_drawing_process_that_fails_leaves_the_picture_to_matplotlib(
-    program: str, tilted: Results, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_surfaces_of_bodies_enclose_their_volume_and_their_normals_point_out(
+    kind: str, tilted: Results, tmp_path: Path
 ) -> None:
-    """Crashes included; without a result too."""
-    fake = tmp_path / "python"
-    fake.write_text(f"#!{sys.executable}\n{program}\n")
-    fake.chmod(0o755)
-    monkeypatch.setattr("rigidfluid.post.reports.space_pyvista.find_spec", lambda name: name)
-    monkeypatch.setattr("rigidfluid.post.reports.space_pyvista.sys.executable", str(fake))
-    assert pyvista_images([], view_plane(tilted), 100) is None
+    results = tilted if kind == "ellipsoid" else run(tmp_path, [{}], None)
+    body = results.system.bodies[0]
+    shell = Shell.cover(body, 1000)
+    assert np.linalg.det(shell.triangles).sum() / 6.0 == pytest.approx(body.volume, rel=0.02)
+    step = 1e-4 * body.bounding_radius
+    outside = body.signed_distance((shell.triangles + step * shell.normals).reshape(-1, 3))
+    np.testing.assert_allclose(outside, step, rtol=0.1)
+
+
+def test_facets_are_flat_and_their_normals_point_out() -> None:
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) - 0.25
+    facets = Facets(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), np.zeros(4, dtype=int))
+    shell = Shell.cover(cast(Body, SimpleNamespace(facets=facets)), 1000)
+    np.testing.assert_array_equal(shell.triangles, corners[facets.vertices])
+    outwards = np.vstack([-np.eye(3)[[2, 1, 0]], np.full((1, 3), np.sqrt(1.0 / 3.0))])
+    np.testing.assert_allclose(shell.normals, np.repeat(outwards[:, None], 3, axis=1), atol=1e-15)
+
+
+def test_a_box_has_twelve_edges() -> None:
+    edges = box_edges(np.array([[0, 0, 0], [1.0, 2.0, 4.0]]))
+    assert np.linalg.norm(np.diff(edges, axis=1), axis=2).sum() == 28.0
+
+
+TRIANGLE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+def front() -> Canvas:
+    """An empty picture of the unit square, seen along z."""
+    flat = Grid.between(np.zeros(2), np.ones(2), 20)
+    return Canvas.blank(flat.lifted(ViewPlane.coordinate_plane(0, 1, 3), np.zeros(3)))
+
+
+@pytest.mark.parametrize("heights", [(0.0, 1.0), (1.0, 0.0)])
+def test_what_is_nearer_hides_what_is_behind_whatever_is_painted_first(heights: tuple[float, float]) -> None:
+    together, apart = front(), front()
+    triangles = np.array([TRIANGLE + [0.0, 0.0, height] for height in heights])
+    values = np.repeat(np.array(heights)[:, None, None], 3, axis=1)
+    together.paint(triangles, values, lambda at: np.repeat(0.5 * at, 3, axis=1))
+    for k in range(2):
+        apart.paint(triangles[[k]], values[[k]], lambda at: np.repeat(0.5 * at, 3, axis=1))
+    for canvas in (together, apart):
+        painted = np.isfinite(canvas.depth)
+        assert painted.sum() == pytest.approx(0.5 * 20 * 20, rel=0.05)
+        np.testing.assert_allclose(canvas.depth[painted], 1.0, rtol=1e-12)
+        np.testing.assert_allclose(canvas.picture[painted], 0.5, rtol=1e-12)
+        assert (canvas.picture[~painted] == 1.0).all()
+
+
+def test_a_triangle_seen_from_the_side_leaves_the_picture_as_it_is() -> None:
+    canvas = front()
+    level = TRIANGLE[None][..., [0, 2, 1]] + [0.0, 0.5, 0.0]
+    canvas.paint(level, np.zeros((1, 3, 1)), lambda at: np.zeros((len(at), 3)))
+    assert (canvas.picture == 1.0).all()
+
+
+def test_lines_behind_what_is_painted_are_not_shown() -> None:
+    canvas = front()
+    canvas.paint(TRIANGLE[None] + [0.0, 0.0, 0.5], np.zeros((1, 3, 1)), lambda at: np.zeros((len(at), 3)))
+    points = np.array([[0.2, 0.2, 0.0], [0.2, 0.2, 0.45], [0.2, 0.2, 1.0], [0.9, 0.9, 0.0]])
+    assert canvas.shows(points, 0.1).tolist() == [False, True, True, True]
+
+
+def test_bodies_are_lit_from_above_and_a_path_is_drawn(tilted: Results) -> None:
     (axes,) = dry_space_picture(tilted, [0.5], view_plane(tilted)).axes
-    assert not axes.images
-    assert len(axes.collections) == 3
-
-
-def test_what_is_nearer_hides_what_is_behind() -> None:
-    plane, flat = ViewPlane.coordinate_plane(0, 1, 3), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    near, far, box = flat + [0.0, 0.0, 1.0], flat, np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
-    none = np.zeros((0, 3, 3))
-    axes = Figure().add_subplot()
-    draw_space(axes, Space(np.array([near, far]), none, box, none, none), plane)
-    last = axes.collections[0].get_paths()[-1].vertices[:3]
-    np.testing.assert_allclose(last, Camera.place(plane).seen(near, box))
-
-
-def test_matplotlib_lights_bodies_from_above(tilted: Results, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rigidfluid.post.reports.space_view.pyvista_images", lambda *_: None)
-    (axes,) = dry_space_picture(tilted, [0.5], view_plane(tilted)).axes
-    surfaces = axes.collections[0]
-    brightness = surfaces.get_facecolor()[:, 0] / to_rgb(SOLID)[0]
+    image = axes.images[0].get_array()[..., 0]
+    brightness = image[image < 1.0] / to_rgb(SOLID)[0]
     assert brightness.max() == pytest.approx(1.0, abs=0.02)
     assert brightness.min() == pytest.approx(0.4, abs=0.02)
+    rows = np.nonzero(image < 1.0)[0]
+    upper, lower = (image[row][image[row] < 1.0].mean() for row in (rows.max() - 5, rows.min() + 5))
+    assert upper > lower
+    assert len(axes.collections) == 13
+    (path,) = (c for c in axes.collections if to_rgb(c.get_edgecolor()[0]) == to_rgb(VERMILLION))
+    assert len(path.get_segments()) > 0
 
 
 @pytest.fixture(scope="module")
@@ -211,8 +248,7 @@ def wet(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_report_of_a_3d_flow(wet: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rigidfluid.post.reports.space_view.pyvista_images", lambda *_: None)
+def test_a_report_of_a_3d_flow(wet: Path) -> None:
     names = {path.name for path in report(wet, plane="xz", follow="ball")}
     flow = {"speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "space"}
     assert {f"{name}.png" for name in flow} <= names
