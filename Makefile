@@ -7,7 +7,7 @@ PLUGINS := $(wildcard plugins/*)
 # Two processes have half of the tests each; the first that is done takes half of what the other has left. A test that
 # hangs ends its process, and the other goes on and names it.
 PYTEST := $(BIN)/pytest -n 2 --dist worksteal --timeout-method thread
-# Files in which tests need plug-ins or PyVista, and files in which they need DOLFINx.
+# Files in which tests need plug-ins, or PyVista as another reader of fields, and files in which they need DOLFINx.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi

@@ -11,9 +11,10 @@ from page_tools.kept_run import Run, keep_run
 from page_tools.places import RUNS, SCENES, STUDIES
 from page_tools.record import Recorder, read_record
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.studies import load_study, run_study
 from rigidfluid.post.studies.results import Results
-from rigidfluid.post.studies.run import TABLE, StudyProgress
+from rigidfluid.post.studies.run import TABLE
 
 
 class Work:
@@ -69,7 +70,7 @@ class Work:
         print(f"{self.folder.name}: study {name}", flush=True)
         recorder = Recorder(folder, resumed=(folder / TABLE).exists() and not self._fresh)
 
-        def observe(now: StudyProgress) -> None:
+        def observe(now: RunsProgress) -> None:
             if now.done.is_integer():
                 recorder.note()
 

@@ -29,11 +29,10 @@ if TYPE_CHECKING:
     from rigidfluid.core.output.history import History
     from rigidfluid.core.run.run import Progress
     from rigidfluid.core.scene.scene import Scene
-    from rigidfluid.post.comparison.compare import CompareProgress
     from rigidfluid.post.comparison.comparison import Comparison
     from rigidfluid.post.insertion.figures import Figures as InsertionFigures
+    from rigidfluid.post.progress import RunsProgress
     from rigidfluid.post.studies.results import Results
-    from rigidfluid.post.studies.run import StudyProgress
 
 FOUND_ERRORS = 1
 BAD_INPUT = 2
@@ -199,7 +198,7 @@ def compare(
     with _reported("The same command goes on."):
         from rigidfluid.post.comparison import compare as compare_backends
 
-        with _compare_bar() as show:
+        with _runs_bar("compare") as show:
             comparison, written = compare_backends(
                 scene, backends or [], assignments or [], out, fresh=not resume, progress=show
             )
@@ -269,7 +268,7 @@ def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> N
 
         loaded = load_study(study)
         folder = out or Path("out") / loaded.name
-        with _study_bar(loaded.name) as show:
+        with _runs_bar(loaded.name) as show:
             results, written = run_study(loaded, folder, fresh=not resume, progress=show)
         _print_study(results)
         _print(f"wrote to {folder}: {', '.join(path.name for path in written)}")
@@ -365,19 +364,7 @@ def _mesh_failures(failed: int) -> str:
 
 
 @contextmanager
-def _study_bar(name: str) -> Iterator[Callable[[StudyProgress], None]]:
-    with _runs_bar(name) as update:
-        yield lambda now: update(now.done, now.total, now.settings)
-
-
-@contextmanager
-def _compare_bar() -> Iterator[Callable[[CompareProgress], None]]:
-    with _runs_bar("compare") as update:
-        yield lambda now: update(now.done, now.total, now.backend)
-
-
-@contextmanager
-def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
+def _runs_bar(name: str) -> Iterator[Callable[[RunsProgress], None]]:
     """Yield a function that shows in a bar how many runs are done, out of how many, and a word on the present one."""
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
@@ -393,9 +380,9 @@ def _runs_bar(name: str) -> Iterator[Callable[[float, int, str], None]]:
     with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(name, total=None, now="")
 
-        def show(done: float, total: int, about: str) -> None:
-            text = f"run {min(int(done) + 1, total)} of {total}: {about}"
-            bar.update(task, total=total, completed=done, now=text)
+        def show(now: RunsProgress) -> None:
+            text = f"run {min(int(now.done) + 1, now.total)} of {now.total}: {now.about}"
+            bar.update(task, total=now.total, completed=now.done, now=text)
 
         yield show
 

@@ -40,6 +40,9 @@ PARTS = {
 """What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
 of joints are tables in a scene."""
 
+POST = {"reports": "", "movies": "reports", "insertion": "reports", "studies": "reports", "comparison": "reports"}
+"""What each room of post imports from it, besides modules that are in none of them."""
+
 
 def imports(path: Path) -> Iterator[str]:
     """All that a module imports from rigidfluid, for type checkers and within functions too."""
@@ -80,6 +83,13 @@ def test_nothing_imports_the_command_line_and_what_is_for_commands_alone() -> No
     users = {path.name for path in paths if {"rigidfluid.commands", "rigidfluid.plugin_commands"} & set(imports(path))}
     assert users == {"cli.py"}
     assert [path.name for path in paths if "rigidfluid.cli" in imports(path)] == []
+
+
+@pytest.mark.parametrize("room", POST)
+def test_a_room_of_post_imports_reports_alone(room: str) -> None:
+    names = [name.split(".") for path in (SOURCE / "post" / room).rglob("*.py") for name in imports(path)]
+    others = {name[2] for name in names if name[1] == "post" and (SOURCE / "post" / name[2]).is_dir()}
+    assert others <= {room, *POST[room].split()}
 
 
 def test_every_room_is_in_the_table_of_rooms() -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 from rigidfluid.core.output.writer import writing
@@ -15,17 +14,9 @@ from rigidfluid.post.comparison.differences import Pair, pair
 from rigidfluid.post.comparison.page import write_page
 from rigidfluid.post.comparison.runs import Run, backend_run
 from rigidfluid.post.comparison.scenes import backend_scenes
+from rigidfluid.post.progress import Observer, begin_run
 
 TABLE = "comparison.json"
-
-
-@dataclass(frozen=True, slots=True)
-class CompareProgress:
-    """Progress of a comparison: runs ``done``, a part of the present one included, of ``total``; the ``backend``."""
-
-    done: float
-    total: int
-    backend: str
 
 
 def compare(
@@ -35,7 +26,7 @@ def compare(
     out: Path | None = None,
     *,
     fresh: bool = False,
-    progress: Callable[[CompareProgress], None] | None = None,
+    progress: Observer | None = None,
 ) -> tuple[Comparison, list[Path]]:
     """Run a scene once with each of the ``backends``, in processes of their own, and compare the results.
 
@@ -47,7 +38,7 @@ def compare(
     scenes = backend_scenes(path, backends, overrides)
     name = scenes[backends[0]].name
     out = Path("out") / f"{name}_compare" if out is None else Path(out)
-    runs = _runs(scenes, out, fresh, progress or (lambda _: None))
+    runs = _runs(scenes, out, fresh, progress)
     comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
     with writing(out / TABLE):
         text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
@@ -55,21 +46,12 @@ def compare(
     return comparison, [out / TABLE, *write_page(comparison, name, out)]
 
 
-def _runs(
-    scenes: dict[str, Scene], out: Path, fresh: bool, progress: Callable[[CompareProgress], None]
-) -> tuple[Run, ...]:
-    runs: list[Run] = []
-    for backend, scene in scenes.items():
-        show = _shower(progress, len(runs), len(scenes), backend)
-        show(0.0)
+def _runs(scenes: dict[str, Scene], out: Path, fresh: bool, progress: Observer | None) -> tuple[Run, ...]:
+    runs = []
+    for number, (backend, scene) in enumerate(scenes.items()):
+        show = begin_run(progress, number, len(scenes), backend)
         runs.append(backend_run(backend, scene, out, fresh=fresh, progress=show))
     return tuple(runs)
-
-
-def _shower(
-    progress: Callable[[CompareProgress], None], number: int, total: int, backend: str
-) -> Callable[[float], None]:
-    return lambda part: progress(CompareProgress(number + part, total, backend))
 
 
 def _command(path: str | Path, backends: Sequence[str], overrides: Sequence[str]) -> str:

@@ -96,13 +96,12 @@ def pair(reference: tuple[str, Results], other: tuple[str, Results]) -> Pair:
 def histories(results: Results) -> Histories:
     """Histories of the quantities that a comparison of runs takes."""
     named = columns(results.model.dimension)["bodies"]
-    orientation = [name for name in ("angle", "qw", "qx", "qy", "qz") if name in named]
     spin = [name for name in ("w", "wx", "wy", "wz") if name in named]
     energy = results.energy["kinetic"] + results.energy["contact"]
     return {
         "position": results.vectors(""),
         "velocity": results.vectors("v"),
-        ORIENTATION: np.stack([results.bodies[name] for name in orientation], axis=-1),
+        ORIENTATION: results.orientation,
         "spin": np.stack([results.bodies[name] for name in spin], axis=-1),
         "hydrodynamic_force": results.vectors("f"),
         ENERGY: energy[:, None, None],

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
-
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
@@ -11,9 +9,10 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.post.insertion.figures import BINS, Figures
 from rigidfluid.post.reports.scale import COLOURMAP
+from rigidfluid.post.reports.slice import WHOLE, Slice, cut_faces
 from rigidfluid.post.reports.style import BLACK, BLUE, BODY, PALETTE, new_figure
 
 _FINE = 0.25
@@ -65,34 +64,19 @@ def _add_slice(figure: Figure, mesh: Mesh, system: System) -> None:
     lower, upper = system.meshed(system.pose).extent
     axis = int(np.argmin(upper - lower))
     centres = system.pose.position if len(system.bodies) else 0.5 * (lower + upper)[None]
-    polygons, quality = sliced(mesh, axis, float(np.median(centres[:, axis])))
+    across, through = np.eye(3)[axis], np.median(centres, axis=0)
+    cut = Slice.cut(((mesh.points - through) @ across)[mesh.cells], WHOLE)
     kept = np.delete(np.arange(3), axis)
     axes = figure.add_subplot(1, 2, 2, aspect="equal")
-    drawn = PolyCollection([polygon[:, kept] for polygon in polygons], edgecolors=BLACK, linewidths=0.2, cmap=COLOURMAP)
-    drawn.set_array(quality)
-    drawn.set_clim(0.0, 1.0)
+    triangles = cut.values(mesh.points[mesh.cells])[..., kept]
+    quality = cell_quality(mesh.points, mesh.cells[cut.cell])
+    drawn = PolyCollection(list(triangles), cmap=COLOURMAP, antialiaseds=False, array=quality, clim=(0.0, 1.0))
     axes.add_collection(drawn)
+    edges = cut_faces(mesh.points, mesh.cells, across, through)[..., kept]
+    axes.add_collection(LineCollection(list(edges), colors=BLACK, linewidths=0.2))
     axes.autoscale()
     axes.set(xlabel=f"{'xyz'[kept[0]]} [length]", ylabel=f"{'xyz'[kept[1]]} [length]")
     figure.colorbar(drawn, ax=axes, label="quality [1]", shrink=0.7)
-
-
-def sliced(mesh: Mesh, axis: int, height: float) -> tuple[list[FloatArray], FloatArray]:
-    """Polygons, of 3 or 4 corners in space, in which a plane across an axis cuts cells, and those cells' quality."""
-    above = mesh.points[:, axis] > height
-    cut = np.flatnonzero(above[mesh.cells].any(axis=1) & ~above[mesh.cells].all(axis=1))
-    polygons = [_section(mesh.points[cell], axis, height) for cell in mesh.cells[cut]]
-    return polygons, cell_quality(mesh.points, mesh.cells[cut])
-
-
-def _section(corners: FloatArray, axis: int, height: float) -> FloatArray:
-    """The corners of the section through a tetrahedron (4, 3), in order round their middle."""
-    offset = corners[:, axis] - height
-    pairs = [(a, b) for a, b in combinations(range(4), 2) if (offset[a] > 0.0) != (offset[b] > 0.0)]
-    points = np.array([(offset[b] * corners[a] - offset[a] * corners[b]) / (offset[b] - offset[a]) for a, b in pairs])
-    around = np.delete(points - points.mean(axis=0), axis, axis=1)
-    order: IntArray = np.argsort(np.arctan2(around[:, 1], around[:, 0]))
-    return np.asarray(points[order])
 
 
 def histogram(figures: Figures) -> Figure:

@@ -17,9 +17,7 @@ _GRID = 80
 
 def rotations(results: Results, state: int) -> FloatArray:
     """From the bodies' frames to space, (n, d, d)."""
-    names = ("angle",) if results.system.dimension == 2 else ("qw", "qx", "qy", "qz")
-    orientation = np.stack([results.bodies[name][state] for name in names], axis=-1)
-    return rotation_matrices(orientation)
+    return rotation_matrices(results.orientation[state])
 
 
 def cuts(results: Results, state: int, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:

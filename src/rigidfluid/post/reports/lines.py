@@ -20,6 +20,7 @@ from rigidfluid.post.reports.style import (
     PURPLE,
     SKY,
     VERMILLION,
+    fluid_and_contacts,
     new_figure,
     time_panels,
 )
@@ -85,17 +86,13 @@ def gap_plot(results: Results) -> Figure:
 
 def force_plot(results: Results) -> Figure:
     """The fluid's force and the contact force side by side, all components to the same scale."""
-    figure = new_figure(8.0, 2.3 * len(results.axes) + 0.5)
-    panels = figure.subplots(len(results.axes), 2, sharex=True, sharey=True)
+    figure, panels = fluid_and_contacts(len(results.axes))
     fluid, contact = results.vectors("f"), results.vectors("cf")
     for k, (left, right) in enumerate(panels):
         draw_bodies(left, results.time, fluid[..., k], results.names)
         draw_bodies(right, results.time, contact[..., k], results.names)
         left.set_ylabel(f"{results.axes[k]}-force [force]")
         _draw_weight(left, right, results, k)
-    for column, title in enumerate(("from the fluid", "from contacts")):
-        panels[0][column].set_title(title)
-        panels[-1][column].set_xlabel("time [time]")
     add_legend(figure)
     return figure
 

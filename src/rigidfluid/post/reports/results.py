@@ -93,6 +93,12 @@ class Results:
             raise OutputError("--follow", name, f"a body: {', '.join(self.names[:20])}", "Name one of them.")
         return self.names.index(name)
 
+    @property
+    def orientation(self) -> FloatArray:
+        """Angles (s, n, 1), in 3D quaternions (s, n, 4)."""
+        names = ("angle",) if self.system.dimension == 2 else ("qw", "qx", "qy", "qz")
+        return np.stack([self.bodies[name] for name in names], axis=-1)
+
     def vectors(self, prefix: str) -> FloatArray:
         """A vector of the table of bodies, (s, n, d): ``""`` position, ``v`` velocity, ``f`` fluid, ``cf`` contact."""
         return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.post.reports.curves import add_legend, draw_bodies
 from rigidfluid.post.reports.results import Results
-from rigidfluid.post.reports.style import new_figure, time_panels
+from rigidfluid.post.reports.style import fluid_and_contacts, time_panels
 
 _TURNED = 0.01
 """Balls that turn by less [rad] are not shown, and nothing is where no body turns by as much."""
@@ -20,7 +20,7 @@ def turned(results: Results) -> FloatArray:
     if results.system.dimension == 2:
         angle = results.bodies["angle"]
         return np.asarray(angle - angle[0])
-    now = np.stack([results.bodies[f"q{part}"] for part in "wxyz"], axis=-1)
+    now = results.orientation
     cosine = np.abs(np.sum(now * now[0], axis=-1))
     return np.asarray(2.0 * np.arccos(np.minimum(cosine, 1.0)))
 
@@ -54,15 +54,11 @@ def torque_plot(results: Results) -> Figure:
     chosen = turning(results)
     names = _names(results, chosen)
     parts = ("t",) if results.system.dimension == 2 else ("tx", "ty", "tz")
-    figure = new_figure(8.0, 2.3 * len(parts) + 0.7)
-    panels = figure.subplots(len(parts), 2, sharex=True, sharey=True, squeeze=False)
+    figure, panels = fluid_and_contacts(len(parts))
     for part, (left, right) in zip(parts, panels, strict=True):
         draw_bodies(left, results.time, results.bodies[part][:, chosen], names)
         draw_bodies(right, results.time, results.bodies["c" + part][:, chosen], names)
         left.set_ylabel(f"torque{' about ' + part[1:] if part[1:] else ''}\n[force·length]")
-    for column, title in enumerate(("from the fluid", "from contacts")):
-        panels[0][column].set_title(title)
-        panels[-1][column].set_xlabel("time [time]")
     add_legend(figure)
     return figure
 

@@ -13,7 +13,7 @@ from rigidfluid.post.reports.flow import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.scale import Quantity
-from rigidfluid.post.reports.slice import Slice, cut_cells, cut_faces
+from rigidfluid.post.reports.slice import EIGHTHS, Slice, cut_cells, cut_faces
 from rigidfluid.post.reports.view_plane import ViewPlane
 
 
@@ -84,7 +84,7 @@ class Section:
     def edges(self) -> FloatArray:
         """Edges of the cells as the plane shows them, (S, 2, 2), straight between corners."""
         if self.is_slice:
-            return self.plane.flat(cut_faces(self.fields, self.plane.normal, self.through))
+            return self.plane.flat(cut_faces(self.fields.points, self.fields.cells, self.plane.normal, self.through))
         return np.asarray(self.fields.points[corner_triangles(self.fields).edges])
 
     @cached_property
@@ -95,7 +95,7 @@ class Section:
     @cached_property
     def _slice(self) -> Slice:
         height = (self.fields.points - self.through) @ self.plane.normal
-        return Slice.cut(height[self.fields.cells])
+        return Slice.cut(height[self.fields.cells], EIGHTHS)
 
     @cached_property
     def _triangulation(self) -> Triangulation:

@@ -1,4 +1,4 @@
-"""Quadratic tetrahedra cut by a plane into triangles, and their faces into segments."""
+"""Tetrahedra cut by a plane into triangles, and their faces into segments."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ EIGHTHS = np.array(
     [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
 )
 """The nodes of the eight linear tetrahedra that a quadratic one is cut into."""
+
+WHOLE = np.arange(4)[None]
+"""A linear tetrahedron as it is."""
 
 _FACES = np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
 
@@ -37,9 +40,9 @@ class Slice:
     share: FloatArray
 
     @classmethod
-    def cut(cls, height: FloatArray) -> Slice:
-        """Cut cells whose nodes have ``height`` (M, 10) over the plane, each in eight linear parts."""
-        parts = height[:, EIGHTHS].reshape(-1, 4)
+    def cut(cls, height: FloatArray, pieces: IntArray) -> Slice:
+        """Cut cells whose nodes have ``height`` (M, b) over the plane, each in ``pieces`` (k, 4) between its nodes."""
+        parts = height[:, pieces].reshape(-1, 4)
         number, corners, share = [], [], []
         for above, triangles in _TRIANGLES.items():
             chosen = np.flatnonzero((parts >= 0.0).sum(axis=1) == above)
@@ -48,9 +51,9 @@ class Slice:
             part = np.repeat(chosen, len(triangles))
             at_ends = parts[part[:, None, None], ends]
             number.append(part)
-            corners.append(EIGHTHS[(part % 8)[:, None, None], ends])
+            corners.append(pieces[(part % len(pieces))[:, None, None], ends])
             share.append(at_ends[..., 0] / (at_ends[..., 0] - at_ends[..., 1]))
-        return cls(np.concatenate(number) // 8, np.concatenate(corners), np.concatenate(share))
+        return cls(np.concatenate(number) // len(pieces), np.concatenate(corners), np.concatenate(share))
 
     def values(self, values: FloatArray) -> FloatArray:
         """Values (M, b, …) at the nodes of the cells as (T, 3, …) at the corners of the triangles."""
@@ -67,10 +70,10 @@ def cut_cells(fields: Fields, normal: FloatArray, through: FloatArray) -> Fields
     return Fields(fields.points[kept], cells, fields.velocity[kept], fields.pressure[kept])
 
 
-def cut_faces(fields: Fields, normal: FloatArray, through: FloatArray) -> FloatArray:
-    """Segments (S, 2, 3) in which the plane cuts the faces between corners of the cells."""
-    faces = np.unique(np.sort(fields.cells[:, _FACES].reshape(-1, 3), axis=1), axis=0)
-    height = ((fields.points - through) @ normal)[faces]
+def cut_faces(nodes: FloatArray, cells: IntArray, normal: FloatArray, through: FloatArray) -> FloatArray:
+    """Segments (S, 2, 3) in which the plane cuts the faces between corners of cells (M, b) of ``nodes`` (N, 3)."""
+    faces = np.unique(np.sort(cells[:, _FACES].reshape(-1, 3), axis=1), axis=0)
+    height = ((nodes - through) @ normal)[faces]
     above = height >= 0.0
     mixed = above.any(axis=1) & ~above.all(axis=1)
     faces, height, above = faces[mixed], height[mixed], above[mixed]
@@ -78,5 +81,5 @@ def cut_faces(fields: Fields, normal: FloatArray, through: FloatArray) -> FloatA
     one, two = alone[:, None], (alone[:, None] + [1, 2]) % 3
     h, others = np.take_along_axis(height, one, axis=1), np.take_along_axis(height, two, axis=1)
     share = (h / (h - others))[..., None]
-    first = fields.points[np.take_along_axis(faces, one, axis=1)]
-    return np.asarray((1.0 - share) * first + share * fields.points[np.take_along_axis(faces, two, axis=1)])
+    first = nodes[np.take_along_axis(faces, one, axis=1)]
+    return np.asarray((1.0 - share) * first + share * nodes[np.take_along_axis(faces, two, axis=1)])

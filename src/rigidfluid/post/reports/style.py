@@ -54,6 +54,16 @@ def time_panels(rows: int, height: float = 2.3) -> tuple[Figure, list[Axes]]:
     return figure, panels
 
 
+def fluid_and_contacts(rows: int) -> tuple[Figure, Any]:
+    """A figure of panels over time (rows, 2), all to one scale: what the fluid does beside what contacts do."""
+    figure = new_figure(8.0, 2.3 * rows + 0.6)
+    panels = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+    for column, title in enumerate(("from the fluid", "from contacts")):
+        panels[0][column].set_title(title)
+        panels[-1][column].set_xlabel("time [time]")
+    return figure, panels
+
+
 def save(figure: Figure, folder: Path, name: str, kinds: Sequence[str]) -> list[Path]:
     """Write a figure in each of ``kinds``; equal figures give equal files."""
     paths = [folder / f"{name}.{kind}" for kind in kinds]

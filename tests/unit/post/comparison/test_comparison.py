@@ -23,12 +23,12 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.post.comparison import child, compare, runs
-from rigidfluid.post.comparison.compare import CompareProgress
 from rigidfluid.post.comparison.differences import interpolated, pair
 from rigidfluid.post.comparison.figures import difference_plot, most_different
 from rigidfluid.post.comparison.page import MOST_BODIES
 from rigidfluid.post.comparison.scenes import backend_scenes
 from rigidfluid.post.comparison.tables import meaning
+from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.results import Results
 
@@ -464,9 +464,9 @@ def test_a_run_that_ends_in_no_numbers(started: list[tuple[str, bool]], tmp_path
 
 
 def test_progress(started: list[tuple[str, bool]], tmp_path: Path) -> None:
-    shown: list[CompareProgress] = []
+    shown: list[RunsProgress] = []
     compare(BOUNCE, ["dry", "pushed"], SHORT, tmp_path, progress=shown.append)
-    assert [(now.done, now.total, now.backend) for now in shown] == [
+    assert [(now.done, now.total, now.about) for now in shown] == [
         (0.0, 2, "dry"), (1.0, 2, "dry"), (1.0, 2, "pushed"), (2.0, 2, "pushed")
     ]  # fmt: skip
 

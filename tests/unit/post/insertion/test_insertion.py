@@ -15,14 +15,14 @@ from typer.testing import CliRunner
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.errors import MeshError, SceneError
 from rigidfluid.post.insertion import insert
-from rigidfluid.post.insertion.pictures import sliced
+from rigidfluid.post.reports.slice import WHOLE, Slice, cut_faces
 
 NAMES = ["ball", "egg", *"abcdef"]
 RECTANGLE = {
@@ -146,10 +146,14 @@ def test_level_sets_lose_corners(tmp_path: Path) -> None:
 
 def test_a_slice_through_cells_is_as_large_as_the_domain_there() -> None:
     mesh = small_mesh(3)
-    polygons, quality = sliced(mesh, 2, 0.8)
-    area = sum(0.5 * abs(np.cross(np.roll(p, -1, 0) - p[0], p - p[0])[:, 2].sum()) for p in polygons)
-    assert area == pytest.approx(4.0, rel=1e-10)  # no body is there
-    assert quality.min() >= cell_quality(mesh.points, mesh.cells).min()
+    cut = Slice.cut((mesh.points[:, 2] - 0.8)[mesh.cells], WHOLE)
+    triangles = cut.values(mesh.points[mesh.cells])
+    np.testing.assert_allclose(triangles[..., 2], 0.8, rtol=1e-12)
+    sides = triangles[:, 1:] - triangles[:, :1]
+    assert 0.5 * np.abs(np.cross(sides[:, 0], sides[:, 1])[:, 2]).sum() == pytest.approx(4.0, rel=1e-10)  # no body
+    edges = cut_faces(mesh.points, mesh.cells, np.array([0.0, 0.0, 1.0]), np.full(3, 0.8))
+    assert np.linalg.norm(np.diff(edges, axis=1), axis=2).sum() > 8.0
+    np.testing.assert_allclose(edges[..., 2], 0.8, rtol=1e-12)
 
 
 def test_a_report_of_a_mesh_in_space(tmp_path: Path) -> None:

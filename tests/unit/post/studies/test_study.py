@@ -21,6 +21,7 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, SceneError
+from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.reports.style import PALETTE
 from rigidfluid.post.studies import load_study, run_study, scene_subject
 from rigidfluid.post.studies.figure import check_figure, read_figure
@@ -29,7 +30,6 @@ from rigidfluid.post.studies.model import ErrorTable, FigureTable, Settings, Stu
 from rigidfluid.post.studies.plot import error_plot
 from rigidfluid.post.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.post.studies.rows import short_text
-from rigidfluid.post.studies.run import StudyProgress
 from rigidfluid.post.studies.scene_subject import SceneSubject
 from rigidfluid.post.studies.subject import Outcome
 from rigidfluid.post.studies.table import read_rows
@@ -296,14 +296,14 @@ def test_runs_without_an_error_to_draw(write: Write, tmp_path: Path) -> None:
 
 
 def test_progress_grows_to_the_number_of_runs(write: Write, tmp_path: Path) -> None:
-    seen: list[StudyProgress] = []
+    seen: list[RunsProgress] = []
     run_study(load_study(write()), tmp_path / "out", progress=seen.append)
     done = [now.done for now in seen]
     assert done == sorted(done)
     assert (done[0], done[-1]) == (0, 6)
     assert 0.5 in done
     assert {now.total for now in seen} == {6}
-    assert seen[0].settings == "time.step 0.002, body.0.density 1.0"
+    assert seen[0].about == "time.step 0.002, body.0.density 1.0"
 
 
 def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
