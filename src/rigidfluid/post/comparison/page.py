@@ -7,15 +7,14 @@ from html import escape
 from pathlib import Path
 
 import matplotlib
-from matplotlib.figure import Figure
 
 from rigidfluid.core.output.writer import writing
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.comparison.comparison import Comparison
 from rigidfluid.post.comparison.figures import body_plot, difference_plot, most_different
 from rigidfluid.post.comparison.tables import HEADER, cost_rows, difference_rows, meaning
-from rigidfluid.post.reports.html import document, grid, picture
-from rigidfluid.post.reports.style import STYLE, save
+from rigidfluid.post.reports.html import Picture, document, grid, save_pictures
+from rigidfluid.post.reports.style import STYLE
 
 PAGE = "comparison.html"
 MOST_BODIES = 4
@@ -32,31 +31,27 @@ def write_page(comparison: Comparison, name: str, out: Path) -> list[Path]:
     Returns the files written; raises OutputError if the disk refuses.
     """
     with matplotlib.rc_context(STYLE), writing(out / PAGE):
-        shown, written = [], []
-        for plot, caption, figure in _plots(comparison):
-            paths = save(figure, out, plot, ("png", "svg"))
-            shown.append((paths[0], caption))
-            written += paths
+        written, shown = save_pictures(_plots(comparison), out)
         (out / PAGE).write_text(_page(comparison, name, shown), encoding="utf-8")
     return [*written, out / PAGE]
 
 
-def _plots(comparison: Comparison) -> Iterator[tuple[str, str, Figure]]:
+def _plots(comparison: Comparison) -> Iterator[Picture]:
     if not comparison.pairs:
         return
     caption = f"Largest distance of any body from {comparison.pairs[0].reference} over time."
-    yield "differences", caption, difference_plot(comparison.pairs)
+    yield "differences", caption, difference_plot(comparison.pairs), ("png", "svg")
     for number in most_different(comparison.pairs, MOST_BODIES):
         caption = f"{comparison.bodies[number]}: position, velocity and the fluid's force over time, by component."
-        yield f"body_{number}", caption, body_plot(comparison.complete, number)
+        yield f"body_{number}", caption, body_plot(comparison.complete, number), ("png", "svg")
 
 
-def _page(comparison: Comparison, name: str, plots: list[tuple[Path, str]]) -> str:
+def _page(comparison: Comparison, name: str, plots: list[str]) -> str:
     parts = [
         f"<pre>{escape(comparison.command)}</pre>",
         *(f'<p class="note">{escape(note)}</p>' for note in _notes(comparison)),
         *_differences(comparison),
-        *(picture(path, caption) for path, caption in plots),
+        *plots,
         "<h2>Cost</h2>",
         f"<p>{_SECONDS}</p>",
         grid(("", *(run.backend for run in comparison.runs)), cost_rows(comparison)),

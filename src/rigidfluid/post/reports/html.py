@@ -7,6 +7,13 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 
+from matplotlib.figure import Figure
+
+from rigidfluid.post.reports.style import save
+
+Picture = tuple[str, str, Figure, tuple[str, ...]]
+"""Name, caption, figure and file formats, the first of them PNG."""
+
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 h1, h2 { line-height: 1.2; } h2 { margin-top: 2.2rem; }
@@ -37,6 +44,17 @@ def grid(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     head = "".join(f'<th scope="col" class="n">{escape(name)}</th>' for name in header)
     lines = (f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows)
     return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n" + "\n".join(lines) + "\n</tbody>\n</table>"
+
+
+def save_pictures(pictures: Iterable[Picture], folder: Path) -> tuple[list[Path], list[str]]:
+    """Write pictures into a folder, each when it has been drawn; return the files, and each one's PNG embedded."""
+    files: list[Path] = []
+    embedded: list[str] = []
+    for name, caption, figure, kinds in pictures:
+        written = save(figure, folder, name, kinds)
+        files += written
+        embedded.append(picture(written[0], caption))
+    return files, embedded
 
 
 def picture(path: Path, caption: str) -> str:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
-from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.reports.coefficients import Figures
-from rigidfluid.post.reports.html import document, grid, picture, table
+from rigidfluid.post.reports.html import document, grid, table
 
 _MOST_BODIES = 8
 _ENERGIES = {
@@ -42,11 +41,11 @@ _SHARES = {
 
 def page(
     summary: Mapping[str, Any],
-    pictures: Sequence[tuple[Path, str]],
+    pictures: Sequence[str],
     notes: Iterable[str],
     coefficients: Sequence[tuple[str, Figures]],
 ) -> str:
-    """Compose the HTML page from summary.json, pictures (PNG files) with captions, notes, and coefficients by body."""
+    """Compose the HTML page from summary.json, embedded pictures, notes, and coefficients by body."""
     scene = escape(scene_text(summary["scene"]))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
@@ -54,7 +53,7 @@ def page(
         table(_figures(summary)),
         *_cycles(summary.get("cycles", {})),
         *_coefficients(coefficients),
-        *(picture(path, caption) for path, caption in pictures),
+        *pictures,
         "<h2>Energy balance</h2>",
         table(_energy(summary["energy"])),
         "<h2>Cost</h2>",

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 
 from rigidfluid.core.output.writer import writing
 from rigidfluid.core.setup.model import Model
 from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.post.reports.coefficients import Figures, figures, reference
 from rigidfluid.post.reports.contact_plot import contact_plot
+from rigidfluid.post.reports.html import Picture, save_pictures
 from rigidfluid.post.reports.lines import (
     energy_plot,
     force_plot,
@@ -39,7 +39,7 @@ from rigidfluid.post.reports.pictures import (
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
-from rigidfluid.post.reports.style import STYLE, save
+from rigidfluid.post.reports.style import STYLE
 from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
 
 FOLDER, PAGE = "report", "report.html"
@@ -57,23 +57,14 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     results = read_results(out, model=model)
     seen = view_plane(results, plane)
     body = None if follow is None else results.number_of(follow)
-    written: list[Path] = []
-    shown: list[tuple[Path, str]] = []
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
         (out / FOLDER).mkdir(exist_ok=True)
-        for name, caption, figure, kinds in _pictures(results, seen, body):
-            paths = save(figure, out / FOLDER, name, kinds)
-            written += paths
-            shown.append((paths[0], caption))
+        written, shown = save_pictures(_pictures(results, seen, body), out / FOLDER)
         (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
     return [*written, out / PAGE]
 
 
-_Picture = tuple[str, str, Figure, tuple[str, ...]]
-"""Name, caption, figure and file formats."""
-
-
-def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[Picture]:
     """Pictures of the fluid; each is made when it is asked for."""
     raster, watched = ("png",), nearest_body(results) if body is None else body
     where = _slice_location(results, plane, watched)
@@ -108,7 +99,7 @@ def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
     return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
 
 
-def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[_Picture]:
+def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[Picture]:
     """All pictures; each is made when it is asked for."""
     both = ("png", "svg")
     if results.series:
