@@ -211,7 +211,7 @@ def test_what_is_nearer_hides_what_is_behind_whatever_is_painted_first(heights: 
 
 def test_a_triangle_seen_from_the_side_leaves_the_picture_as_it_is() -> None:
     canvas = front()
-    level = TRIANGLE[None][..., [0, 2, 1]] + [0.0, 0.5, 0.0]
+    level = TRIANGLE[None][..., [0, 2, 1]] + [0.0, 0.525, 0.0]  # through the middles of points
     canvas.paint(level, np.zeros((1, 3, 1)), lambda at: np.zeros((len(at), 3)))
     assert (canvas.picture == 1.0).all()
 
