@@ -30,6 +30,9 @@ otherwise, a ball has a radius of 0.1 and a density of 1, boxes have a side of 1
   worked by any time. What viscosity took hides nothing of what was created, but what was lost
   before may. Of what was lost, `path_friction` is taken off: friction in impacts shorter than a step, which
   the balance does not see. It excuses no energy that was created.
+* energy lost untold: that of a run that names no body that turned too far in a step. A disk that spins at 1e4
+  rad/s turns by 10 rad in a millisecond:
+  [why energy is lost by that](../numerics.md#flow-that-goes-round-with-a-body), and how it falls with the step.
 
 In a fluid at most 3 % may be created, with steps of a millisecond and below 1 %; and at most 30, 15, 7 and 4 % be lost
 with steps of 4, 2, 1 and .5 ms. A case that does not do what is demanded of it stays in the table, and says **no**.

@@ -12,6 +12,9 @@ from rigidfluid.core.run.remarks import Remark
 FARTHEST_TURN = 0.5
 """Turn in a step up to which next to nothing is lost of a flow that goes round with its body [rad]."""
 
+TOLERANCE = 0.003
+"""Tolerance by which steps find their length by themselves."""
+
 
 def turn_remarks(history: History) -> list[Remark]:
     """Warn of the body that turned most in a step, if that was much and steps too long have lost energy.
@@ -37,5 +40,5 @@ def turn_remarks(history: History) -> list[Remark]:
         f"{name!r} turned by up to {turn[worst]:.2g} rad in a step: flow that is carried round with it loses its "
         f"energy, and above 1 rad halving time.step may not show it"
     )
-    remedy = f"Set time.step to {enough:.2g} or less, {FARTHEST_TURN:g} rad a step."
+    remedy = f"Set time.step to {enough:.2g} or less, {FARTHEST_TURN:g} rad a step, or time.tolerance to {TOLERANCE:g}."
     return [Remark("warning", text, remedy)]

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 from extreme_wet import floor_hit
 
 import rigidfluid
 from rigidfluid.core.output.history import History
+from rigidfluid.core.run.turn_remarks import TOLERANCE
 
 pytestmark = pytest.mark.long
 
 SPIN = 1e4
 
 
-def spun(step: float) -> History:
+def spun(step: float, **time: float) -> History:
     """A disk that spins and crosses the box, until a little after it has hit the floor."""
     tables = floor_hit(step, "substeps", velocity=[0.0, -80.0], angular_velocity=[SPIN]).to_dict()
-    tables |= {"time": {"end": 0.003, "step": step}, "output": {"every": 0.003}}
+    tables |= {"time": {"end": 0.003, "step": step} | time, "output": {"every": 0.003}}
     return rigidfluid.run(rigidfluid.scene_from_dict(tables))
 
 
@@ -38,3 +40,17 @@ def test_halving_a_step_of_many_radians_does_not_help_and_the_step_that_is_named
     short = spun(named)
     assert short.summary["energy"]["lost"] < 0.005
     assert remarks(short) == []
+
+
+def test_steps_by_the_tolerance_that_is_named_keep_the_energy() -> None:
+    (remark,) = remarks(spun(1e-3))
+    assert remark["remedy"].endswith(f"or time.tolerance to {TOLERANCE:g}.")
+    by_tolerance = spun(1e-3, tolerance=TOLERANCE)
+    assert by_tolerance.summary["energy"]["lost"] < 0.005
+    assert remarks(by_tolerance) == []
+
+
+def test_steps_of_less_than_a_radian_lose_a_quarter_or_less_with_half_the_step() -> None:
+    lost = np.array([spun(step).summary["energy"]["lost"] for step in (6.25e-5, 3.125e-5, 1.5625e-5)])
+    assert lost[0] > 1e-4
+    assert np.all(lost[1:] < 0.25 * lost[:-1])
