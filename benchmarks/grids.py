@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.model.types import FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions
 

@@ -16,7 +16,8 @@ import numpy as np
 from nearest_facet import nearest_facet_distances
 from row_command import at_least, row_parser, show_rows
 
-from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.core.geometry.arrays import IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.field import DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology

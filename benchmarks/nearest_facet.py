@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.model.simplices import vertex_to_facet
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.simplices import vertex_to_facet
 
 
 def nearest_facet_distances(points: FloatArray, corners: FloatArray) -> FloatArray:

@@ -21,8 +21,9 @@ import ngsolve as ngs
 import numpy as np
 from ngsolve.krylovspace import GMRESSolver
 
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Mesh
 
 WAYS = ("umfpack", "imex", "reuse")
 RENEWED_EVERY = 20  # steps

@@ -11,8 +11,8 @@ from page_tools import Page, Run, Work, table
 
 from pages._slices import slices
 from rigidfluid.checks import check
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.post.reports.pictures import mesh_picture, vorticity_picture
 
 SCENE, LONG = "falling_ellipsoid.toml", 1

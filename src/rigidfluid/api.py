@@ -17,6 +17,23 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.fluid.conditions import (
+    BoundaryCondition,
+    NoSlip,
+    Periodic,
+    PrescribedPressure,
+    PrescribedVelocity,
+    Slip,
+)
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Plane, Surface
+from rigidfluid.core.geometry.wall import Wall, require_plane
 from rigidfluid.core.joints.along_coordinate import CoordinateDamper, CoordinateSpring, DrivenCoordinate
 from rigidfluid.core.joints.constraints import (
     Constraint,
@@ -35,18 +52,7 @@ from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_interface import SizeField
-from rigidfluid.core.model.conditions import (
-    BoundaryCondition,
-    NoSlip,
-    Periodic,
-    PrescribedPressure,
-    PrescribedVelocity,
-    Slip,
-)
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import (
     Body,
     Component,
@@ -58,20 +64,13 @@ from rigidfluid.core.model.interfaces import (
     PartOptions,
 )
 from rigidfluid.core.model.kinematics import Kinematics
-from rigidfluid.core.model.material import Material, Newtonian
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.model.surface import Plane, Surface
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
     Advance,
-    BoolArray,
     Contacts,
     Fields,
-    FloatArray,
     FluidState,
-    IntArray,
     Loads,
     Mesh,
     Motion,
@@ -82,7 +81,6 @@ from rigidfluid.core.model.types import (
     Twist,
     Wrench,
 )
-from rigidfluid.core.model.wall import Wall, require_plane
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, check_length, tables_by_name
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke

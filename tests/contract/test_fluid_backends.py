@@ -8,7 +8,8 @@ from scipy.sparse import identity
 
 from rigidfluid.backends.dolfinx import Dolfinx
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.model.types import Advance, FloatArray, FluidState, Mesh, Response, Step, Wrench
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Advance, FluidState, Mesh, Response, Step, Wrench
 from rigidfluid.testing import FluidBackendContract
 
 

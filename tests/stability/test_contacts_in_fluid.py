@@ -26,7 +26,8 @@ import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.proximity import travel
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.backends.scikit_fem import ScikitFem
+from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip, PrescribedPressure, PrescribedVelocity
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.topology import boundary_facets, orient
-from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedPressure, PrescribedVelocity
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.material import Newtonian
-from rigidfluid.core.model.types import CurvedEdges, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.testing.fluid.boxes import nobody
 from rigidfluid.testing.fluid.flow import Bodies, Flow
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.wall import Wall
 
 PAGE = Path(__file__).parents[2] / "docs" / "plugins.md"
 SECTION = PAGE.read_text(encoding="utf-8").partition("\n## A domain, from nothing\n")[2].partition("\n## ")[0]

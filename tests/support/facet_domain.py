@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.mechanics.facet_moments import facet_moments
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_moments import facet_moments
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 
 TUBE_RADIUS, BEND, LEG = 1.0, 3.0, 4.0
 

@@ -13,6 +13,8 @@ from facet_domain import along_the_tube, bent_tube, irregular_outline
 from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
@@ -23,9 +25,8 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis
 

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.joint import Joint, PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.model.joints import GroundLink
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.registry import JOINT, Registry
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 

@@ -7,7 +7,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.types import Mesh
 

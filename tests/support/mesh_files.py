@@ -9,7 +9,8 @@ from typing import Any
 import meshio
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.domains.mesh import MeshDomain, MeshOptions
 
 FLUID = 7

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.model.conditions import Periodic, no_pressure
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.material import Newtonian
+from rigidfluid.core.fluid.conditions import Periodic, no_pressure
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box
 from rigidfluid.testing.fluid.flow import Bodies, Flow

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import rigidfluid
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.scene.scene import Scene
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 DEGREES = 12
 """Terms of each series: ten digits where surfaces are a radius apart."""

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import BoolArray, FloatArray
 
 CORNERS = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]])
 

@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.ellipsoid_distance import closest_point
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 

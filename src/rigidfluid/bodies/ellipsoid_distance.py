@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.secular_equation import secular_image
-from rigidfluid.core.model.types import FloatArray
 
 _SMALLEST = 1e-100
 

@@ -6,11 +6,11 @@ from typing import NoReturn
 
 import numpy as np
 
-from rigidfluid.core.mechanics.facet_moments import facet_moments, unit_inertia
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors, enclosed_volume
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_moments import facet_moments, unit_inertia
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors, enclosed_volume
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 _LEAST_VOLUME = 1e-9
@@ -96,7 +96,7 @@ class FacetBody(Body):
         return np.concatenate([self.facets.points, points]) if few else np.asarray(points)
 
     def _refuse_crossings(self, facets: Facets) -> None:
-        from rigidfluid.core.model.crossings import first_crossing
+        from rigidfluid.core.geometry.crossings import first_crossing
 
         crossing = first_crossing(facets.points, facets.vertices)
         if crossing is not None:

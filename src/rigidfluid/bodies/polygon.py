@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.facet_body import FacetBody
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.mesher_unit import in_unit
 from rigidfluid.errors import SceneError
 
 Point = Annotated[list[float], Field(min_length=2, max_length=2)]

@@ -9,11 +9,11 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.bodies.facet_body import FacetBody
-from rigidfluid.core.model.facets import Facets, area_vectors
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.ridges import ridges_of
+from rigidfluid.core.geometry.stl_file import read_stl
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.ridges import ridges_of
-from rigidfluid.core.model.stl_file import read_stl
-from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
 _THINNEST = 1e-9

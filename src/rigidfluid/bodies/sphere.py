@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.types import FloatArray
 
 
 class SphereOptions(PartOptions):

@@ -27,12 +27,13 @@ from rigidfluid.core.contact.representative_contacts import (
 )
 from rigidfluid.core.contact.stiffness import greatest_stiffness
 from rigidfluid.core.contact.work_to_stop import share_left
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Contacts
 
 MOST_SHOWN = 8
 """Greatest number of kinds of pairs that one question reports."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.checks.finding import figure
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.setup.model import Model
 
 

@@ -11,9 +11,9 @@ from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.stepping import ACCURATE
 from rigidfluid.core.contact.loads import pair_values
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.run.impacts import HALVINGS, TOLERATED
 
 QUESTION = "energy-error"

@@ -10,7 +10,7 @@ from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.checks.remedies import strength_remedy
 from rigidfluid.checks.response import barrier, energy_along
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 QUESTION = "impact"
 _SLACK = 0.8

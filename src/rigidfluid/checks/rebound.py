@@ -13,8 +13,9 @@ from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.film_loss import REBOUND, braking
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.types import Contacts, Film, FloatArray
+from rigidfluid.core.model.types import Contacts, Film
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "rebound"

@@ -30,9 +30,10 @@ from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.core.case.scene_model import Case, model_of
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.setup.assemble import assemble, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts

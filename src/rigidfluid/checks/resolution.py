@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.response import rest_gap
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.scene.scene import MeshTable
 
 QUESTION = "cells"

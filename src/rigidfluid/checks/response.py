@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.representative_contacts import contacts_at_gaps
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.types import Contacts
 
 _HALVINGS = 60
 _ZOOMS = 3

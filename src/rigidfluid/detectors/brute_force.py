@@ -8,11 +8,12 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import Wall, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 
 Distance = Callable[[FloatArray], FloatArray]
 

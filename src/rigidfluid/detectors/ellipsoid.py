@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import Wall, is_round
 from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, is_round
 from rigidfluid.detectors.round_pieces import is_whole
 from rigidfluid.detectors.smooth_contacts import SmoothContacts
 from rigidfluid.errors import SceneError

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.secular_equation import secular_image
-from rigidfluid.core.model.types import BoolArray, FloatArray
 
 _SMALLEST = 1e-60
 _MOST_STEPS = 100

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.facet_faces import unit
-from rigidfluid.core.model.facet_surface import FacetSurface, Nearby
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_faces import unit
+from rigidfluid.core.geometry.facet_surface import FacetSurface, Nearby
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.detectors.facet_features import Features
 
 _BISECTIONS = 60

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.facet_faces import faces_of, unit
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
-from rigidfluid.core.model.ridges import Ridges, ridges_of
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facet_faces import faces_of, unit
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.ridges import Ridges, ridges_of
 
 _FLAT = 1e-9
 """Sine of the angle below which a facet goes on straight."""

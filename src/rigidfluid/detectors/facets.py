@@ -10,15 +10,16 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface, Nearby, nearby
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wall import Wall, is_round, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import in_order, select
-from rigidfluid.core.model.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, is_round, radius_of
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoid, ellipsoid_touches
 from rigidfluid.detectors.facet_features import Features, features_of
 from rigidfluid.detectors.round_pieces import is_whole
@@ -307,7 +308,7 @@ def _shallowest_piercing(a: _Facets, b: _Facets) -> Touches:
 
 def _piercing_edges(a: _Facets, b: _Facets) -> Touches:
     """Edges of a through facets of b."""
-    from rigidfluid.core.model.crossings import crossings
+    from rigidfluid.core.geometry.crossings import crossings
 
     facets, inside = b.solid.surface.facets, b.local(a.points)
     lower, upper = b.solid.surface.bounds

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.wall import is_round, radius_of
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import is_round, radius_of
 
 _ROUNDING = 1e-6
 """Relative error of a surface's area."""

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.wall import Wall, centre_of, is_round, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose
-from rigidfluid.core.model.wall import Wall, centre_of, is_round, radius_of
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.ellipsoid_in_hollow import farthest_points
 from rigidfluid.errors import StepError
 

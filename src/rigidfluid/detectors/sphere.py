@@ -7,12 +7,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_surface import nearby
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import Wall, radius_of
 from rigidfluid.core.model.contacts import in_order
-from rigidfluid.core.model.facet_surface import nearby
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.errors import SceneError
 
 SPREAD = 0.5

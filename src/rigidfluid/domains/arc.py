@@ -6,8 +6,8 @@ from math import acos, sqrt
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Plane, Surface
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Plane, Surface
 
 
 class Arc(Surface):

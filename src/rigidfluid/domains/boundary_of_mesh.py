@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets, place
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facets import Facets, place
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
 from rigidfluid.domains.naming import Part, list_parts
 from rigidfluid.errors import SceneError

@@ -9,16 +9,16 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.plane_of_facets import plane_around
+from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh, sides, surfaces_of
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.plane_of_facets import plane_around
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, order_surfaces, surface_names

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from rigidfluid.core.geometry.arrays import IntArray
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.mesh.meshing import in_space
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.types import IntArray
 
 
 def cad_of_facets(facets: Facets, unit: float) -> Any:

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.obstacles import Obstacles

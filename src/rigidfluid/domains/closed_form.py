@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Plane
 
 _EXACT = 1e-9
 """Distance of a face's samples from a form over the form's size, up to which the face has the form [1]."""

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.domains.closed_form import Flat, Form, Offset
 
 _SLACK = 2.0

@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors, enclosed_volume, place
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors, enclosed_volume, place
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, order_surfaces, surface_names
@@ -113,7 +113,7 @@ class MeshDomain(Domain):
 
 
 def _refuse_crossing(facets: Facets) -> None:
-    from rigidfluid.core.model.crossings import first_crossing
+    from rigidfluid.core.geometry.crossings import first_crossing
 
     crossing = first_crossing(facets.points, facets.vertices)
     if crossing is not None:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.stl_file import read_stl
 from rigidfluid.core.mesh.meshing import elements
-from rigidfluid.core.model.stl_file import read_stl
-from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
 FIELD = "domain.file"

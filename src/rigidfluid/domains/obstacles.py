@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.contact.detector_choice import exact_detector
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, tables_by_name
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.domains.placed import PlacedBody

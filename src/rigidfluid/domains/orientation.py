@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, enclosed_volume
-from rigidfluid.core.model.ridges import ridges_of
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, enclosed_volume
+from rigidfluid.core.geometry.ridges import ridges_of
 from rigidfluid.errors import SceneError
 
 

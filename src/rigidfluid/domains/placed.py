@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 from scipy.special import elliprg
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import area_vectors
+from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.meshing import in_space, sides, turned
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 from rigidfluid.domains.cad_of_facets import cad_of_facets
 
 

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.domains.arc import Arc
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError

@@ -7,8 +7,9 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Loads, Motion
+from rigidfluid.core.model.types import Contacts, Loads, Motion
 from rigidfluid.errors import SceneError
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import ClassVar
 
 from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.types import Contacts
 
 
 class NormalOptions(RepulsionOptions):

@@ -7,8 +7,9 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Motion
+from rigidfluid.core.model.types import Contacts, Motion
 
 
 class SpringDashpotOptions(PartOptions):

@@ -8,11 +8,11 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint, SameAxis, SamePoint
 from rigidfluid.core.joints.coordinates import Angle, Coordinate
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Positive, StrokeTable
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.along_coordinate import CoordinateDamper, CoordinateSpring, DrivenCoordinate
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate
@@ -16,7 +17,6 @@ from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.scene import Positive, StrokeTable

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint, OnAxis, SameOrientation
 from rigidfluid.core.joints.coordinates import Coordinate, Displacement
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Positive, StrokeTable
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.joints.one_coordinate import CoordinateOptions, OneCoordinate, unit_axis

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
-from rigidfluid.core.model.facet_tree import Tree
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_tree import Tree
+from rigidfluid.core.geometry.wall import Wall, radius_of, wall_radii
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall, radius_of, wall_radii
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, put_back, reset
 from rigidfluid.marching.field import WAVES, Accuracy, Band

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar, final
 
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.marching.options import MarchingOptions
 
 

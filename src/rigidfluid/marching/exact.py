@@ -4,7 +4,7 @@ A vertex starts from the nearest facet of a neighbour and walks over the surface
 nearest facet of all; on any other surface a tree of all facets is asked as well. So no vertex needs a second visit, and
 the wave takes the vertices in the order in which it meets them, without a heap.
 
-The trees of facets are those of `rigidfluid.core.model.facet_tree`.
+The trees of facets are those of `rigidfluid.core.geometry.facet_tree`.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from rigidfluid.core.model.facet_tree import build_tree, empty_tree, search_to_vertex
+from rigidfluid.core.geometry.facet_tree import build_tree, empty_tree, search_to_vertex
 from rigidfluid.marching.band import square_in_band
 from rigidfluid.marching.convex import is_convex
 from rigidfluid.marching.walk import local_search_to_vertex

@@ -8,8 +8,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facet_tree import Tree
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_tree import Tree
 from rigidfluid.marching.exact import march, reset, seed
 from rigidfluid.marching.first_order import march_first_order
 from rigidfluid.marching.topology import Numbers, Topology

@@ -1,6 +1,6 @@
 """The nearest points of two surfaces, exact to their facets, from the field of one of them. Arrays in, arrays out.
 
-The trees of facets are those of `rigidfluid.core.model.facet_tree`.
+The trees of facets are those of `rigidfluid.core.geometry.facet_tree`.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -13,8 +13,8 @@ from math import sqrt
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.model.facet_tree import search_to_facet
-from rigidfluid.core.model.simplices import facet_to_facet
+from rigidfluid.core.geometry.facet_tree import search_to_facet
+from rigidfluid.core.geometry.simplices import facet_to_facet
 from rigidfluid.marching.walk import local_search_to_facet
 from rigidfluid.marching.workspace import KNOWN
 

@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facet_tree import Tree
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facet_tree import Tree
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.exact import march_on, put_back, seed
 from rigidfluid.marching.field import Band, DistanceField
 from rigidfluid.marching.topology import Neighbours, Numbers, Topology

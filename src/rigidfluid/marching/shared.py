@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.adjacency import inner_vertices, rows_of
 from rigidfluid.marching.band import longest_edges
 from rigidfluid.marching.field import Band

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.adjacency import facets_beside, inner_vertices, is_whole, neighbours_of, rows_of
 
 Numbers = NDArray[np.int32]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from rigidfluid.core.model.simplices import facet_to_facet, vertex_to_facet
+from rigidfluid.core.geometry.simplices import facet_to_facet, vertex_to_facet
 
 
 @njit(cache=True, nogil=True, forceinline=True)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
 """States of a vertex: not reached, in the heap, reached for good, measured and outside the band."""

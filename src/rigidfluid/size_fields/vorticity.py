@@ -7,11 +7,11 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.flow import Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Positive
 
 

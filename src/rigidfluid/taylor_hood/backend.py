@@ -10,20 +10,10 @@ from typing import TYPE_CHECKING, ClassVar, final
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
-from rigidfluid.core.model.types import (
-    Advance,
-    BoolArray,
-    Fields,
-    FloatArray,
-    FluidState,
-    Mesh,
-    Pose,
-    Response,
-    Step,
-    Twist,
-)
+from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering

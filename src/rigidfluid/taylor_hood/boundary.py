@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.surfaces import Surfaces, joined, pinned_vertex
 
 # Entries of ω × r: (velocity component, component of ω, component of r, sign).

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.discretisation import Discretisation
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.discretisation import Discretisation, Projection
 from rigidfluid.taylor_hood.numbering import Numbering

@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces

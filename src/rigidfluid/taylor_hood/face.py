@@ -7,9 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from rigidfluid.core.model.conditions import BoundaryCondition
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.fluid.conditions import BoundaryCondition
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.facet_integrals import (
     area_at_points,
     area_vectors,

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.pardiso import EXACT, FAST, SAFE, Orderings, Pardiso, PardisoError
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twist
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.taylor_hood.advance import centre_pressure
 from rigidfluid.taylor_hood.boundary import pressure_load

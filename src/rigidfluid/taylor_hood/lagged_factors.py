@@ -7,8 +7,8 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import ALONE
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.factorization import Factors, factorise
 from rigidfluid.taylor_hood.flexible_gmres import flexible_gmres
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver

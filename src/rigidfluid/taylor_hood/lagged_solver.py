@@ -9,8 +9,8 @@ from typing import ClassVar, Generic, TypeVar, final
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import Ranks
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
 
 Matrix = TypeVar("Matrix")

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.joint_forces import joint_forces
-from rigidfluid.core.model.types import FloatArray, Links
+from rigidfluid.core.model.types import Links
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.discretisation import Discretisation

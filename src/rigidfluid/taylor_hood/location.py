@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.location import INSIDE, move_inside
-from rigidfluid.core.model.types import FloatArray, IntArray
 from rigidfluid.taylor_hood.numbering import EDGES
 
 _ITERATIONS, _ENOUGH = 30, 1e-14

@@ -13,8 +13,8 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.memory import require_memory
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.mkl import installed_mkl
 
 _ANALYSE, _FACTORISE, _SOLVE, _FREE = 11, 22, 33, -1

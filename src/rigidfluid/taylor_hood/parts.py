@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.constraint import Constraint
 

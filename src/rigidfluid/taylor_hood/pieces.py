@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, FluidState, IntArray, Mesh
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.model.types import FluidState, Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
 
 _AT_NODES = ("velocity", "velocity_previous")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.factorization import factorise

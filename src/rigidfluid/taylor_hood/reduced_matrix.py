@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.constraint import Constraint
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, Response, Step
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Response, Step
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation
 

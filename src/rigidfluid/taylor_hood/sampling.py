@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mesh.location import locate
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.location import barycentric, locate_on_curves, quadratic_basis
 from rigidfluid.taylor_hood.numbering import Numbering
 

@@ -10,8 +10,9 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.coefficients import Coefficients, coefficients_of
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal, final
 
 from pydantic import Field
 
-from rigidfluid.core.model.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import BoolArray, FloatArray, FluidState, Mesh, SolverCost
+from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.predicted_cost import predicted_factors, predicted_run, predicted_unknowns

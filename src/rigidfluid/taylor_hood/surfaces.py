@@ -8,9 +8,10 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.fluid.conditions import BoundaryCondition
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.conditions import BoundaryCondition
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood.face import Face
 from rigidfluid.taylor_hood.frames import local_frames

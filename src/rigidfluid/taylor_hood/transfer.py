@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Pose, Twist
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.discretisation import Discretisation, Projection, kinetic_energy
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.sampling import Samples

@@ -11,13 +11,14 @@ import numpy as np
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions
 

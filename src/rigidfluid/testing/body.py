@@ -7,10 +7,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.mechanics.facet_moments import facet_moments, unit_inertia
-from rigidfluid.core.model.facets import area_vectors
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_moments import facet_moments, unit_inertia
+from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 
 
 class BodyContract:

@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Motion, Pose
+from rigidfluid.core.model.types import Contacts, Motion, Pose
 from rigidfluid.errors import StepRejected
 
 Column = Callable[[Contacts], FloatArray]

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.joint import Joint, PlacedJoint
 from rigidfluid.core.joints.joint_parts import joint_markers
 from rigidfluid.core.joints.linkage import JointLinkage
@@ -15,7 +16,7 @@ from rigidfluid.core.joints.markers import Markers, PlacedPair, add_relative_row
 from rigidfluid.core.mechanics.rigid import moment, rotate
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wrenches import flat, nothing
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.output.records import columns
 from rigidfluid.errors import StepRejected
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.kinematics import jacobian
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
@@ -16,7 +17,7 @@ from rigidfluid.core.mechanics.rigid import lab_inertia, rotate, rotation_betwee
 from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.interfaces import Mechanism
-from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 from rigidfluid.core.scene.validation import table_of
 from rigidfluid.registry import BODY, Registry
 

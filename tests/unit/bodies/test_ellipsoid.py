@@ -5,7 +5,7 @@ from scipy.optimize import minimize_scalar
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.errors import SceneError
 
 

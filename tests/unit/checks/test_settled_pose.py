@@ -10,8 +10,8 @@ from rigidfluid.checks.settled_pose import settled_pose
 from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.scene.scene import Scene
 
 GAP = 0.01

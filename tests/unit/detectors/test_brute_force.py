@@ -4,10 +4,11 @@ from scipy.optimize import minimize_scalar
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 
 TILT = 0.4

@@ -10,12 +10,13 @@ from mesh_tools import ball, ellipsoid
 from scipy.optimize import minimize
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import moment, rotate, rotation_matrices
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.ellipsoid_separation import touching_normal
@@ -323,9 +324,9 @@ def test_one_body_and_its_walls_need_no_compiler() -> None:
 import sys
 import numpy as np
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.registry import BODY, DETECTOR, Registry
 shape, detector = Registry.load().get(BODY, "ellipsoid"), Registry.load().get(DETECTOR, "ellipsoid")
 bodies = [shape(shape.Options(semi_axes=[1.0, 0.5]), 2)]

@@ -10,13 +10,14 @@ from facet_shapes import BAR, CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl, poly
 from mesh_tools import ball, ellipsoid
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.facets import FacetDetector
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError

@@ -18,17 +18,17 @@ from rigidfluid.checks.report import check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.contact_results import refuse_lost_contacts
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets
 from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene

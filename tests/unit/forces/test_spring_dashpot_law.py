@@ -4,7 +4,8 @@ from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from touching import NORMAL, contact
 
-from rigidfluid.core.model.types import FloatArray, Motion
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Motion
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
 RANGE, STIFFNESS, GAP = 0.02, 1e4, 0.005

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedPressure, Slip
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip, PrescribedPressure, Slip
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.facet_integrals import area_vectors, into_fluid, normals_at_nodes
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces

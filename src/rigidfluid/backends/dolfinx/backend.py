@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, ClassVar, final
 from scipy.sparse import csc_array
 
 from rigidfluid.backends.dolfinx.options import DolfinxOptions
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.extension import Extension
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.types import BoolArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation
 from rigidfluid.taylor_hood.numbering import Numbering

@@ -12,7 +12,7 @@ from petsc4py import PETSc
 from scipy import sparse
 
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.taylor_hood.constraint import CROSS
 from rigidfluid.taylor_hood.surfaces import Surfaces, joined
 

@@ -14,8 +14,9 @@ from rigidfluid.backends.dolfinx.krylov import Krylov, LaggedLU
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import schur_data
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.coefficients import coefficients_of
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.coupled_projection import CoupledProjection

@@ -9,7 +9,7 @@ from petsc4py import PETSc
 from scipy.sparse import csc_array, csr_array, diags_array
 
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 
 _TOLERANCE = 1e-12
 """Relative residual of the iteration: what is left is far below what a cell would feel."""

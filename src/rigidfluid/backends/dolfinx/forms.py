@@ -12,7 +12,7 @@ from dolfinx.mesh import meshtags
 
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.coefficients import Coefficients
 
 _STRAIGHT, _CURVED = 1, 2

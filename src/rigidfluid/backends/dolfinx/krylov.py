@@ -13,8 +13,8 @@ from rigidfluid.backends.dolfinx.linear_functions import linear_functions
 from rigidfluid.backends.dolfinx.products import projected
 from rigidfluid.backends.dolfinx.reduced import Reduced
 from rigidfluid.backends.dolfinx.schur import CahouetChabard
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import Ranks
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver

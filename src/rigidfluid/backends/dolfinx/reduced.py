@@ -13,7 +13,7 @@ from petsc4py import PETSc
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
 from rigidfluid.backends.dolfinx.products import projected
 from rigidfluid.backends.dolfinx.schur import SchurData
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

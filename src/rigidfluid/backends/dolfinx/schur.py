@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
-from rigidfluid.core.model.types import BoolArray
+from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.surfaces import Surfaces
 

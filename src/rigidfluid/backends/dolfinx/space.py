@@ -12,8 +12,9 @@ from dolfinx.mesh import create_mesh
 from mpi4py import MPI
 
 from rigidfluid.backends.dolfinx import compat
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.ranks import MpiRanks
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.numbering import Numbering
 
 # Edges of Basix' reference simplices, in the order of its P2 nodes.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.coefficients import Coefficients
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.projection import Masses

@@ -7,7 +7,7 @@ from functools import partial, singledispatch
 
 from rigidfluid.core.case.boundary_tables import Place, placed_tables
 from rigidfluid.core.case.boundary_values import prescribed_pressure, prescribed_velocity, pressure_drop, wall_velocity
-from rigidfluid.core.model.conditions import (
+from rigidfluid.core.fluid.conditions import (
     NoSlip,
     Periodic,
     PrescribedPressure,

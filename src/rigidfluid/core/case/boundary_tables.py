@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.scene.scene import BoundaryTable, WallTable
 
 _UNNAMED = WallTable(on="all", type="wall")

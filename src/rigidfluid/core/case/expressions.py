@@ -9,7 +9,7 @@ from functools import reduce
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.scene.validation import LARGEST
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion

@@ -12,8 +12,8 @@ from rigidfluid.core.scene.scene import PeriodicTable
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.geometry.piece import Piece
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.piece import Piece
     from rigidfluid.core.scene.scene import BoundaryTable
 
 _APART = 1e-12

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall
 
 
 def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:

@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
 from rigidfluid.core.model.contacts import middle
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Wrench
+from rigidfluid.core.model.types import Contacts, Wrench
 
 
 class ContactLoad(NamedTuple):

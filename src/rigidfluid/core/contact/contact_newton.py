@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
 
 MOST_ITERATIONS = 100

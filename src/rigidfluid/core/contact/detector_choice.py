@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.interfaces import Body, Detector
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.registry import DETECTOR, Registry
 
 

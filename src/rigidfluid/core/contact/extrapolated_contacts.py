@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Pose
+from rigidfluid.core.model.types import Contacts, Pose
 
 
 class ExtrapolatedContacts:

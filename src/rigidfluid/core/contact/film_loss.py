@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, Film, FloatArray, Loads
+from rigidfluid.core.model.types import Contacts, Film, Loads
 
 _PARTS = 12
 """Number of parts of the way from range to contact over which the film's share is summed."""

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall, wall_radii
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose
-from rigidfluid.core.model.wall import Wall, wall_radii
+from rigidfluid.core.model.types import Contacts, Pose
 
 
 def with_effective_radii(contacts: Contacts, bodies: Sequence[Body], walls: Sequence[Wall], pose: Pose) -> Contacts:

@@ -11,13 +11,14 @@ import numpy as np
 from rigidfluid.core.contact.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.substep import relative_motion, relative_velocity
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
-from rigidfluid.core.model.types import Contacts, FloatArray, Motion, Pose, Twist, Wrench
-from rigidfluid.core.model.wall import WallVelocities
+from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 MOST_UPDATES = 40

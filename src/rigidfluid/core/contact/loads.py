@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import Contacts, FloatArray, Loads
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Contacts, Loads
 from rigidfluid.errors import SceneError
 
 _FIELD = "contact.epsilon"

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from rigidfluid.core.contact.broad_phase import near_pairs
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 SKIN = 0.6
 """Distance beyond the reach up to which `NearPairs` searches, over the mean radius."""

@@ -6,12 +6,13 @@ import numpy as np
 
 from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.errors import StepRejected
 
 

@@ -10,12 +10,13 @@ from itertools import combinations
 import numpy as np
 
 from rigidfluid.core.contact.proximity import are_separate
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wall import Wall, radius_of
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray
-from rigidfluid.core.model.wall import Wall, radius_of
+from rigidfluid.core.model.types import Contacts
 
 FAR_AHEAD = 1e6
 """Distance of a far point, over the size of the domain."""

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose
-from rigidfluid.core.model.wall import Wall
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.types import Contacts, Pose
 
 FACING = 0.5
 """Cosine of the angle to the wall's own normal: a contact farther off is with an edge of the wall."""

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import ForceLaw
-from rigidfluid.core.model.types import Contacts, FloatArray
+from rigidfluid.core.model.types import Contacts
 
 SAMPLES = 8
 """Number of gaps from the deepest one outward at which a law is sampled."""

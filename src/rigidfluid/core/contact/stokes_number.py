@@ -7,7 +7,8 @@ from math import sqrt
 import numpy as np
 
 from rigidfluid.core.contact.loads import inverse_mass, pair_values
-from rigidfluid.core.model.types import Contacts, Film, FloatArray, Loads
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Contacts, Film, Loads
 
 FILM_EDGE = 1.0
 """Gap over the radius at which the film begins; there it resists about as much as the fluid far from walls."""

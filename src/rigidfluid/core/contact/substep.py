@@ -10,13 +10,14 @@ import numpy as np
 
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.stiffness import contacts_on_the_way, greatest_stiffness
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Motion, Pose, Twist
-from rigidfluid.core.model.wall import WallVelocities
+from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""

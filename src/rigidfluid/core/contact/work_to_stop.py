@@ -6,7 +6,8 @@ import numpy as np
 
 from rigidfluid.core.contact.loads import closing_speed, impact_energy, pair_energy, stacked_weight
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
-from rigidfluid.core.model.types import Contacts, FloatArray, Loads
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Contacts, Loads
 
 SLOWEST = 0.25
 """Least part of the speed that the film is assumed to leave: impacts off the expected way meet less of it."""

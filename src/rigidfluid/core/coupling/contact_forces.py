@@ -6,9 +6,9 @@ import numpy as np
 
 from rigidfluid.core.contact.substep import relative_motion
 from rigidfluid.core.coupling.scheme import Scheme
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
 
 
 def contact_forces(system: System, scheme: Scheme, state: State, time: float) -> FloatArray:

@@ -6,12 +6,13 @@ import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.coupling.impulse_responses import CHANGED
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import reaches, round_motions
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Step
+from rigidfluid.core.model.types import Pose, Step
 
 
 def turning(system: System, state: State, path: BodyStep, step: Step) -> FloatArray:

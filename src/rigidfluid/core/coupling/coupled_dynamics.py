@@ -8,13 +8,14 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class CoupledDynamics(OwnMotions):

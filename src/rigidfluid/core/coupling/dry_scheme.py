@@ -9,12 +9,13 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.implicit_path import implicit_free
 from rigidfluid.core.contact.look_ahead import look_ahead
 from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import body_load
 from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Step, Wrench
+from rigidfluid.core.model.types import Mesh, Pose, Step, Wrench
 
 
 class DryScheme:

@@ -16,6 +16,7 @@ from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
     accelerations,
@@ -31,7 +32,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within, uncoupled
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Mesh, Pose, Step
+from rigidfluid.core.model.types import Contacts, Mesh, Pose, Step
 
 SETTLED = 1e-3
 """Relative change of the bodies' velocities below which the iteration of a step has converged."""

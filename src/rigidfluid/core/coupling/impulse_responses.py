@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.motions import reaches, twist_arms
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray, Step
+from rigidfluid.core.model.types import Contacts, Step
 
 CHANGED, CHANGED_SHARED = 0.01, 0.05
 """Relative change of the tightness of a body's contacts, or of its way in a step over its radius, above which its

@@ -12,10 +12,11 @@ from rigidfluid.core.coupling.convection import turning
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, expected_load_of, load_before
 from rigidfluid.core.coupling.stirring import impact_tick
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.types import Contacts, FloatArray, Step
+from rigidfluid.core.model.types import Contacts, Step
 
 RESOLVED = 8.0
 """Largest number of substeps with which a step resolves its contacts: Φ then varies linearly in it."""

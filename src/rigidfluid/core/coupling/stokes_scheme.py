@@ -9,12 +9,13 @@ import numpy as np
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, components, load_before
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import outer_load
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel
 from rigidfluid.core.model.state import State
-from rigidfluid.core.model.types import Contacts, FloatArray, Step
+from rigidfluid.core.model.types import Contacts, Step
 
 
 class StokesScheme(FluidScheme):

@@ -7,10 +7,11 @@ from math import remainder
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate, Drive
 from rigidfluid.core.joints.markers import MarkerPair, Markers, PlacedPair, add_relative_rows
-from rigidfluid.core.model.types import FloatArray, Pose, Wrench
+from rigidfluid.core.model.types import Pose, Wrench
 
 
 @dataclass(frozen=True)

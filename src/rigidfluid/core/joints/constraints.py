@@ -9,8 +9,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, add_relative_rows
-from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True)

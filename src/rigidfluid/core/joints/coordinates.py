@@ -9,8 +9,8 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.markers import PlacedPair
-from rigidfluid.core.model.types import FloatArray
 
 
 class Coordinate(ABC):

@@ -9,12 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate, Drive
 from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.model.interfaces import SpatialPart
-from rigidfluid.core.model.types import FloatArray
 
 
 class Joint(SpatialPart):

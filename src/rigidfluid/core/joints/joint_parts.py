@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint, GroundDamper, SameAxis, SameOrientation, SamePoint
 from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.link_parts import LinkParts
 from rigidfluid.core.joints.markers import MarkerPair, marker
 from rigidfluid.core.joints.springs import GroundSpring, Spring
 from rigidfluid.core.model.joints import GroundLink
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 from rigidfluid.errors import PluginError, SceneError
 
 

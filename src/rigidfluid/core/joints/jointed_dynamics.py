@@ -9,6 +9,7 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.mechanics.own_motions import OwnMotions
@@ -16,7 +17,7 @@ from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
 from rigidfluid.core.model.dynamics import LinkWork, PushedDynamics
 from rigidfluid.core.model.joints import Joints
 from rigidfluid.core.model.kinematics import Kinematics
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50

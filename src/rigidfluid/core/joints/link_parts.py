@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate
 from rigidfluid.core.joints.markers import PlacedPair
 from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.joints import LinkReading
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import units_by_name
 from rigidfluid.core.joints.joint import PlacedJoint
@@ -26,7 +27,7 @@ from rigidfluid.core.model.joints import GroundLink, LinkReading
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.state import LinkLoad, unloaded
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Links, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
 ROUNDING = 1e-13

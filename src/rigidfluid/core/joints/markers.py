@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.kinematics import levers
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.joints.constraints import Constraint
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
 from rigidfluid.errors import SceneError
 
 _LEAST = 1e-8

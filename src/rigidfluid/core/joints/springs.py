@@ -7,8 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_between
-from rigidfluid.core.model.types import FloatArray, Pose, Wrench
+from rigidfluid.core.model.types import Pose, Wrench
 
 
 class Spring(Protocol):

@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import kinematics_now
 from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 
 
 class BodiesAfter(NamedTuple):

@@ -6,9 +6,9 @@ from math import pi, prod
 
 import numpy as np
 
-from rigidfluid.core.mechanics.facet_moments import facet_moments
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facet_moments import facet_moments
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 
 
 def added_mass(body: Body) -> FloatArray:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 
 CELLS_WANTED = 2.0
 """Cells across a layer with which forces and torques change by about a tenth at a new mesh."""

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.mechanics.leverage import leverage_at, most_leverage, surface_points
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.motions import Motions
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 
 _TIMES = 33
 """Number of times at which a mechanism that changes its shape is sampled."""

@@ -8,13 +8,14 @@ from typing import Protocol, Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.kinematics import CarriedKinematics, jacobian, levers
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.dynamics import LinkWork, MotionDynamics
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import MotionState
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class Carried(Protocol):

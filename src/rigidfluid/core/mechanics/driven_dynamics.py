@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate, turned
 from rigidfluid.core.model.motions import Motions
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.errors import StepRejected
 
 _MOST_ITERATIONS = 50

@@ -9,10 +9,11 @@ from typing import NamedTuple, Self
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
 from rigidfluid.core.model.kinematics import Kinematics
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 _PARTS = np.linspace(0.0, 1.0, 17)[1:]
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import applied_wrench, weights
 from rigidfluid.core.mechanics.rigid import lab_inertia, turned
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
@@ -15,7 +16,7 @@ from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Step, Twist, Wrench
 
 
 class StepEnd(NamedTuple):

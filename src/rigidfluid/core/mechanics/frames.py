@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 
 
 def to_body_frame(pose: Pose, body: int, points: FloatArray) -> FloatArray:

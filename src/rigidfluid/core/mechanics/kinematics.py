@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Step, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 
 ELLIPSOIDS = 5.0
 """Bound of the leverage of homogeneous ellipsoids, however slender."""

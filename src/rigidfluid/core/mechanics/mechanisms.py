@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
@@ -18,7 +19,7 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.model.state import MotionState
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class Relative(NamedTuple):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.dynamics import BodyDynamics, LinkWork
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.state import MotionState
-from rigidfluid.core.model.types import BoolArray, Twist, Wrench
+from rigidfluid.core.model.types import Twist, Wrench
 
 
 class OwnMotions:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Pose, Twist
 
 
 def rotation_matrices(orientation: FloatArray) -> FloatArray:

@@ -8,12 +8,13 @@ from copy import copy
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics, Turning
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia
 from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, EachItsOwn
 from rigidfluid.core.model.state import MotionState
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class SingleBodies:

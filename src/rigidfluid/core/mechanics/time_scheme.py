@@ -10,8 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import lab_inertia, rotate
-from rigidfluid.core.model.types import FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 def derivative_weights(step: float, previous_step: float | None) -> FloatArray:

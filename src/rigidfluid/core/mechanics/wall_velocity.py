@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import cross
-from rigidfluid.core.model.types import FloatArray, IntArray
-from rigidfluid.core.model.wall import Wall
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.part_results import refuse_lost_forces
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 
 
 def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wrench:

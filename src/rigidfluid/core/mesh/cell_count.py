@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.made_size import made_size
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.types import FloatArray
 
 _CELLS = {2: 2.42, 3: 11.1}
 """Number of cells in a volume of h^d, fitted to meshes made; of regular simplices with edges h it would be 2.3 and

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_sizes
 from rigidfluid.core.mesh.size_field import Sizes, size_away_from_gaps
 from rigidfluid.core.model.ranks import Ranks
-from rigidfluid.core.model.types import FloatArray, IntArray, Pose
+from rigidfluid.core.model.types import Pose
 
 MOST_COARSENED = 1.4
 """A cell may become this many times longer, over the wanted size, than it was when made, or than wanted."""

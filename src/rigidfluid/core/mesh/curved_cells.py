@@ -6,9 +6,10 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.refine_surface import edge_numbers
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 
 class CurvedCells:

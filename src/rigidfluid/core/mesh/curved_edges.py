@@ -11,12 +11,13 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, IntArray
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces
 from rigidfluid.core.mesh.smooth_fluid import smooth_fluid
-from rigidfluid.core.model.types import BoolArray, CurvedEdges, IntArray, Mesh
+from rigidfluid.core.model.types import CurvedEdges, Mesh
 
 SQUEEZED = 0.3
 """An edge stays straight where bending it would leave less than this of a cell's volume anywhere in the cell."""

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.ranks import ALONE, Ranks
-from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, MeshPart
+from rigidfluid.core.model.types import CurvedEdges, Mesh, MeshPart
 
 _Piece = tuple[tuple[NDArray[Any], ...], CurvedEdges | None]
 

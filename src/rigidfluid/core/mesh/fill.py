@@ -9,15 +9,16 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facets import enclosed_volume
+from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_checks import refuse_unfillable
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, orient
-from rigidfluid.core.model.facets import enclosed_volume
-from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 MESHER = [sys.executable, "-m", "rigidfluid.core.mesh.netgen_fill"]

@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.core.model.types import FloatArray, FluidState, Mesh, Twist
+from rigidfluid.core.model.types import FluidState, Mesh, Twist
 
 
 class Flow(ABC):

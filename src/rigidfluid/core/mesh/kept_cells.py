@@ -7,8 +7,9 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 LAYERS = 2
 """Number of layers of cells that a run keeps: those at a body's vertices, and their neighbours."""

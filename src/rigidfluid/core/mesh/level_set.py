@@ -9,6 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.mesher_unit import mesher_unit
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fill import fill_between
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
@@ -19,8 +21,7 @@ from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.surface_mesh import part_of, surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, boundary_facets, check_mesh, orient
-from rigidfluid.core.model.mesher_unit import mesher_unit
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 ADAPTATIONS = 4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 INSIDE = -1e-10
 """Least barycentric coordinate of a point that counts as inside a cell [1]."""

@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.refine_surface import LONGEST
 from rigidfluid.core.mesh.regions import CurvedWall
 from rigidfluid.core.mesh.size_field import Sizes, reach_of_bodies, size_between
-from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 
 _MOST_GROWTH = 0.4
 """Growth of the size with the distance that MMG's ratio of 1.3 between neighbouring edges comes to, fitted."""

@@ -12,6 +12,7 @@ from itertools import chain
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_cells import CurvedCells
@@ -28,7 +29,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.size_interface import SizeField, with_fields, with_fields_at_rest
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.model.window import CLEARANCE
 from rigidfluid.errors import MeshError, StepRejected
 

@@ -8,13 +8,14 @@ from itertools import chain
 import numpy as np
 from scipy.sparse import csc_array
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
-from rigidfluid.core.model.types import BoolArray, CurvedEdges, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.core.model.window import Window
 
 MakeExtension = Callable[[Mesh, csc_array, BoolArray], Extension]

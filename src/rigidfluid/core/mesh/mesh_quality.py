@@ -6,7 +6,7 @@ from math import factorial, sqrt
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 
 def cell_volumes(points: FloatArray, cells: IntArray) -> FloatArray:

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
@@ -17,8 +19,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
 
 ATTEMPTS = 8

@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.topology import REMEDY
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 MESHER_MEMORY = {2: 1e7, 3: 3.6e8}

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 
 def main(given: str, made: str) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 
 
 class NoMesh:

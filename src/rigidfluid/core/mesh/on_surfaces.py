@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Plane, Surface
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.surface import Plane, Surface
 
 _PARALLEL = 1e-6
 """Planes that meet at a smaller angle than about this are taken for one: where they meet, rounding alone would say."""

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.mesher_unit import in_unit
-from rigidfluid.core.model.types import BoolArray, FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 _APART = 1e-6

@@ -7,13 +7,14 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.mesher_unit import significant
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
-from rigidfluid.core.model.mesher_unit import significant
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 LONGEST = 1.5
 """An edge on a body or a curved wall is bisected when it is longer than this many times the wanted size."""

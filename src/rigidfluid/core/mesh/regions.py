@@ -7,9 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray
 
 CELLS_PER_RADIUS = 4.0
 """Number of edges as long together as the least radius of curvature R of a wall; an edge then cuts off R/128 of it."""

@@ -9,6 +9,8 @@ from itertools import combinations, product
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import BY_SHAPE, Inserter
@@ -20,8 +22,7 @@ from rigidfluid.core.mesh.mmg import Kept, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
-from rigidfluid.core.model.mesher_unit import mesher_unit, significant
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 GRADATIONS = (1.3, 1.4, 1.2)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.regions import Region
-from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

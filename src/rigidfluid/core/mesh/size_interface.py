@@ -9,11 +9,11 @@ from functools import partial
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import SpatialPart
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import PluginError
 
 

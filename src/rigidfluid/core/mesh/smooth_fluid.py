@@ -8,10 +8,11 @@ from itertools import product
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.curved_cells import CurvedCells
 from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.topology import share_no_cell
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 GOOD_QUALITY = 0.3
 """Vertices of cells below this quality are moved. A mesh is made anew at half of its worst cell's, well above 0.1."""

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray
+from rigidfluid.core.geometry.facets import enclosed_volume, place
+from rigidfluid.core.geometry.ridges import ridges_of
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.model.facets import enclosed_volume, place
-from rigidfluid.core.model.ridges import ridges_of
-from rigidfluid.core.model.types import BoolArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 _MEND = "Mend the surface: each edge of a facet belongs to one other facet, all normals point to the same side."
@@ -63,7 +64,7 @@ def _refuse_inside_out(surface: Mesh, bodies: int) -> None:
 
 
 def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
-    from rigidfluid.core.model.crossings import first_crossing
+    from rigidfluid.core.geometry.crossings import first_crossing
 
     crossing = first_crossing(surface.points, surface.facets)
     if crossing is None:

@@ -7,6 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import (
@@ -30,11 +34,8 @@ from rigidfluid.core.mesh.refine_surface import (
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.facets import Facets, area_vectors
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.mesher_unit import in_unit, mesher_unit
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
 

@@ -6,9 +6,10 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, IntArray
+from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.model.facets import area_vectors
-from rigidfluid.core.model.types import BoolArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 REMEDY = "Choose a finer [mesh] size_body or a coarser [mesh] size, or move the bodies further apart."

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import Reference, State
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 
 
 class Updater(Protocol):

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.flow import Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.regions import RefinedCapsule
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import Body, PartOptions
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 
 
 class Wake(SizeField):

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.model.types import Contacts
 
 
 def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:

@@ -8,10 +8,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.interfaces import SpatialPart
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.types import BoolArray, FloatArray
 
 
 class Domain(SpatialPart):

@@ -7,9 +7,10 @@ from typing import Protocol, Self
 
 from scipy import sparse
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import LinkLoad, MotionState
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)

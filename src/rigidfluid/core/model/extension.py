@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csc_array
 
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 
 
 class Extension(Protocol):

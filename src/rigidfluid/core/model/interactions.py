@@ -8,10 +8,11 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
 from rigidfluid.core.model.part_results import refuse_lost_forces, refuse_shape
-from rigidfluid.core.model.types import BoolArray, Contacts, FloatArray, Motion
+from rigidfluid.core.model.types import Contacts, Motion
 
 Between = Literal["all", "walls", "pairs"]
 

@@ -17,19 +17,19 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 from scipy.sparse import csc_array
 
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.material import Material, Newtonian
-from rigidfluid.core.model.piece import Piece
 from rigidfluid.core.model.ranks import ALONE, Ranks
-from rigidfluid.core.model.surface import Surface
 from rigidfluid.core.model.types import (
     Advance,
-    BoolArray,
     Contacts,
     Fields,
-    FloatArray,
     FluidState,
     Loads,
     Mesh,
@@ -40,7 +40,6 @@ from rigidfluid.core.model.types import (
     Step,
     Twist,
 )
-from rigidfluid.core.model.wall import Wall
 
 
 class PartOptions(BaseModel):

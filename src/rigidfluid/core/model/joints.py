@@ -9,9 +9,10 @@ from typing import Protocol
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.dynamics import MotionDynamics, PushedDynamics
 from rigidfluid.core.model.state import LinkLoad, unloaded
-from rigidfluid.core.model.types import NO_LINKS, BoolArray, FloatArray, IntArray, Links, Pose, Twist, Wrench
+from rigidfluid.core.model.types import NO_LINKS, Links, Pose, Twist, Wrench
 
 COORDINATES: Mapping[str, str] = {"angle": "rad"}
 """Coordinates of joints that always have a column in joints.csv, with their units."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.types import BoolArray, FloatArray, Pose, Twist, Wrench
+    from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+    from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class Kinematics(Protocol):

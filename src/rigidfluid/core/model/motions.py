@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.dynamics import BodyDynamics, MotionDynamics, PushedDynamics
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import MotionState
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
 class Motions(Protocol):

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Pose
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Advance, Contacts, Pose
 from rigidfluid.errors import PluginError, StepRejected
 
 

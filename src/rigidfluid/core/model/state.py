@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
-from rigidfluid.core.model.types import Contacts, FloatArray, FluidState, Mesh, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Contacts, FluidState, Mesh, Pose, Twist, Wrench
 
 
 @dataclass(frozen=True, slots=True)

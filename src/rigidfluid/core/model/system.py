@@ -8,15 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall, WallVelocities
 from rigidfluid.core.model.detection import Detection
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.joints import Joints, NoJoints
 from rigidfluid.core.model.motions import Motions
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Loads, Pose, Twist
-from rigidfluid.core.model.wall import Wall, WallVelocities
+from rigidfluid.core.model.types import Loads, Pose, Twist
 from rigidfluid.core.model.window import Window
 
 

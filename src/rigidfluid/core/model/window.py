@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 
 CLEARANCE = 2.0
 """The centre of a body stays so many of its bounding radii away from an end of the window: nearer, the cells between

@@ -7,7 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.errors import SceneError
 
 

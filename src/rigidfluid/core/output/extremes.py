@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, Twist
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Twist
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.core.geometry.arrays import IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.vtu import data_array, in_space
 
 FLUID = "fluid"

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Mesh, Pose, Twist, Wrench
 
 Row = tuple[float | int | str, ...]
 Records = dict[str, list[Row]]

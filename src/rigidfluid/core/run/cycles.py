@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_between
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
 from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remarks import Remark

@@ -13,12 +13,13 @@ import numpy as np
 
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, FluidState, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FluidState, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History

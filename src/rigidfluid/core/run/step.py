@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
 from rigidfluid.core.coupling.scheme import Scheme
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.actuators import BodiesAfter, actuator_work
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.kinematics import given_twist
@@ -21,7 +22,7 @@ from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Advance, Contacts, FloatArray, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, Contacts, Mesh, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.fluid.conditions import BoundaryCondition
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.model.conditions import BoundaryCondition
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh

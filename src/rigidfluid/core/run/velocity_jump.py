@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import START_LEVEL
 from rigidfluid.core.run.step import bodies_energy

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.coordinates import Drive
 from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.motions import Motions
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.errors import SceneError
 
 SAMPLES = 129

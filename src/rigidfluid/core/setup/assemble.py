@@ -9,6 +9,7 @@ from functools import cache, partial
 import numpy as np
 
 from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
@@ -17,7 +18,7 @@ from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray, Twist
+from rigidfluid.core.model.types import Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances

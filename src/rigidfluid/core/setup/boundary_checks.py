@@ -12,8 +12,8 @@ from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.conditions import BoundaryCondition
-    from rigidfluid.core.model.piece import Piece
+    from rigidfluid.core.fluid.conditions import BoundaryCondition
+    from rigidfluid.core.geometry.piece import Piece
     from rigidfluid.core.setup.model import Model
 
 ACROSS = 1e-12

@@ -9,8 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from rigidfluid.core.model.conditions import Value
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.fluid.conditions import Value
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.nested.rows import Rows
 
 Profile = Callable[[FloatArray], FloatArray]

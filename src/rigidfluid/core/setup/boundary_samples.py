@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.conditions import BoundaryCondition
+from rigidfluid.core.fluid.conditions import BoundaryCondition
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary_data import BoundaryData, BoundaryVelocity, boundary_velocity
 from rigidfluid.core.setup.profiles import section
 

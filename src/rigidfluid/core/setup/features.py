@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.core.contact.restitution import Restitution, without_restitution
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.fluid_problem import FluidProblem
+    from rigidfluid.core.fluid.fluid_problem import FluidProblem
     from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
     from rigidfluid.core.scene.scene import MeshTable

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
+from rigidfluid.core.fluid.conditions import BoundaryCondition, Value
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Material
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mesh.size_interface import SizeField
-from rigidfluid.core.model.conditions import BoundaryCondition, Value
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import Body, FluidBackend
-from rigidfluid.core.model.material import Material
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Film

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.types import Contacts, Pose
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.fluid import Fluid
 

@@ -11,7 +11,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.types import FloatArray
+    from rigidfluid.core.geometry.arrays import FloatArray
     from rigidfluid.core.scene.scene import SpringTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import JoinedBodies, RigidBody

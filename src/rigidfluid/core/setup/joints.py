@@ -15,9 +15,10 @@ from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.geometry.arrays import FloatArray, IntArray
     from rigidfluid.core.model.joints import Joints
     from rigidfluid.core.model.motions import Motions
-    from rigidfluid.core.model.types import FloatArray, IntArray, Pose
+    from rigidfluid.core.model.types import Pose
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import JoinedBodies, RigidBody
 

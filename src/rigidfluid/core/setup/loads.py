@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.kinematics import carried_sum
-from rigidfluid.core.model.types import FloatArray, Loads
+from rigidfluid.core.model.types import Loads
 from rigidfluid.core.setup.along_strokes import fastest_given
 from rigidfluid.core.setup.impact import Impetus, fastest_flow, impact_speeds, travel_speeds
 from rigidfluid.core.setup.masses import Masses

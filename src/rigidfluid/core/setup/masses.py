@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.added_mass import added_mass
-from rigidfluid.core.model.types import FloatArray
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model

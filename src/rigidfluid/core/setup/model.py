@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
-from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip
+from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Mechanism
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.model.types import BoolArray, FloatArray
-from rigidfluid.core.model.wall import Wall
 from rigidfluid.core.scene.scene import OutputTable, TimeTable, WindowTable
 from rigidfluid.core.setup.components import component_bodies
 from rigidfluid.core.setup.contact_laws import ContactLaw

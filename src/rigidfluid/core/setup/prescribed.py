@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.scene import PrescribedTable
 
 if TYPE_CHECKING:

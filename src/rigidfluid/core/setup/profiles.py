@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Plane
 
 _PANELS = 8
 """Number of panels, of three points each, in which a side is integrated."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.coordinates import Drive
 from rigidfluid.core.model.interfaces import Mechanism
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.setup.along_strokes import corners
 from rigidfluid.errors import SceneError
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import Body, Mechanism
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.scene.scene import Freedom, PrescribedTable, SpringTable
 
 DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}

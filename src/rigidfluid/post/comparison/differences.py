@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import angle_between
-from rigidfluid.core.model.types import BoolArray, FloatArray
 from rigidfluid.core.output.records import columns
 from rigidfluid.post.reports.results import Results
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.comparison.differences import UNITS, Pair, histories, label
 from rigidfluid.post.comparison.runs import Run
 from rigidfluid.post.reports.curves import add_legend, widen

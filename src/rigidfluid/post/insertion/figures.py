@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.model.facets import area_vectors
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 BINS = 20
 """Number of classes of the histogram of cell quality, from 0 to 1."""

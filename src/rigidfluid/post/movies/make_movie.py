@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.writer import writing
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow

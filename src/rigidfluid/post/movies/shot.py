@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results

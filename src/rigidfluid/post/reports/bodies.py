@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from contourpy import contour_generator
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.view_plane import ViewPlane
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.coefficients import Reference, coefficients
 from rigidfluid.post.reports.curves import add_legend, draw_bodies
 from rigidfluid.post.reports.results import Results

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.post.reports.periods import frequency, late, late_periods
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.stream import prescribed_stream

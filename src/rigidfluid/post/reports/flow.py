@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Fields
 
 EDGES = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
 """Which corners each middle node is between, in VTK's order, by the number of corners."""

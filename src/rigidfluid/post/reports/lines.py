@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.core.output.records import joint_coordinates
 from rigidfluid.post.reports.curves import add_legend, draw_bodies, widen

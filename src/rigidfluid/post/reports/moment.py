@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.bodies import cuts
 from rigidfluid.post.reports.results import Results

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.post.reports.bodies import cut, rotations
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.view_plane import ViewPlane

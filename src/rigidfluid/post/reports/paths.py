@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.bodies import cut, rotations
 from rigidfluid.post.reports.curves import MOST_LINES
 from rigidfluid.post.reports.plane import distance_grid

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.moment import Moment, View
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import Quantity, Scale

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.tri import Triangulation
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.view_plane import ViewPlane
 
 OUTLINE = 400

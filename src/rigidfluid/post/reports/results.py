@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from rigidfluid.core.case.load import scene_of_results
 from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.post.reports.curves import add_legend, draw_bodies
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.style import fluid_and_contacts, time_panels

@@ -13,7 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 COLOURMAP, SIGNED_COLOURMAP = "viridis", "RdBu_r"
 Quantity = Literal["speed", "vorticity", "pressure"]

@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from matplotlib.tri import Triangulation
 
-from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.flow import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
 from rigidfluid.post.reports.raster import Grid, Sampling

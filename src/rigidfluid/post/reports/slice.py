@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.types import Fields, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.model.types import Fields
 
 EIGHTHS = np.array(
     [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]

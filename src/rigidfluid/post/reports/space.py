@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.canvas import Canvas, Shell, body_shells
 from rigidfluid.post.reports.curves import MOST_LINES
 from rigidfluid.post.reports.moment import Moment

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.stream import prescribed_stream

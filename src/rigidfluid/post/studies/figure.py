@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.case.scene_model import model_of
-from rigidfluid.core.model.types import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.tables import KINDS

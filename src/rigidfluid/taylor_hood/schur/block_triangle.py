@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.parts import Parts
 from rigidfluid.taylor_hood.schur.cahouet_chabard import CahouetChabard
 from rigidfluid.taylor_hood.schur.scalar_space import ScalarSpace, scalar_spaces

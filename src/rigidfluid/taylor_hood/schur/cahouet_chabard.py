@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.constraint import Constraint
 from rigidfluid.taylor_hood.factorization import Factors, factorise
 from rigidfluid.taylor_hood.pardiso import Orderings

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import ClassVar, final
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import ALONE
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.taylor_hood.flexible_gmres import flexible_gmres
 from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.parts import Parts

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from rigidfluid.core.model.types import BoolArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, IntArray
 from rigidfluid.taylor_hood.constraint import Constraint
 
 

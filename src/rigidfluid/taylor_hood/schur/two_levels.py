@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from scipy import sparse
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.factorization import factorise
 from rigidfluid.taylor_hood.few_columns import times
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU

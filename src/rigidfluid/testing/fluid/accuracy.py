@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.conditions import PrescribedVelocity
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.fluid.conditions import PrescribedVelocity
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, quadrature, renumbered, samples, swayed, swayed_across
 from rigidfluid.testing.fluid.exact import DENSITY, VISCOSITY, LinearFlow, Waves, enclosed, problem

@@ -8,11 +8,12 @@ from functools import partial
 import numpy as np
 import pytest
 
+from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, Slip
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, Slip
-from rigidfluid.core.model.fluid_problem import FluidProblem
 from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import (
     ball_moments,

@@ -10,8 +10,9 @@ from math import factorial
 import numpy as np
 from scipy.special import roots_jacobi
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.topology import boundary_facets, orient
-from rigidfluid.core.model.types import FloatArray, IntArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.testing.arrangement import in_a_box
 
 CENTRES, RADII = np.array([[0.3, 0.35, 0.5], [0.68, 0.62, 0.45]]), (0.12, 0.1)

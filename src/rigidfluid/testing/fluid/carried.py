@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.kinematics import CarriedKinematics
-from rigidfluid.core.model.types import FloatArray, Step
+from rigidfluid.core.model.types import Step
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose, box_with_balls
 from rigidfluid.testing.fluid.exact import problem

@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from rigidfluid.core.fluid.conditions import Value
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.mesh.topology import boundary_facets, orient
-from rigidfluid.core.model.conditions import Value
-from rigidfluid.core.model.types import CurvedEdges, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box
 from rigidfluid.testing.fluid.exact import VISCOSITY, enclosed

@@ -8,13 +8,14 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.material import Newtonian
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.exact import inward_normal

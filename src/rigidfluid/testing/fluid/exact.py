@@ -8,10 +8,10 @@ from functools import partial
 
 import numpy as np
 
-from rigidfluid.core.model.conditions import BoundaryCondition, NoSlip, PrescribedVelocity, Value
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.material import Newtonian
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip, PrescribedVelocity, Value
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.geometry.arrays import FloatArray
 
 DENSITY, VISCOSITY = 1.3, 0.7
 

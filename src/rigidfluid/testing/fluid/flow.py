@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.interfaces import FluidBackend
-from rigidfluid.core.model.types import Advance, BoolArray, FloatArray, FluidState, Mesh, Pose, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, FluidState, Mesh, Pose, Step, Twist, Wrench
 
 
 @dataclass(frozen=True)

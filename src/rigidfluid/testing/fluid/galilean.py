@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.conditions import NoSlip
-from rigidfluid.core.model.material import Newtonian
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.fluid.conditions import NoSlip
+from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose, carried
 from rigidfluid.testing.fluid.exact import FACES, problem

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.model.types import NO_LINKS, FloatArray, Links, Step
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import NO_LINKS, Links, Step
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose
 from rigidfluid.testing.fluid.exact import problem

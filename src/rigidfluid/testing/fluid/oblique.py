@@ -8,10 +8,11 @@ from functools import partial
 import numpy as np
 import pytest
 
+from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, samples, swayed_across
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box

@@ -6,9 +6,9 @@ from itertools import combinations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.mesh_motion import stiffness
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.model.types import FloatArray
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, box_with_balls, samples
 from rigidfluid.testing.fluid.exact import LinearFlow, enclosed, problem

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rigidfluid.core.fluid.conditions import Periodic, Slip, Value, no_pressure
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.topology import boundary_facets
-from rigidfluid.core.model.conditions import Periodic, Slip, Value, no_pressure
-from rigidfluid.core.model.fluid_problem import FluidProblem
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, samples
 from rigidfluid.testing.fluid.curved import CENTRE, ball_in_a_box

@@ -9,8 +9,9 @@ from typing import ClassVar
 import numpy as np
 from scipy.linalg import block_diag
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.testing.arrangement import in_a_box
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import balls_pose

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.types import FloatArray, Mesh, Pose
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract, stirring_shift
 from rigidfluid.testing.fluid.boxes import (
     ball_moments,

@@ -10,7 +10,8 @@ from touching import NORMAL, contact, unstacked
 
 from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.contact.work_to_stop import work_to_stop
-from rigidfluid.core.model.types import FloatArray, Loads
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Loads
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw

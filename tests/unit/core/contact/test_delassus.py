@@ -6,11 +6,12 @@ from mesh_tools import ball, box_walls, ellipsoid, upright
 
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.reduced_model import Asked, Coupling, reduced_model
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 
 

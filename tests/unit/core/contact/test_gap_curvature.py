@@ -10,8 +10,9 @@ import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.proximity import detect
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Contacts, FloatArray, Pose
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.errors import SceneError
 
 FILM = {"law": "lubrication", "range": 1.0, "viscosity": 0.7, "cutoff": 1e-6}

@@ -15,12 +15,13 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
 from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.no_mesh import NoMesh
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.state import MotionState, Past, State, unloaded
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FloatArray, Twist, Wrench
+from rigidfluid.core.model.types import Twist, Wrench
 
 TURN, STEP, NONE = [0.3, -0.5, 0.7], 1e-3, np.zeros(0)
 BODY: dict[int, dict[str, Any]] = {

@@ -8,11 +8,12 @@ import pytest
 
 from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
 from rigidfluid.core.model.state import MotionState, unloaded
-from rigidfluid.core.model.types import FloatArray, Pose, Twist
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.run.simulation import Simulation
 
 STEP, SPEED, MASS = 1e-3, 7.0, 0.14

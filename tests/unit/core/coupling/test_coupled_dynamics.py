@@ -5,8 +5,9 @@ import pytest
 from scipy.linalg import expm
 
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel, reduced_model
-from rigidfluid.core.model.types import FloatArray, IntArray, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 BODIES, WIDTH = 3, 3
 INSIDE = np.array([0, 1, 2, 6, 7])

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.coupling.impulse_responses import ALONE, updated_model
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN
 from rigidfluid.core.model.reduced_model import ReducedModel
-from rigidfluid.core.model.types import Contacts, FloatArray, IntArray, Pose, Response
+from rigidfluid.core.model.types import Contacts, Pose, Response
 
 WIDTH, D0, RADIUS = 3, 500.0, 0.1
 

@@ -10,7 +10,7 @@ from curved_channels import VISCOSITY, flow_between_cylinders, torque_between_cy
 from dish import CODE, in_a_dish
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.run import run
 from rigidfluid.errors import SceneError

@@ -9,6 +9,7 @@ from dish import dish, rim
 from mesh_tools import ball, box, ellipsoid, nobody, upright
 from wedge import wedge
 
+from rigidfluid.core.geometry.facets import Facets, enclosed_volume
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh import fill
 from rigidfluid.core.mesh.fill import fill_mesh
@@ -20,7 +21,6 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_checks import refuse_unfillable
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import check_mesh
-from rigidfluid.core.model.facets import Facets, enclosed_volume
 from rigidfluid.errors import MeshError
 
 FILL = Inserter("fill")

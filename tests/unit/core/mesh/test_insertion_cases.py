@@ -7,7 +7,7 @@ import pytest
 from facet_domain import bent_tube
 from insertion_cases import CASES, Outcome, outcome, peanut, peanut_in_a_tube
 
-from rigidfluid.core.mechanics.facet_moments import facet_moments
+from rigidfluid.core.geometry.facet_moments import facet_moments
 from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Way

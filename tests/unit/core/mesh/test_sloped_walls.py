@@ -14,6 +14,7 @@ from mesh_files import meshed, write_gmsh41
 from mesh_tools import ball, nobody, upright
 
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter, Way
 from rigidfluid.core.mesh.mesh_motion import MeshMotion
@@ -24,7 +25,6 @@ from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_volume
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.surface import Plane
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.run import run
 from rigidfluid.core.setup.geometry_checks import surfaces_of

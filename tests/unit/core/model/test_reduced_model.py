@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.reduced_model import Asked, ReducedModel, expected_load, load_within, reduced_model
-from rigidfluid.core.model.types import FloatArray
 
 D0, COUNT = 750.0, 5
 

@@ -23,7 +23,7 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.model.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
+from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import PluginError, SceneError

@@ -18,9 +18,9 @@ from rigidfluid.core.case.expressions import Expression, VectorExpression
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.model.conditions import PrescribedPressure, PrescribedVelocity
-from rigidfluid.core.model.piece import Piece
-from rigidfluid.core.model.surface import Plane
+from rigidfluid.core.fluid.conditions import PrescribedPressure, PrescribedVelocity
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.setup.boundary_samples import quadrature
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
 from rigidfluid.domains.box import Box, BoxOptions

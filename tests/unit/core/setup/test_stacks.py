@@ -10,7 +10,7 @@ from scenes import wet_tables
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.setup.stacks import stack_loads
 
 BOX = np.array([2.0, 3.0, 4.0])

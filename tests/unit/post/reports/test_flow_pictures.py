@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.flow import EDGES, vorticity
 from rigidfluid.post.reports.moment import Moment
 from rigidfluid.post.reports.pictures import (

@@ -14,9 +14,10 @@ from typer.testing import CliRunner
 
 import rigidfluid
 from rigidfluid.cli import app
-from rigidfluid.core.model.facets import Facets
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.model.interfaces import Body
-from rigidfluid.core.model.types import Fields, FloatArray
+from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.bodies import cut, rotations
 from rigidfluid.post.reports.canvas import Canvas, Shell

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
-from rigidfluid.core.model.types import FloatArray, Pose
+from rigidfluid.core.model.types import Pose
 
 FINEST = 1e-9
 """Step of the directions at the end; the gap's error goes with its square."""

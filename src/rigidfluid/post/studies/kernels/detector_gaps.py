@@ -14,11 +14,12 @@ from pydantic import Field, model_validator
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
-from rigidfluid.core.model.types import Contacts, FloatArray, Mesh, Pose
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import SceneError

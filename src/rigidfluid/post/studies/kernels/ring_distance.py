@@ -9,7 +9,8 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.model.types import IntArray, Mesh
+from rigidfluid.core.geometry.arrays import IntArray
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.field import Accuracy, DistanceField, distance_field
 from rigidfluid.marching.partition import field_in_threads, split
 from rigidfluid.marching.topology import Topology

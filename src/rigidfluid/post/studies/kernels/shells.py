@@ -6,9 +6,10 @@ from math import pi
 
 import numpy as np
 
-from rigidfluid.core.mechanics.unit_sphere import unit_sphere_points
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.mesh.topology import boundary_facets
-from rigidfluid.core.model.types import FloatArray, Mesh
+from rigidfluid.core.model.types import Mesh
 
 INNER, OUTER = 0, 1
 """Markers of the two surfaces."""

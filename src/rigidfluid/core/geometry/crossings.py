@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.model.facet_tree import build_tree, leaves_beside
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facet_tree import build_tree, leaves_beside
 
 _FLAT = 1e-7
 """Volumes of an edge within the plane of a facet are below this, over the cube around both: the single precision of STL

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.errors import SceneError
 
 _HEAD = 84

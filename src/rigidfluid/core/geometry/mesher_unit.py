@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 LONGEST = 8.0
 """Longest side of what they are given; from 4 to 16 Netgen makes the same meshes in the plane."""

@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 
 def unit_sphere_points(count: int, dimension: int) -> FloatArray:

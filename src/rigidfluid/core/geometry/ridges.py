@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.types import IntArray
+from rigidfluid.core.geometry.arrays import IntArray
 
 
 class Ridges(NamedTuple):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.surface import Surface
 
 
 @dataclass(frozen=True)

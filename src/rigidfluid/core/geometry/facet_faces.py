@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facets import area_vectors
-from rigidfluid.core.model.ridges import ridges_of
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facets import area_vectors
+from rigidfluid.core.geometry.ridges import ridges_of
 
 _VERTICES = np.array([0, 1, 3])
 _EDGES = np.array([2, 5, 4])

@@ -7,7 +7,7 @@ from math import factorial
 
 import numpy as np
 
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)

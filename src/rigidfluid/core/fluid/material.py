@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 
 class Material(ABC):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets, area_vectors
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.surface import Plane
 
 FLAT = 1e-10
 """Distance from a plane, over the size of the surface, below which points lie in it."""

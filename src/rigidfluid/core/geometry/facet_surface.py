@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facet_faces import Faces, faces_of
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.plane_of_facets import plane_around
-from rigidfluid.core.model.surface import Surface
-from rigidfluid.core.model.types import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_faces import Faces, faces_of
+from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.plane_of_facets import plane_around
+from rigidfluid.core.geometry.surface import Surface
 
 if TYPE_CHECKING:
-    from rigidfluid.core.model.facet_tree import Tree
+    from rigidfluid.core.geometry.facet_tree import Tree
 
 _TOUCHING = 1e-8
 """Distance, over the size of the surface, below which points have no direction from an edge or a corner."""
@@ -127,7 +127,7 @@ class FacetSurface(Surface):
         Nearby
             Of each point the nearest place, and of points in the fluid also the others.
         """
-        from rigidfluid.core.model.facet_tree import facets_within
+        from rigidfluid.core.geometry.facet_tree import facets_within
 
         facet, bits, weights = self._nearest(points)
         first = self._measured(points, facet, bits, weights)
@@ -154,7 +154,7 @@ class FacetSurface(Surface):
 
     def _nearest(self, points: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
         """The nearest facet of each of ``points``, bits of the corners that carry weight there, and the weights."""
-        from rigidfluid.core.model.facet_tree import nearest_facets
+        from rigidfluid.core.geometry.facet_tree import nearest_facets
 
         queries = np.ascontiguousarray(points, dtype=float)
         nearest, bits, weights = nearest_facets(self._points, self._vertices, self.tree, queries)
@@ -183,7 +183,7 @@ class FacetSurface(Surface):
     @cached_property
     def tree(self) -> Tree:
         """Tree of all facets."""
-        from rigidfluid.core.model.facet_tree import Tree, build_tree
+        from rigidfluid.core.geometry.facet_tree import Tree, build_tree
 
         return Tree(*build_tree(self._points, self._vertices, np.arange(len(self._vertices), dtype=np.int32)))
 

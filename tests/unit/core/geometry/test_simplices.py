@@ -5,7 +5,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.simplices import facet_to_facet, vertex_to_facet
+from rigidfluid.core.geometry.simplices import facet_to_facet, vertex_to_facet
 
 
 def naive(first, second):

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from rigidfluid.core.model.facet_surface import FacetSurface
-from rigidfluid.core.model.facets import Facets, area_vectors
-from rigidfluid.core.model.surface import Plane
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.facet_surface import FacetSurface
+from rigidfluid.core.geometry.facets import Facets, area_vectors
+from rigidfluid.core.geometry.surface import Plane
 
 L_SHAPE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]])
 # corners of a cube, and its facets seen from outside

@@ -16,8 +16,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.simplices import facet_to_facet, vertex_to_facet
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.simplices import facet_to_facet, vertex_to_facet
 
 LEAF = 4
 """Facets in a leaf."""

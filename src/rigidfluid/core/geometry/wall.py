@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.model.surface import Plane, Surface
-from rigidfluid.core.model.types import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.surface import Plane, Surface
 from rigidfluid.errors import SceneError
 
 WallVelocities = Callable[[IntArray, FloatArray], FloatArray]

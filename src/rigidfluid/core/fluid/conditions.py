@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
 
 Value = Callable[[float, FloatArray], FloatArray]
 """Velocities (N, d) or pressures (N,) at a time and points (N, d)."""

@@ -11,7 +11,7 @@ from dish import rim
 from mesh_tools import ball, ellipsoid
 
 import rigidfluid
-from rigidfluid.core.model.surface import Plane, Surface
+from rigidfluid.core.geometry.surface import Plane, Surface
 from rigidfluid.domains.box import NAMES
 
 SOURCE = Path(rigidfluid.__file__).parent

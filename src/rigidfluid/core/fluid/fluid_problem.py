@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from rigidfluid.core.model.conditions import BoundaryCondition
-from rigidfluid.core.model.material import Material
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.fluid.conditions import BoundaryCondition
+from rigidfluid.core.fluid.material import Material
+from rigidfluid.core.geometry.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.model.facets import Facets
-from rigidfluid.core.model.types import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.facets import Facets
 
 
 class FacetMoments(NamedTuple):

@@ -1,0 +1,1 @@
+"""The fluid's equations: its material, its conditions on the boundary."""
