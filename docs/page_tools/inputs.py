@@ -17,7 +17,7 @@ Inputs = dict[str, str]
 
 SOURCES = ("src", "plugins", "docs", "tests/support", "benchmarks")
 NOT_COMPUTING = (
-    *(f"src/rigidfluid/{file}" for file in ("__main__.py", "cli.py", "commands.py", "plugin_commands.py")),
+    *(f"src/rigidfluid/{file}" for file in ("__main__.py", "cli/*.py", "commands.py", "plugin_commands.py")),
     *(f"src/rigidfluid/{room}" for room in ("checks", "post/movies", "post/reports", "testing")),
     "plugins/rigidfluid-lammps/src/rigidfluid_lammps/command.py",
     "docs/page_tools",

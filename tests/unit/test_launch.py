@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rigidfluid.core.run.run
-from rigidfluid import cli
+from rigidfluid.cli import app, console
 from rigidfluid.core.run.process import Launch, no_collection
 from rigidfluid.errors import OutputError, SharedInterrupt
 
@@ -14,8 +14,8 @@ OPEN_MPI = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "3"}
 
 
 def command(monkeypatch, rank, *arguments):
-    monkeypatch.setattr(cli, "LAUNCH", Launch(rank, 2))
-    return CliRunner().invoke(cli.app, list(map(str, arguments)), env={"COLUMNS": "300"})
+    monkeypatch.setattr(console, "LAUNCH", Launch(rank, 2))
+    return CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "300"})
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_what_loading_makes_is_not_searched_for_garbage():
 
 def test_a_backend_of_one_process_is_refused_before_anything_is_written(monkeypatch, tmp_path):
     result = command(monkeypatch, 0, "run", scene_file(tmp_path), "--out", tmp_path / "out")
-    assert result.exit_code == cli.BAD_INPUT
+    assert result.exit_code == console.BAD_INPUT
     for text in ("fluid.backend", "'dry'", "2 processes", "without mpirun"):
         assert text in result.stderr
     assert not (tmp_path / "out").exists()
@@ -63,7 +63,7 @@ def test_a_backend_of_one_process_is_refused_before_anything_is_written(monkeypa
 @pytest.mark.parametrize("name", ["check", "report", "study"])
 def test_other_commands_are_of_one_process(monkeypatch, tmp_path, name):
     result = command(monkeypatch, 0, name, tmp_path)
-    assert result.exit_code == cli.BAD_INPUT
+    assert result.exit_code == console.BAD_INPUT
     assert f"rigidfluid {name}: found 2 processes" in result.stderr
 
 
@@ -71,7 +71,7 @@ def test_other_commands_are_of_one_process(monkeypatch, tmp_path, name):
 def test_the_first_process_speaks_for_all(monkeypatch, arguments):
     result = command(monkeypatch, 1, *arguments)
     assert (result.stdout, result.stderr) == ("", "")
-    assert result.exit_code == (0 if arguments == ["--version"] else cli.BAD_INPUT)
+    assert result.exit_code == (0 if arguments == ["--version"] else console.BAD_INPUT)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,78 @@
+"""Words on the console: results, complaints, and the exit of a command that is refused."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from rigidfluid.core.run.process import Launch
+from rigidfluid.errors import RigidfluidError, SharedInterrupt
+
+FOUND_ERRORS = 1
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+LAUNCH = Launch.read()
+"""This process among those that share a run; the first one speaks for all."""
+
+
+@contextmanager
+def reported(on_interrupt: str = "") -> Iterator[None]:
+    """Turn an expected error into one paragraph on stderr and an exit code.
+
+    Expected errors are raised on all processes of a run, and so is a SharedInterrupt. Any other interrupt or error may
+    be that of one process alone, which then ends the others.
+    """
+    try:
+        yield
+    except RigidfluidError as error:
+        raise refusal(error) from None
+    except (typer.Exit, typer.Abort, typer.BadParameter):
+        raise
+    except KeyboardInterrupt as interrupt:
+        complain(f"Interrupted. {on_interrupt}")
+        if isinstance(interrupt, SharedInterrupt):
+            LAUNCH.meet()
+        else:
+            LAUNCH.end()
+        raise typer.Exit(INTERRUPTED) from None
+    except Exception:
+        complain(f"A fault in rigidfluid or in a plug-in. {on_interrupt}")
+        if LAUNCH.size > 1:
+            make_console(stderr=True).print(Text(traceback.format_exc()), soft_wrap=True)
+            LAUNCH.end()
+        raise
+
+
+def refusal(reason: object) -> typer.Exit:
+    """Print the reason once, wait for all processes, and return the exit to raise."""
+    complain(f"Error: {reason}")
+    LAUNCH.meet()
+    return typer.Exit(BAD_INPUT)
+
+
+def tell(text: str, style: str = "") -> None:
+    """Print on the first process."""
+    if LAUNCH.rank == 0:
+        make_console().print(Text(text, style=style), soft_wrap=True)
+
+
+def complain(text: str) -> None:
+    """Print in red on stderr."""
+    tell_aside(text, "red")
+
+
+def tell_aside(text: str, style: str = "") -> None:
+    """Print on stderr what is no result."""
+    if LAUNCH.rank == 0:
+        make_console(stderr=True).print(Text(text, style=style), soft_wrap=True)
+
+
+def make_console(stderr: bool = False) -> Console:
+    """Console that shows names and values as they are: brackets in them are no markup."""
+    return Console(stderr=stderr, markup=False)

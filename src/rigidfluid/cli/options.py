@@ -1,0 +1,46 @@
+"""Arguments and options of commands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
+OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
+CompareFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_compare.")
+]
+MeshFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_mesh.")
+]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+Continue = Annotated[
+    bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything anew.")
+]
+Backends = Annotated[
+    list[str] | None, typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.")
+]
+Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
+MovieFile = Annotated[
+    Path | None, typer.Option("--out", metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4.")
+]
+Shown = Annotated[
+    Literal["speed", "vorticity", "pressure"], typer.Option("--show", help="Which quantity of the fluid.")
+]
+Follow = Annotated[str | None, typer.Option("--follow", metavar="BODY", help="A body that the picture goes with.")]
+Looked = Annotated[
+    str | None, typer.Option("--follow", metavar="BODY", help="The body to look at; else the one that came nearest.")
+]
+Plane = Annotated[
+    Literal["motion", "xy", "xz", "yz"],
+    typer.Option("--plane", help="Which plane of a 3D run; motion: that of gravity and of the bodies' motion."),
+]
+View = Annotated[
+    tuple[float, float, float, float] | None,
+    typer.Option("--view", help="Left, lower, right, upper end of what is seen; from the body's centre with --follow."),
+]
+MovieSize = Annotated[int, typer.Option("--size", help="Points along the longer side.", min=50, max=4000)]
+FramesPerSecond = Annotated[int, typer.Option("--fps", help="Pictures a second.", min=1, max=100)]

@@ -1,0 +1,102 @@
+"""Progress of a command, on the first process's terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rigidfluid.cli import console
+from rigidfluid.cli.console import make_console, tell_aside
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.run import Progress
+    from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.post.progress import RunsProgress
+
+
+@contextmanager
+def compilation_told() -> Iterator[None]:
+    """Say once why nothing seems to happen where loops are compiled; later runs load them from the disk."""
+    from numba.core.event import Event, Listener, install_listener
+
+    class FirstOne(Listener):
+        told = False
+
+        def on_start(self, event: Event) -> None:
+            if not self.told:
+                tell_aside("Compiling loops, once after each installation: some ten seconds.")
+            self.told = True
+
+        def on_end(self, event: Event) -> None:
+            pass
+
+    with install_listener("numba:compile", FirstOne()):
+        yield
+
+
+@contextmanager
+def progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
+    """Yield a function that shows the progress of a run in a bar, on the first process's terminal alone."""
+    terminal = make_console(stderr=True)
+    if console.LAUNCH.rank > 0 or not terminal.is_terminal:
+        yield lambda _: None
+        return
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn(scene.name),
+        BarColumn(),
+        TextColumn(
+            "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
+            "{task.fields[warning]}"
+        ),
+        TimeRemainingColumn(),
+        TextColumn("to go"),
+    )
+    with Bar(*columns, console=terminal) as bar:
+        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"), warning="")
+        yield lambda now: bar.update(
+            task, completed=now.time, step=now.step, gap=now.gap, warning=_mesh_failures(now.failed_remeshes)
+        )
+
+
+def _mesh_failures(failed: int) -> str:
+    """Words on failed re-meshes, for the progress bar; empty without any."""
+    return f", {failed} failed re-meshes" if failed else ""
+
+
+@contextmanager
+def runs_bar(name: str) -> Iterator[Callable[[RunsProgress], None]]:
+    """Yield a function that shows in a bar how many runs are done, out of how many, and a word on the present one."""
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn(name),
+        BarColumn(),
+        TextColumn("{task.fields[now]}"),
+        TimeRemainingColumn(),
+        TextColumn("to go"),
+    )
+    terminal = make_console(stderr=True)
+    with Bar(*columns, console=terminal, disable=not terminal.is_terminal) as bar:
+        task = bar.add_task(name, total=None, now="")
+
+        def show(now: RunsProgress) -> None:
+            text = f"run {min(int(now.done) + 1, now.total)} of {now.total}: {now.about}"
+            bar.update(task, total=now.total, completed=now.done, now=text)
+
+        yield show
+
+
+@contextmanager
+def movie_bar() -> Iterator[Callable[[int, int], None]]:
+    """Yield a function that shows in a bar how many pictures of a movie are done, out of how many."""
+    from rich.progress import Progress as Bar
+
+    terminal = make_console(stderr=True)
+    with Bar(console=terminal, disable=not terminal.is_terminal) as bar:
+        task = bar.add_task("movie", total=None)
+        yield lambda done, total: bar.update(task, total=total, completed=done)
