@@ -22,6 +22,7 @@ class PoseDetection(Detection):
     on_mesh: ClassVar[bool] = False
 
     def __init__(self, system: System) -> None:
+        # whoever only chooses a way of detection, as a check does, loads no compiled kernels
         from rigidfluid.core.contact.look_ahead import foreseen, look_ahead
 
         self._foreseen, self._look_ahead = partial(foreseen, system), partial(look_ahead, system)
