@@ -24,6 +24,3 @@ def check_contact_table(table: ContactTable, interactions: Sequence[InteractionT
         if not read and given is not None:
             remedy = "Name the law: `law = …`."
             raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
-    if table.stepping == "implicit" and table.substeps is not None:
-        allowed = 'none beside `stepping = "implicit"`'
-        raise SceneError("contact.substeps", table.substeps, allowed, "Remove one of them.")

@@ -34,8 +34,6 @@ def read_drives(tables: Sequence[JointTable]) -> tuple[JointTable, ...]:
 
 def _built(table: JointTable, registry: Registry, dimension: int, at: str) -> Joint:
     part = registry.get(JOINT, table.type, f"{at}.type")
-    if part.needs_point and table.at is None:
-        raise SceneError(f"{at}.at", "nothing", f"the point of a {part.name} at the start", "Add the key 'at'.")
     try:
         return part(_options(table, part, registry, at), dimension)
     except SceneError as error:  # a joint does not know its number

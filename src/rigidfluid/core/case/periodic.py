@@ -5,19 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rigidfluid.core.case.boundary_tables import placed_tables
 from rigidfluid.core.scene.scene import PeriodicTable
+from rigidfluid.core.setup.opposite import is_opposite
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.geometry.piece import Piece
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.scene.scene import BoundaryTable
-
-_APART = 1e-12
-"""Opposite surfaces have the same corners but for this, over the size of the domain."""
 
 
 def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tuple[int, int], ...]:
@@ -30,7 +25,7 @@ def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tup
     pairs = []
     for i, (table, at) in chosen.items():
         name = domain.names[i]
-        others = [j for j in range(len(domain.names)) if _is_opposite(domain, domain.pieces[i], domain.pieces[j])]
+        others = [j for j in range(len(domain.names)) if is_opposite(domain, domain.pieces[i], domain.pieces[j])]
         if not others:
             statement = f"only a flat surface with an equal one opposite can be periodic, and {name!r} has none"
             raise SceneError(f"{at}.type", statement, None, "Choose another type.")
@@ -45,13 +40,3 @@ def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tup
         if table.pressure_drop is not None or (other.pressure_drop is None and i < others[0]):
             pairs.append((i, others[0]))
     return tuple(pairs)
-
-
-def _is_opposite(domain: Domain, piece: Piece, other: Piece) -> bool:
-    """Whether two pieces are flat, face each other, and are equal but for a displacement across them."""
-    one, two = piece.shape.plane, other.shape.plane
-    if one is None or two is None or not np.allclose(one.unit_normal, -two.unit_normal, rtol=0, atol=_APART):
-        return False
-    way = float((two.point - one.point) @ one.unit_normal) * one.unit_normal
-    apart = [np.abs(b - a - way) for a, b in zip(one.bounds, two.bounds, strict=True)]
-    return bool(np.all(np.nan_to_num(apart, nan=np.inf) <= _APART * np.max(domain.size)))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import fields
 from functools import lru_cache, singledispatch
 
-from rigidfluid.core.case.body_sizes import refuse_lost_body
 from rigidfluid.core.case.boundary import condition_makers
 from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
 from rigidfluid.core.case.contact_table_checks import check_contact_table
@@ -16,7 +15,6 @@ from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_options import own_options, refuse_unread
 from rigidfluid.core.case.periodic import periodic_pairs
-from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Part
@@ -84,7 +82,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
     laws = scene_laws(scene.contact, scene.interaction, registry)
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
     detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
-    return Model(
+    model = Model(
         domain=domain,
         bodies=bodies,
         time=scene.time,
@@ -95,7 +93,6 @@ def _model(scene: Scene, registry: Registry) -> Model:
         joints=joined_bodies(scene.joint, registry, scene.dimension),
         laws=tuple(laws),
         detector=detector,
-        detector_why=why,
         stepping=ContactStepping(
             scene.contact.substeps, scene.contact.stepping == "implicit", scene.contact.impact_speed
         ),
@@ -103,9 +100,9 @@ def _model(scene: Scene, registry: Registry) -> Model:
         output=scene.output,
         name=scene.name,
         seed=scene.scene.seed,
-        tables=scene.to_dict(),
         registry=registry,
     )
+    return model.told_by(scene, why)
 
 
 def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
@@ -126,12 +123,10 @@ def _shape(table: BodyTable, at: str, registry: Registry, dimension: int) -> Bod
     refuse_unread(table.options, [part], type(table).model_fields, at)
     options = read_table(part.Options, table.options, at)
     try:
-        shape = part(options, dimension)
+        return part(options, dimension)
     except SceneError as error:  # a body does not know its number
         subject = f"{at}.{error.subject.removeprefix('body.')}"
         raise SceneError(subject, error.found, error.allowed, error.remedy) from None
-    refuse_lost_body(shape, at)
-    return shape
 
 
 def _detector(
@@ -143,9 +138,6 @@ def _detector(
 ) -> tuple[Selected[Detector], str]:
     """The detector that a scene names, or the cheapest that is exact for shapes in a domain; and why it is this one."""
     part, why = _detector_class(table, registry, around, wet and bool(laws))
-    if detection_by(part).on_mesh and not wet:
-        remedy = 'Use detector = "auto", or a backend with a mesh.'
-        raise SceneError("contact.detector", f"{part.name!r} without a mesh", "a detector that needs none", remedy)
     readers: list[type[Part]] = [part, laws[0].law.part] if table.law else [part]
     hint = "" if table.law else "Name the law that reads it: `law = …`."
     refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)

@@ -11,6 +11,8 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.errors import SceneError
 
+_UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+
 
 class Placement(Protocol):
     """Position and orientation keys of a table: an angle in 2D, a quaternion in 3D, or neither."""
@@ -24,7 +26,7 @@ class Placement(Protocol):
         """Angle, counter-clockwise [rad]."""
 
     @property
-    def orientation(self) -> Sequence[float] | None:
+    def orientation(self) -> Sequence[float] | FloatArray | None:
         """Quaternion, scalar first [1]."""
 
 
@@ -59,7 +61,9 @@ def initial_pose(tables: Sequence[Placement], dimension: int) -> Pose:
     position = np.array([table.position for table in tables]).reshape(-1, dimension)
     if dimension == 2:
         return Pose(position, np.array([[table.angle or 0.0] for table in tables]).reshape(-1, 1))
-    quaternions = np.array([table.orientation or (1.0, 0.0, 0.0, 0.0) for table in tables]).reshape(-1, 4)
+    quaternions = np.array([_UPRIGHT if table.orientation is None else table.orientation for table in tables]).reshape(
+        -1, 4
+    )
     return Pose(position, quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True))
 
 

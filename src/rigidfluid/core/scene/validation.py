@@ -144,7 +144,7 @@ def _told(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
         return _short_list(_place(model, complaint["loc"][:-1], at), complaints)
-    return SceneError(place.field or "scene", value_text(complaint["input"]), _allowed(complaint), _remedy(place))
+    return SceneError(place.field or "scene", value_text(complaint["input"]), allowed_by(complaint), _remedy(place))
 
 
 class _Types(NamedTuple):
@@ -246,7 +246,8 @@ def _misspelt_key(field: str, table: Mapping[str, Any], key: str, known: Iterabl
     return unknown_key(f"{field}.{wrong[0]}" if field else wrong[0], known) if wrong else None
 
 
-def _allowed(complaint: ErrorDetails) -> str:
+def allowed_by(complaint: ErrorDetails) -> str:
+    """Values that would have been allowed in the place of one that pydantic complains about."""
     text = complaint["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     return f"a value {text}" if text.startswith(("greater", "less")) else text
 

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.fluid.conditions import Periodic, no_pressure
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.setup.boundary_data import BoundaryData
 from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
+from rigidfluid.core.setup.opposite import is_opposite
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -86,6 +88,7 @@ def check_periodic(model: Model) -> None:
     """Refuse, with SceneError, periodic surfaces together with a backend, window, domain or condition that cannot take
     them."""
     domain, backend = model.domain, model.fluid.backend.part
+    _check_pairs(model)
     if not domain.periodic:
         return
     at = f"{model.conditions[domain.periodic[0][0]].field}.type"
@@ -102,6 +105,33 @@ def check_periodic(model: Model) -> None:
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
 
 
+def _check_pairs(model: Model) -> None:
+    """Refuse pairs of the domain that are no opposite pieces, or that have other conditions than periodic ones."""
+    pieces, paired = model.domain.pieces, [number for pair in model.domain.periodic for number in pair]
+    for first, second in model.domain.periodic:
+        known = first in range(len(pieces)) and second in range(len(pieces)) and first != second
+        if not (known and paired.count(first) == paired.count(second) == 1):
+            found, allowed = (
+                f"the pair {(first, second)}",
+                f"two of the numbers 0 to {len(pieces) - 1}, each in one pair",
+            )
+            raise SceneError("domain.periodic", found, allowed, "Correct the numbers of pieces.")
+        if not is_opposite(model.domain, pieces[first], pieces[second]):
+            names = f"{pieces[first].name!r} and {pieces[second].name!r}"
+            allowed = "flat pieces that are equal and face each other"
+            raise SceneError("domain.periodic", names, allowed, "Choose other pieces.")
+    for number, condition in enumerate(model.conditions):
+        if isinstance(condition, Periodic) != (number in paired):
+            found = f"{condition.type!r} on {condition.name!r}, which is {'' if number in paired else 'not '}in a pair"
+            remedy = "Give both of a pair `Periodic`, and the domain `with_periodic` pairs of numbers."
+            raise SceneError(condition.field, found, "periodic conditions on pairs alone", remedy)
+    for _, second in model.domain.periodic:
+        condition = model.conditions[second]
+        if isinstance(condition, Periodic) and condition.drop is not no_pressure:
+            statement = f"only the first of a pair can have a drop of pressure, and {condition.name!r} is the second"
+            raise SceneError(condition.field, statement, None, "Keep that of the first.")
+
+
 def oblique_conditions(model: Model) -> list[BoundaryCondition]:
     """Conditions that hold a part of the velocity on a surface that lies across no axis."""
     planes = [piece.shape.plane for piece in model.domain.pieces]
@@ -111,6 +141,7 @@ def oblique_conditions(model: Model) -> list[BoundaryCondition]:
 
 def _check_sliding(model: Model, condition: BoundaryCondition, piece: Piece) -> None:
     """Refuse a wall whose velocity leads out of itself somewhere."""
+    _check_wall_velocity(model, condition, piece)
     if condition.sliding is None:
         return
     shape, key, given = piece.shape, *_given(condition.sliding)
@@ -128,6 +159,18 @@ def _check_sliding(model: Model, condition: BoundaryCondition, piece: Piece) -> 
         raise SceneError(f"{condition.field}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
+def _check_wall_velocity(model: Model, condition: BoundaryCondition, piece: Piece) -> None:
+    """Refuse a wall whose velocity is not that by which bodies meet it."""
+    points = points_of(piece.shape, model.domain)
+    slides = np.zeros_like(points) if condition.sliding is None else condition.sliding(points)
+    for time in (0.0, 0.5 * model.time.end, model.time.end):
+        if not np.array_equal(condition.velocity(time, points), slides):
+            found = f"a wall {condition.name!r} with a velocity of its own at time {time:g}"
+            allowed = "the velocity `sliding(points)`, by which bodies meet a wall, zero if None"
+            remedy = "Give `NoSlip` a `sliding`, or take `PrescribedVelocity`, which is no wall."
+            raise SceneError(condition.field, found, allowed, remedy)
+
+
 def _given(sliding: object) -> tuple[str, object]:
     """Key of a wall's velocity in a scene, and what is given there."""
     if not isinstance(sliding, WallVelocity):
@@ -141,8 +184,9 @@ def _check_values(model: Model, condition: BoundaryCondition, piece: Piece) -> N
     points, _ = quadrature(piece, model.domain)
     steady = isinstance(condition.data, BoundaryData) and condition.data.is_steady
     for time in sample_times(model.conditions, model.time.end, steady=steady):
-        values = np.asarray(condition.data(float(time), points))
-        if values.shape not in (points.shape, points.shape[:1]) or not np.isfinite(values).all():
-            found = f"values of shape {values.shape} on {piece.name!r}, {np.isfinite(values).sum()} of them finite"
-            allowed = f"finite velocities of shape {points.shape}, or pressures of shape {points.shape[:1]}"
-            raise SceneError(condition.field, found, allowed, "Correct the function.")
+        asked = {"velocities": condition.velocity, "pressures": condition.pressure}
+        for what, shape in (("velocities", points.shape), ("pressures", points.shape[:1])):
+            values = np.asarray(asked[what](float(time), points))
+            if values.shape != shape or not np.isfinite(values).all():
+                found = f"{what} of shape {values.shape} on {piece.name!r} at time {time:g}, or not finite"
+                raise SceneError(condition.field, found, f"finite {what} of shape {shape}", "Correct the function.")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
 
 from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.restitution import Restitution
@@ -12,6 +14,7 @@ from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Loads
+from rigidfluid.core.setup.checked import AnyRow, Positive, checked
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
@@ -22,7 +25,7 @@ SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if none is given."""
 
 
-@dataclass(frozen=True)
+@checked
 class ContactLaw:
     """A law of contact, and the contacts that it acts in; forces of several add up.
 
@@ -47,12 +50,12 @@ class ContactLaw:
     """
 
     law: Selected[ForceLaw]
-    range: float
-    smallest_gap: float | None = None
-    restitution: float | None = None
-    restitution_stokes: float | None = None
+    range: Positive
+    smallest_gap: Positive | None = None
+    restitution: Annotated[Positive, Field(le=1)] | None = None
+    restitution_stokes: Positive | None = None
     between: Between = "all"
-    names: tuple[str, ...] = ()
+    names: Annotated[tuple[str, ...], AnyRow, Field(max_length=2)] = ()
     field: str = "contact"
 
     @property

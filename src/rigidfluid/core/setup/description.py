@@ -2,39 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import partial
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import BaseModel
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model
-    from rigidfluid.core.setup.rigid_body import RigidBody
 
 IN_PYTHON = "model"
 """Key that a description has and no scene."""
 
+_TOLD_APART = ("registry", "name", "seed", "time", "output")
+"""Fields of a model that are no table of objects."""
+
 
 def describe(model: Model) -> dict[str, Any]:
-    """Names, classes and numbers of a model's objects, in values that JSON can hold."""
+    """Names, classes and numbers of a model's objects, in values that JSON can hold; functions by their names."""
+    names = [field.name for field in fields(model) if field.name not in _TOLD_APART]
     return {
         "scene": {"name": model.name, "dimension": model.dimension, "seed": model.seed},
-        IN_PYTHON: {"made_in": "Python"},
-        "domain": {"type": _class_name(model.domain), "surfaces": list(model.domain.names)},
-        "fluid": {
-            "backend": model.fluid.backend.part.name,
-            **model.fluid.description(),
-        },
-        "boundary": {condition.name: _class_name(condition) for condition in model.conditions},
-        "body": [_body(body) for body in model.all_bodies],
-        "joint": [{"name": joint.name, "type": joint.kind.name} for joint in model.joints],
-        "contact": [{"law": law.law.part.name, "range": law.range} for law in model.laws],
-        "time": model.time.model_dump(mode="json", exclude_none=True),
-        "output": model.output.model_dump(mode="json", exclude_none=True),
+        "fluid": {"backend": model.fluid.backend.part.name},
+        "time": _told(model.time),
+        "output": _told(model.output),
+        IN_PYTHON: {name: _told(getattr(model, name)) for name in names},
     }
 
 
-def _body(body: RigidBody) -> dict[str, Any]:
-    position = [float(component) for component in body.position]
-    return {"name": body.name, "type": _class_name(body.shape), "density": body.density, "position": position}
-
-
-def _class_name(part: object) -> str:
-    return type(part).__name__
+def _told(value: Any) -> Any:
+    """A value, or what makes an object, its class and its options or fields."""
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json", exclude_none=True)
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if value is None or isinstance(value, bool | int | float | str | Enum):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): _told(inner) for key, inner in value.items()}
+    if isinstance(value, tuple | list):
+        return [_told(inner) for inner in value]
+    if isinstance(value, partial):
+        return {"function": _told(value.func), "arguments": _told(value.args), "named": _told(value.keywords)}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {"type": type(value).__name__} | {
+            field.name: _told(getattr(value, field.name)) for field in fields(value)
+        }
+    if hasattr(value, "options"):
+        return {"type": type(value).__name__, "options": _told(value.options)}
+    return getattr(value, "__qualname__", type(value).__name__)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from dataclasses import field
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -18,10 +18,10 @@ from rigidfluid.core.model.interfaces import Body, FluidBackend
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Film
+from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.setup.checked import AnyRow, NotNegative, Positive, checked
+from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
-
-if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import MeshTable
 
 _SAMPLES = 17
 """Points along each axis where the speed of the flow at the start is looked at."""
@@ -33,7 +33,7 @@ def installed_backend(name: str) -> Selected[FluidBackend]:
     return Selected(part, part.Options())
 
 
-@dataclass(frozen=True)
+@checked
 class Fluid:
     """A fluid around the bodies: ρ(∂u/∂t + (u·∇)u) = ∇·σ + f, ∇·u = 0.
 
@@ -58,29 +58,19 @@ class Fluid:
         Class that solves its equations, and its options; `scikit-fem` if not given.
     """
 
-    density: float
+    density: Positive
     material: Material
     mesh: MeshTable
     inertia: bool = True
     source: Value | None = None
     initial: Literal["rest", "steady"] | Value = "rest"
-    size_fields: Sequence[SizeField] = ()
+    size_fields: Annotated[tuple[SizeField, ...], AnyRow] = ()
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("scikit-fem"))
 
     @property
     def inert_density(self) -> float:
         """Density of the fluid that bodies have to move with them."""
         return self.density if self.inertia else 0.0
-
-    def description(self) -> dict[str, Any]:
-        """Numbers of the fluid and keys of its mesh, in values that JSON can hold."""
-        mesh = self.mesh.model_dump(mode="json", exclude_none=True)
-        return {
-            "density": self.density,
-            "viscosity": self.material.dynamic_viscosity,
-            "inertia": self.inertia,
-            "mesh": mesh,
-        }
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Greatest speed in the domain of a flow at the start that is a function, at the points sampled, else 0
@@ -90,7 +80,11 @@ class Fluid:
         axes = [np.linspace(low, high, _SAMPLES) for low, high in zip(*domain.extent, strict=True)]
         grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
         inside = grid[domain.contains(grid)]
-        return float(np.linalg.norm(self.initial(0.0, inside), axis=1).max(initial=0.0))
+        velocity = np.asarray(self.initial(0.0, inside))
+        if velocity.shape != inside.shape or not np.isfinite(velocity).all():
+            found, allowed = f"velocities of shape {velocity.shape}", f"finite ones of shape {inside.shape}"
+            raise SceneError("fluid.initial", found, allowed, "Correct the function.")
+        return float(np.linalg.norm(velocity, axis=1).max(initial=0.0))
 
     def film(self, bodies: Sequence[Body]) -> Film:
         """Films in gaps, as far as the mesh resolves them."""
@@ -114,7 +108,7 @@ class Fluid:
         )
 
 
-@dataclass(frozen=True)
+@checked
 class NoFluid:
     """No fluid that moves: bodies in a vacuum, or in a medium that bears them up by its density.
 
@@ -126,17 +120,13 @@ class NoFluid:
         Class that moves bodies without a fluid, and its options; `dry` if not given.
     """
 
-    density: float = 0.0
+    density: NotNegative = 0.0
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("dry"))
 
     mesh: ClassVar[None] = None
     inertia: ClassVar[bool] = False
     inert_density: ClassVar[float] = 0.0
     size_fields: ClassVar[Sequence[SizeField]] = ()
-
-    def description(self) -> dict[str, Any]:
-        """The density, in a value that JSON can hold."""
-        return {"density": self.density}
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Zero [length/time]."""

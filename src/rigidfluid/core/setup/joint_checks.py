@@ -28,6 +28,7 @@ def check_joints(model: Model) -> None:
             raise SceneError("joint.name", repr(name), "a name that no other joint or body has", "Rename it.")
     for number, joint in enumerate(model.joints):
         _check_ends(model, joint, f"joint.{number}")
+        _check_point(model, joint, f"joint.{number}")
 
 
 def _check_free(body: RigidBody, at: str) -> None:
@@ -86,6 +87,16 @@ def _refuse_beside(body: RigidBody, key: str, at: str) -> None:
 def _values(vector: Sequence[float] | FloatArray | None) -> Sequence[float] | FloatArray:
     """Components of a vector, none where it is not given."""
     return () if vector is None else vector
+
+
+def _check_point(model: Model, joint: JoinedBodies, at: str) -> None:
+    if joint.kind.dimension != model.dimension:
+        found, allowed = f"a {joint.kind.name} in {joint.kind.dimension}D", f"one in {model.dimension}D"
+        raise SceneError(at, found, allowed, "Make it with that dimension.")
+    if joint.at is None and joint.kind.needs_point:
+        raise SceneError(f"{at}.at", "nothing", f"the point of a {joint.kind.name} at the start", "Add the key 'at'.")
+    if joint.at is not None and len(joint.at) != model.dimension:
+        raise SceneError(f"{at}.at", f"{joint.at}", f"{model.dimension} numbers", "Correct it.")
 
 
 def _check_ends(model: Model, joint: JoinedBodies, at: str) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from copy import copy
+from dataclasses import field
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
+from pydantic import Field
 
 from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
@@ -16,7 +18,8 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Mechanism
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.scene.scene import OutputTable, TimeTable, WindowTable
+from rigidfluid.core.scene.scene import OutputTable, Scene, TimeTable, WindowTable
+from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.components import component_bodies
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.description import describe
@@ -29,19 +32,19 @@ ConditionMaker = Callable[[int, str, FloatArray | None], BoundaryCondition]
 """Class of a boundary condition, or a function, called with the number, the name and the unit normal of a surface."""
 
 
-@dataclass(frozen=True)
+@checked
 class ContactStepping:
     """How bodies go through contacts: in ``substeps``, as many as they need if None, or in an ``implicit`` step.
 
     ``impact_speed``: speed at which free bodies hit, estimated if None [length/time].
     """
 
-    substeps: int | None = None
+    substeps: Annotated[int, Field(ge=1)] | None = None
     implicit: bool = False
-    impact_speed: float | None = None
+    impact_speed: NotNegative | None = None
 
 
-@dataclass(frozen=True)
+@checked
 class Model:
     """Rigid bodies in a domain, with what is around them and between them: m dv/dt = (m - ρV)g + fluid + contacts.
 
@@ -59,7 +62,7 @@ class Model:
     output : OutputTable
         Interval of fields and checkpoints, and probes.
     fluid : Fluid or NoFluid
-        What is around the bodies.
+        The fluid around the bodies, or none.
     gravity : sequence of float, optional
         (d,) zero if not given [length/time²].
     boundary : mapping of str to callable
@@ -68,13 +71,11 @@ class Model:
     mechanisms : sequence of PlacedMechanism
         Bodies that move as one.
     joints : sequence of JoinedBodies
-        What joins bodies with each other or the ground.
+        Joints of bodies with each other or the ground.
     laws : sequence of ContactLaw
         Forces of contact.
     detector : Selected, optional
         Class of the detector and its options; the cheapest that is exact if not given.
-    detector_why : str
-        Who chose the detector, and for what reason, as `rigidfluid check` says it.
     stepping : ContactStepping
         How bodies go through contacts.
     window : WindowTable, optional
@@ -83,8 +84,6 @@ class Model:
         Name in results.
     seed : int
         Seed of all random numbers.
-    tables : mapping, optional
-        The scene that it was made of, for results and checkpoints; a description of the model if not given.
     registry : Registry
         Installed parts, among which detectors are chosen.
 
@@ -95,33 +94,41 @@ class Model:
     """
 
     domain: Domain
-    bodies: tuple[RigidBody, ...]
+    bodies: Annotated[tuple[RigidBody, ...], AnyRow]
     time: TimeTable
     output: OutputTable
     fluid: Fluid | NoFluid = field(default_factory=NoFluid)
-    gravity: Sequence[float] | None = None
+    gravity: Vector | None = None
     boundary: Mapping[str, ConditionMaker] = field(default_factory=dict)
-    mechanisms: tuple[PlacedMechanism, ...] = ()
-    joints: tuple[JoinedBodies, ...] = ()
-    laws: tuple[ContactLaw, ...] = ()
+    mechanisms: Annotated[tuple[PlacedMechanism, ...], AnyRow] = ()
+    joints: Annotated[tuple[JoinedBodies, ...], AnyRow] = ()
+    laws: Annotated[tuple[ContactLaw, ...], AnyRow] = ()
     detector: Selected[Detector] | None = None
-    detector_why: str = "the model names it"
     stepping: ContactStepping = ContactStepping()
     window: WindowTable | None = None
-    name: str = "model"
-    seed: int = 0
-    tables: Mapping[str, Any] | None = None
+    name: Annotated[str, Field(pattern=r"^[\w.-]*\w$")] = "model"
+    seed: Annotated[int, Field(ge=0)] = 0
     registry: Registry = field(default_factory=Registry.load, repr=False, compare=False)
 
+    _scene: ClassVar[Scene | None] = None
+    _detector_why: ClassVar[str] = "the model names it"
+
     def __post_init__(self) -> None:
-        for name in ("bodies", "mechanisms", "joints", "laws"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
         check_model(self)
 
-    @property
+    def told_by(self, scene: Scene, detector_why: str) -> Model:
+        """The same model, with the scene that it was made of for results and checkpoints, and why its detector was
+        chosen; other models that are made of it by `dataclasses.replace` have neither."""
+        told = copy(self)
+        for name, value in (("_scene", scene), ("_detector_why", detector_why)):
+            object.__setattr__(told, name, value)
+        return told
+
+    @cached_property
     def document(self) -> Mapping[str, Any]:
-        """Tables of the scene that it was made of, or else what tells it from other models, as JSON can hold it."""
-        return describe(self) if self.tables is None else self.tables
+        """Tables of the scene that it was made of, or else a description that tells it from other models, as JSON can
+        hold them."""
+        return describe(self) if self._scene is None else self._scene.to_dict()
 
     @property
     def dimension(self) -> int:
@@ -183,7 +190,7 @@ class Model:
     def detection(self) -> tuple[Selected[Detector], str]:
         """The detector, and who chose it for what reason."""
         if self.detector is not None:
-            return self.detector, self.detector_why
+            return self.detector, self._detector_why
         part, why = choose_detector(self.shapes, self.domain.pieces, self.wet and bool(self.laws), self.registry)
         return Selected(part, part.Options()), f"chosen as {why}"
 

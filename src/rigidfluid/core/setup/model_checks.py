@@ -9,18 +9,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
+from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.boundary_checks import check_boundary, check_inflow, check_oblique, check_periodic
 from rigidfluid.core.setup.contact_laws import check_laws
-from rigidfluid.core.setup.fluid import Fluid
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.joint_checks import check_joints
+from rigidfluid.core.setup.mechanism_checks import refuse_invalid
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
+    from rigidfluid.core.joints.joint import Joint
+    from rigidfluid.core.model.interfaces import Body, Mechanism
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
 
@@ -32,12 +37,18 @@ def check_model(model: Model) -> None:
     """Refuse, with SceneError, a model that contradicts itself, or that its objects cannot run."""
     if not (model.bodies or model.mechanisms):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
-    for number, mechanism in enumerate(model.mechanisms):
-        _check_vectors(mechanism, model.dimension, f"mechanism.{number}")
+    for number, placed in enumerate(model.mechanisms):
+        _check_dimension(placed.mechanism, model.dimension, f"mechanism.{number}")
+        refuse_invalid(placed.mechanism, f"mechanism.{number}")
+        _check_vectors(placed, model.dimension, f"mechanism.{number}")
     for number, body in enumerate(model.bodies):
-        _check_positive(f"body.{number}.density", body.density)
+        _check_dimension(body.shape, model.dimension, f"body.{number}")
         _check_vectors(body, model.dimension, f"body.{number}")
         _check_control(body, f"body.{number}")
+    for number, shape in enumerate(model.shapes):
+        refuse_lost_body(shape, f"body.{number}")
+    _check_gravity(model)
+    _check_stepping(model)
     _check_assemblies(model.bodies)
     _check_times(model)
     _check_names(model)
@@ -55,9 +66,9 @@ def check_model(model: Model) -> None:
 
 
 def _check_fluid(model: Model, fluid: Fluid) -> None:
-    _check_positive("fluid.density", fluid.density)
-    _check_positive("fluid.viscosity", fluid.material.dynamic_viscosity)
+    _check_backend(fluid, wet=True)
     _check_material(fluid)
+    _check_fields(fluid)
     _check_source(model, fluid)
     if fluid.initial != "rest" and not fluid.backend.part.initial_flows:
         allowed = f"'rest' with backend {fluid.backend.part.name!r}"
@@ -70,7 +81,9 @@ def _check_fluid(model: Model, fluid: Fluid) -> None:
 
 
 def _check_material(fluid: Fluid) -> None:
-    backend = fluid.backend.part
+    backend, viscosity = fluid.backend.part, fluid.material.dynamic_viscosity
+    if not 0.0 < viscosity < np.inf:
+        raise SceneError("fluid.viscosity", repr(viscosity), "a finite number above 0", "Correct it.")
     if not isinstance(fluid.material, backend.materials):
         found = f"{type(fluid.material).__name__} with backend {backend.name!r}"
         allowed = ", ".join(material.__name__ for material in backend.materials)
@@ -87,12 +100,42 @@ def _check_source(model: Model, fluid: Fluid) -> None:
             raise SceneError("fluid.force", found, f"finite forces of shape {corners.shape}", "Correct the function.")
 
 
-def _check_positive(field: str, value: float) -> None:
-    if not (isinstance(value, int | float | np.floating) and 0.0 < value < np.inf):
-        raise SceneError(field, repr(value), "a finite number above 0", "Correct it.")
+def _check_fields(fluid: Fluid) -> None:
+    if fluid.mesh.field and not fluid.size_fields:
+        found = f"{len(fluid.mesh.field)} tables, of which nothing is made"
+        raise SceneError("mesh.field", found, "none beside `Fluid.size_fields`", "Give the fields as objects there.")
+
+
+def _check_backend(fluid: Fluid | NoFluid, *, wet: bool) -> None:
+    backend = fluid.backend.part
+    if backend.wet != wet:
+        found = f"{backend.name!r}, which is for models {'without' if wet else 'with'} a fluid"
+        raise SceneError("fluid.backend", found, f"one for {type(fluid).__name__}", "Choose another backend.")
+
+
+def _check_dimension(part: Body | Mechanism | Joint, dimension: int, at: str) -> None:
+    if part.dimension != dimension:
+        found = f"{type(part).__name__} in {part.dimension}D"
+        raise SceneError(at, found, f"one in {dimension}D, as the domain is", "Make it with that dimension.")
+
+
+def _check_stepping(model: Model) -> None:
+    if model.stepping.implicit and model.stepping.substeps is not None:
+        allowed = 'none beside `stepping = "implicit"`'
+        raise SceneError("contact.substeps", model.stepping.substeps, allowed, "Remove one of them.")
+
+
+def _check_gravity(model: Model) -> None:
+    if model.gravity is not None and len(model.gravity) != model.dimension:
+        raise SceneError("fluid.gravity", f"{model.gravity}", f"{model.dimension} numbers", "Correct it.")
 
 
 def _check_without_fluid(model: Model) -> None:
+    _check_backend(model.fluid, wet=False)
+    if detection_by(model.detection[0].part).on_mesh:
+        remedy = "Choose another, or leave it to the model."
+        found = f"{model.detection[0].part.name!r} without a mesh"
+        raise SceneError("contact.detector", found, "a detector that needs none", remedy)
     if model.time.tolerance is not None:
         backend = model.fluid.backend.part.name
         allowed = f"none with backend {backend!r}, whose bodies go through contacts in substeps of their own"
@@ -104,8 +147,8 @@ def _check_vectors(placed: RigidBody | PlacedMechanism, dimension: int, at: str)
     lengths = {"position": dimension, "velocity": dimension, "angular_velocity": turns}
     for name, length in lengths.items():
         vector = getattr(placed, name)
-        if vector is not None and (np.shape(vector) != (length,) or not np.isfinite(vector).all()):
-            raise SceneError(f"{at}.{name}", f"{vector}", f"{length} finite numbers", "Correct it.")
+        if vector is not None and len(vector) != length:
+            raise SceneError(f"{at}.{name}", f"{vector}", f"{length} numbers", "Correct it.")
     check_orientation(placed, dimension, at)
 
 

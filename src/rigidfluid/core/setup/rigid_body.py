@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import Body, Mechanism
 from rigidfluid.core.scene.scene import Freedom, PrescribedTable, SpringTable
+from rigidfluid.core.setup.checked import AnyRow, Name, Number, Positive, Vector, checked
 
 DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 """Names of the d+k directions of motion."""
 
-Vector = Sequence[float] | FloatArray
 
-
-@dataclass(frozen=True)
+@checked
 class RigidBody:
     """A rigid body with the velocities v and ω about its centre of mass: where it starts, and what moves it.
 
@@ -50,18 +49,18 @@ class RigidBody:
         Springs and dampers between it and the ground.
     """
 
-    name: str
+    name: Name
     shape: Body
-    density: float
+    density: Positive
     position: Vector
-    angle: float | None = None
-    orientation: Sequence[float] | None = None
+    angle: Number | None = None
+    orientation: Vector | None = None
     velocity: Vector | None = None
     angular_velocity: Vector | None = None
     part_of: str | None = None
     fixed: bool = False
     prescribed: PrescribedTable | None = None
-    free: Sequence[Freedom] | None = None
+    free: Annotated[tuple[Freedom, ...] | None, AnyRow] = None
     spring: SpringTable | None = None
 
     @property
@@ -81,26 +80,26 @@ class RigidBody:
         return np.array([self.free is not None and name not in self.free for name in names])
 
 
-@dataclass(frozen=True)
+@checked
 class PlacedMechanism:
     """A mechanism named ``name`` in its place at the start, that of its centre of mass; the other values are those of a
     `RigidBody`."""
 
-    name: str
+    name: Name
     mechanism: Mechanism
     position: Vector
-    angle: float | None = None
-    orientation: Sequence[float] | None = None
+    angle: Number | None = None
+    orientation: Vector | None = None
     velocity: Vector | None = None
     angular_velocity: Vector | None = None
 
 
-@dataclass(frozen=True)
+@checked
 class JoinedBodies:
     """A joint named ``name`` of a ``kind`` between two bodies by name, or of one with the ground; ``at`` (d,) is its
     point at the start, the first body's if None [length]."""
 
-    name: str
+    name: Name
     kind: Joint
-    between: tuple[str, ...]
+    between: Annotated[tuple[str, ...], AnyRow, Field(min_length=1, max_length=2)]
     at: Vector | None = None

@@ -114,7 +114,8 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     """
     complete = not motion_only or (folder / SUMMARY).exists()
     summary = _summary(folder / SUMMARY) if complete else {}
-    model = model or _model(summary["scene"] if complete else read_scene(folder / CHECKPOINT), folder)
+    told = summary["scene"] if complete else read_scene(folder / CHECKPOINT)
+    model = _model(told, folder) if model is None else _same(model, told, folder)
     system = assemble(model)
     bodies = _table(folder, "bodies", model.dimension, complete=complete)
     if not complete:
@@ -139,6 +140,13 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
         wholes={name: values[:, count:] for name, values in by_state.items()},
         contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, model.dimension, steps),
     )
+
+
+def _same(model: Model, told: dict[str, Any], folder: Path) -> Model:
+    if json.loads(json.dumps(model.document)) != told:
+        remedy = "Give the model that made them."
+        raise OutputError(str(folder), "results of another model", f"those of {model.name!r}", remedy)
+    return model
 
 
 def _model(tables: dict[str, Any], folder: Path) -> Model:
