@@ -14,7 +14,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import JOINT, Registry
 
 
-def joined_bodies(tables: Sequence[JointTable], registry: Registry, dimension: int) -> tuple[JoinedBodies, ...]:
+def scene_joints(tables: Sequence[JointTable], registry: Registry, dimension: int) -> tuple[JoinedBodies, ...]:
     """Joints of a scene; raises PluginError for a type that is not there, SceneError for options that are unknown or
     contradict each other."""
     return tuple(
@@ -25,7 +25,7 @@ def joined_bodies(tables: Sequence[JointTable], registry: Registry, dimension: i
 
 def read_drives(tables: Sequence[JointTable]) -> tuple[JointTable, ...]:
     """Tables with the rows of all files of drives in their place, so that a checkpoint needs no file; raises as
-    `joined_bodies` does."""
+    `scene_joints` does."""
     if not tables:
         return ()
     registry = Registry.load()

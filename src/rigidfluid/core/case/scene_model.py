@@ -10,7 +10,7 @@ from rigidfluid.core.case.boundary import condition_makers
 from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
 from rigidfluid.core.case.contact_table_checks import check_contact_table
 from rigidfluid.core.case.fluid import scene_fluid
-from rigidfluid.core.case.joint_kinds import joined_bodies
+from rigidfluid.core.case.joint_kinds import scene_joints
 from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_options import own_options, refuse_unread
@@ -19,7 +19,7 @@ from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Part
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.scene.scene import BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
+from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.model import ContactStepping, Model
@@ -29,9 +29,6 @@ from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
 
 Case = Scene | Model
 """A scene, or a model that was made of objects."""
-
-AUTO = "auto"
-"""Value of `contact.detector` that leaves the choice to `choose_detector`."""
 
 
 @singledispatch
@@ -90,7 +87,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
         gravity=scene.fluid.gravity,
         boundary=condition_makers(scene.boundary, domain),
         mechanisms=mechanisms,
-        joints=joined_bodies(scene.joint, registry, scene.dimension),
+        joints=scene_joints(scene.joint, registry, scene.dimension),
         laws=tuple(laws),
         detector=detector,
         stepping=ContactStepping(

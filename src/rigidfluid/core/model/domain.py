@@ -1,4 +1,4 @@
-"""The region that fluid and bodies share: the fifth replaceable part."""
+"""The region that fluid and bodies share."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Domain(SpatialPart):
     """
 
     periodic: tuple[tuple[int, int], ...] = ()
-    """Pairs of flat pieces, by their numbers, that a scene makes periodic: what leaves by one comes in by the other.
+    """Pairs of flat pieces, by their numbers, that are periodic: what leaves by one comes in by the other.
     The second is the first displaced; their facets match, and stay."""
 
     @property

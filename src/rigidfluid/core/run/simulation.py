@@ -104,6 +104,7 @@ class Simulation:
         processes: int | None = None,
     ) -> None:
         self.model = model = model_of(case)
+        out = None if out is None else Path(out)
         system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)

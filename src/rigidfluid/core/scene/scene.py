@@ -82,7 +82,7 @@ class _Table(BaseModel, metaclass=_TableType):
 
 
 class _OpenTable(_Table):
-    """A table that also holds the keys of the part it names; `rigidfluid.core.case.parts` validates those."""
+    """A table that also holds the keys of the part it names; `rigidfluid.core.case` validates those."""
 
     model_config = ConfigDict(extra="allow")
 

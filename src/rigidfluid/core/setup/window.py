@@ -60,7 +60,9 @@ def _followed_body(model: Model, table: WindowTable) -> int:
     names = [body.name for body in model.all_bodies]
     if table.follow not in names:
         allowed = f"a body: {', '.join(names)}"
-        raise SceneError("domain.window.follow", repr(table.follow), allowed, suggestion(table.follow, names))
+        raise SceneError(
+            "domain.window.follow", repr(table.follow), allowed, suggestion(table.follow, names) or "Name one of these."
+        )
     number = names.index(table.follow)
     if model.all_bodies[number].fixed:
         found = f"{table.follow!r}, which is fixed"

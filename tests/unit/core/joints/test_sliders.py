@@ -282,7 +282,7 @@ REFUSED = {
         "starts at the displacement 0.1",
     ),
     "a ball in 2D": ({"type": "ball", "at": [2.0, 2.0]}, "joint.0.type: found 'ball' in 2D", "Set type = 'hinge'"),
-    "a ball nowhere": ({"type": "ball"}, "joint.0.at: found nothing", "Add the key 'at'"),
+    "a hinge nowhere": ({"type": "hinge"}, "joint.0.at: found nothing", "Add the key 'at'"),
     "no such joint": ({"type": "slyder"}, "joint.0.type", "Did you mean 'slider'?"),
 }
 
