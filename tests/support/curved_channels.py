@@ -103,16 +103,17 @@ def from_within(_time: float, at: FloatArray) -> FloatArray:
     return at / np.sum(at**2, axis=1, keepdims=True)
 
 
-def flow_between_cylinders(layers: int, inner: float, outer: float) -> Flow:
+def flow_between_cylinders(layers: int, inner: float, outer: float, *, wall: bool = True) -> Flow:
     """Steady Stokes flow round a disk that turns with the angular velocity ``inner`` in a round wall that turns with
-    ``outer``."""
+    ``outer``, or a surface with that velocity that is no ``wall``."""
 
     def turning(at: FloatArray) -> FloatArray:
         return outer * np.column_stack([-at[:, 1], at[:, 0]])
 
-    wall = NoSlip(1, "outer", None, turning)
+    around = PrescribedVelocity(1, "outer", None, lambda _, at: turning(at))
+    condition = NoSlip(1, "outer", None, turning) if wall else around
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
-    start = Flow.start(_backend(1, (wall,)), bend(layers, None), pose, Bodies.uniform(pose))
+    start = Flow.start(_backend(1, (condition,)), bend(layers, None), pose, Bodies.uniform(pose))
     return start.after(None, twist=np.array([[0.0, 0.0, inner]]))
 
 

@@ -18,6 +18,9 @@ from rigidfluid.taylor_hood.frames import local_frames
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.periodic import originals
 
+ROUNDING = 1e-12
+"""Flow over the greatest that counts as none [1]."""
+
 MOST_SCALED = 0.1
 """Greatest relative imbalance of inflow and outflow that a coarse mesh may make of equal ones [1]."""
 
@@ -152,6 +155,8 @@ class Surfaces:
             return
         each = self.ranks.sum(np.array([face.in_and_out(node_points, velocity) for face in held]))
         flow, passed = each.sum(axis=1).sum(), np.abs(each).sum()
+        if passed <= ROUNDING * self._greatest_flow(held, velocity, node_points):
+            return  # it goes along its faces
         if abs(flow) > MOST_SCALED * passed:
             raise SceneError(
                 "boundary",
@@ -165,6 +170,12 @@ class Surfaces:
                 # through a flat face the fluid may go both ways, as it does in shear
                 way = parts.sum() if normal is None else velocity[face.nodes] @ normal[:, None]
                 velocity[face.nodes] *= 1.0 - np.sign(way) * flow / passed
+
+    def _greatest_flow(self, faces: Sequence[Face], velocity: FloatArray, node_points: FloatArray) -> float:
+        """Flow through a square of the domain's length at the greatest speed on ``faces`` [length^d/time]."""
+        speed = max(float(np.linalg.norm(velocity[face.nodes], axis=1).max(initial=0.0)) for face in faces)
+        length = float(np.ptp(node_points, axis=0).max())
+        return float(self.ranks.sum(np.array([speed * length ** (node_points.shape[1] - 1)])).sum())
 
     def resultants(self, node_force: FloatArray, node_points: FloatArray, position: FloatArray) -> FloatArray:
         """Force and torque (n, d+k) of ``node_force`` (nodes, d) over each body's nodes.
