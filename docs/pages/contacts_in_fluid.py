@@ -80,9 +80,10 @@ the disk all the time.
 
 Beside the page of 2026-11-22 ({created:.2f} % are created at most; then .39 %) more is lost in some cases: dropped
 4.36 % then at 4 ms, stacked 2.83 % at 4 ms and .03 % at .25 ms, head_on .37 % at .25 ms, settling 1.77 % at 1 ms.
-Responses of the bodies to impulses were then off by up to .6 %; they are solved for more exactly since, and dropped
-loses 3.1 % and settling 1.0 % again. New meshes keep cells next to bodies, which changes the rebound of head_on, from
-6.31 to 6.19 cm/s. It is nearer to what finer meshes give: with size_body .03, .015, .0075 cm at 1 ms
+Responses of the bodies to impulses were then off by up to .6 %; solved for more exactly, dropped loses 3.34 % at 4 ms,
+settling 1.83 % at 1 ms, stacked 3.30 % at 4 ms and .24 % at .25 ms, head_on .67 % at .25 ms. What is left beyond the
+figures of 2026-11-22 has not been put to a cause. New meshes keep cells next to bodies since, which changes the rebound
+of head_on, from 6.31 to 6.19 cm/s. It is nearer to what finer meshes give: with size_body .03, .015, .0075 cm at 1 ms
 6.19, 5.84, 5.71 cm/s now and 6.31, 5.92, 5.72 then. Without stabilisation .62 % in place of .86 % is lost there at .5
 ms.
 
