@@ -133,7 +133,7 @@ def _check_gravity(model: Model) -> None:
 def _check_without_fluid(model: Model) -> None:
     _check_backend(model.fluid, wet=False)
     if detection_by(model.detection[0].part).on_mesh:
-        remedy = "Choose another, or leave it to the model."
+        remedy = 'Use detector = "auto", or a backend with a mesh.'
         found = f"{model.detection[0].part.name!r} without a mesh"
         raise SceneError("contact.detector", found, "a detector that needs none", remedy)
     if model.time.tolerance is not None:
