@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from rigidfluid.core.case.expressions import VectorExpression
-from rigidfluid.core.case.part_options import refuse_unread
+from rigidfluid.core.case.part_options import build_part, refuse_unread
 from rigidfluid.core.fluid.material import Newtonian
-from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.scene.scene import FluidTable, MeshTable, SizeFieldTable
+from rigidfluid.core.scene.scene import FluidTable, MeshTable
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
@@ -21,7 +20,7 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
     Raises PluginError for a backend that is missing, SceneError for an option that is not allowed, and where density,
     viscosity or mesh are missing.
     """
-    backend = scene_backend(table, registry)
+    backend = _backend(table, registry)
     source = None if table.force is None else VectorExpression.parse(table.force, "fluid.force")
     if not backend.part.wet:
         _refuse_flow(table, backend.part)
@@ -43,13 +42,14 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
         source=source,
         initial=initial if isinstance(initial, str) else VectorExpression.parse(initial, "fluid.initial"),
         size_fields=tuple(
-            _size_field(field, f"mesh.field.{number}", registry, dimension) for number, field in enumerate(mesh.field)
+            build_part(SIZE_FIELD, field, f"mesh.field.{number}", registry, dimension)
+            for number, field in enumerate(mesh.field)
         ),
         backend=backend,
     )
 
 
-def scene_backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
+def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     """Class of the backend that a scene names, and its options."""
     part = registry.find(FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
     refuse_unread(table.options, [part], type(table).model_fields, "fluid")
@@ -66,14 +66,3 @@ def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:
         allowed = f"'rest' with backend {backend.name!r}"
         remedy = "Leave it out, or choose backend = 'scikit-fem'."
         raise SceneError("fluid.initial", table.initial, allowed, remedy)
-
-
-def _size_field(table: SizeFieldTable, at: str, registry: Registry, dimension: int) -> SizeField:
-    part = registry.get(SIZE_FIELD, table.type, f"{at}.type")
-    refuse_unread(table.options, [part], type(table).model_fields, at)
-    options = read_table(part.Options, table.options, at)
-    try:
-        return part(options, dimension)
-    except SceneError as error:  # a field does not know its number
-        subject = f"{at}.{error.subject.removeprefix('mesh.field.')}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None

@@ -1,4 +1,4 @@
-"""A scene's mechanisms: found, built, and checked for what their authors may have got wrong."""
+"""A scene's mechanisms: found and built."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.scene.scene import MechanismTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
-from rigidfluid.core.setup.mechanism_checks import refuse_invalid
 from rigidfluid.core.setup.rigid_body import PlacedMechanism
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
@@ -47,5 +46,4 @@ def _built(table: MechanismTable, registry: Registry, dimension: int, at: str) -
     except (SceneError, PluginError) as error:  # a mechanism does not know its number
         subject = f"{at}.{error.subject.partition('.')[2]}"
         raise type(error)(subject, error.found, error.allowed, error.remedy) from None
-    refuse_invalid(mechanism, at)
     return mechanism

@@ -1,12 +1,17 @@
-"""Options of a part among the keys of its table."""
+"""Parts of their tables: their options among the keys, and how they are built."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
-from rigidfluid.core.model.interfaces import Part, PartOptions
+from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
+from rigidfluid.core.scene.scene import BodyTable, SizeFieldTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import Kind, Registry
+
+S = TypeVar("S", bound=SpatialPart)
 
 
 def own_options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:
@@ -23,3 +28,18 @@ def refuse_unread(
     for key in options:
         if key not in known:
             raise unknown_key(f"{at}.{key}", known | set(common), hint)
+
+
+def build_part(kind: Kind[S], table: BodyTable | SizeFieldTable, at: str, registry: Registry, dimension: int) -> S:
+    """Part of a kind that a table in a list of the scene names, at the place ``at`` (``body.0``).
+
+    Raises PluginError if it is missing, SceneError for an option that is unknown or refused.
+    """
+    part = registry.get(kind, table.type, f"{at}.type")
+    refuse_unread(table.options, [part], type(table).model_fields, at)
+    options = read_table(part.Options, table.options, at)
+    try:
+        return part(options, dimension)
+    except SceneError as error:  # a part does not know its number
+        own_key = error.subject.removeprefix(f"{at.rpartition('.')[0]}.")
+        raise SceneError(f"{at}.{own_key}", error.found, error.allowed, error.remedy) from None

@@ -13,7 +13,7 @@ from rigidfluid.core.case.fluid import scene_fluid
 from rigidfluid.core.case.joint_kinds import scene_joints
 from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
-from rigidfluid.core.case.part_options import own_options, refuse_unread
+from rigidfluid.core.case.part_options import build_part, own_options, refuse_unread
 from rigidfluid.core.case.periodic import periodic_pairs
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
@@ -24,7 +24,6 @@ from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.model import ContactStepping, Model
 from rigidfluid.core.setup.rigid_body import RigidBody
-from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
 
 Case = Scene | Model
@@ -110,20 +109,9 @@ def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Reg
 
 
 def _body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:
-    shape = _shape(table, at, registry, dimension)
+    shape = build_part(BODY, table, at, registry, dimension)
     own = {field.name: getattr(table, field.name) for field in fields(RigidBody) if field.name != "shape"}
     return RigidBody(shape=shape, **own)
-
-
-def _shape(table: BodyTable, at: str, registry: Registry, dimension: int) -> Body:
-    part = registry.get(BODY, table.type, f"{at}.type")
-    refuse_unread(table.options, [part], type(table).model_fields, at)
-    options = read_table(part.Options, table.options, at)
-    try:
-        return part(options, dimension)
-    except SceneError as error:  # a body does not know its number
-        subject = f"{at}.{error.subject.removeprefix('body.')}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
 
 
 def _detector(
@@ -134,18 +122,12 @@ def _detector(
     laws: Sequence[ContactLaw],
 ) -> tuple[Selected[Detector], str]:
     """The detector that a scene names, or the cheapest that is exact for shapes in a domain; and why it is this one."""
-    part, why = _detector_class(table, registry, around, wet and bool(laws))
+    if table.detector == AUTO:
+        shapes, domain = around
+        part, why = choose_detector(shapes, domain.pieces, wet and bool(laws), registry)
+    else:
+        part, why = registry.get(DETECTOR, table.detector), "the scene names it"
     readers: list[type[Part]] = [part, laws[0].law.part] if table.law else [part]
     hint = "" if table.law else "Name the law that reads it: `law = …`."
     refuse_unread(table.options, readers, type(table).model_fields, "contact", hint)
     return Selected(part, own_options(part, table.options, "contact")), why
-
-
-def _detector_class(
-    table: ContactTable, registry: Registry, around: tuple[Sequence[Body], Domain], mesh: bool
-) -> tuple[type[Detector], str]:
-    if table.detector != AUTO:
-        return registry.get(DETECTOR, table.detector), "the scene names it"
-    shapes, domain = around
-    detector, why = choose_detector(shapes, domain.pieces, mesh, registry)
-    return detector, f"chosen as {why}"

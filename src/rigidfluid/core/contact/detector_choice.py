@@ -13,13 +13,14 @@ from rigidfluid.registry import DETECTOR, Registry
 def choose_detector(
     bodies: Sequence[Body], pieces: Sequence[Piece], mesh: bool, registry: Registry
 ) -> tuple[type[Detector], str]:
-    """Cheapest installed detector that is exact for ``bodies`` between ``pieces``, and its reason.
+    """Cheapest installed detector that is exact for ``bodies`` between ``pieces``, and why it is chosen, in words.
 
     Without ``mesh`` none that needs one is asked. The built-in `brute_force` takes all shapes.
     """
     usable = [part for part in registry.installed(DETECTOR) if mesh or not detection_by(part).on_mesh]
     reasons = {part: reason for part in usable if (reason := part.exact_for(bodies, pieces))}
-    return min(reasons.items(), key=lambda found: found[0].cost)
+    cheapest = min(reasons, key=lambda part: part.cost)
+    return cheapest, f"chosen as {reasons[cheapest]}"
 
 
 def exact_detector(bodies: Sequence[Body], pieces: Sequence[Piece], registry: Registry) -> type[Detector]:

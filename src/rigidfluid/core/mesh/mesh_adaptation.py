@@ -45,8 +45,8 @@ class Renewal:
     """Conditions on which a mesh is made anew.
 
     Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
-    ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a
-    cell is nearly tangled.
+    ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly
+    tangled.
     """
 
     quality: float
@@ -57,10 +57,9 @@ class Renewal:
 class MeshUpdater:
     """`Updater` that re-makes the mesh where its quality, its cells' sizes, a gap or its age asks for that.
 
-    Each mesh has the cells that ``fields`` ask for, by the flow
-    on the mesh before; the first one, which ``inserter`` makes, by a fluid and bodies at rest. All others are made on
-    the conditions of ``renewal``. ``watch`` times a stage by its name; the carrying over of the fluid is the stage
-    "transfer".
+    Each mesh has the cells that ``fields`` ask for, by the flow on the mesh before; the first one, which ``inserter``
+    makes, by a fluid and bodies at rest. All others are made on the conditions of ``renewal``. ``watch`` times a stage
+    by its name; the carrying over of the fluid is the stage "transfer".
     """
 
     def __init__(

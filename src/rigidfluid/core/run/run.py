@@ -62,8 +62,7 @@ def run(
 
     Any other error, as that of a plug-in, leaves a summary too.
     """
-    folder = None if out is None else Path(out)
-    with one_openblas_thread(), no_exit(), closing(Simulation(case, folder, resume, processes)) as simulation:
+    with one_openblas_thread(), no_exit(), closing(Simulation(case, out, resume, processes)) as simulation:
         told = finished or (lambda _: None)
         if progress is not None:
             simulation.observe(lambda now: progress(_progress(now)))

@@ -451,7 +451,7 @@ def _earlier(model: Model, out: Path | None, backend: FluidBackend) -> Checkpoin
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
     checkpoint = checkpoint_for(backend, out)
-    stored, given = tables_now(json.loads(checkpoint.scene)), json.loads(json.dumps(model.document))
+    stored, given = tables_now(json.loads(checkpoint.scene)), dict(model.document)
     stored["time"]["end"] = given["time"]["end"]
     if _is_of_another(backend, stored["fluid"]["backend"]):
         stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))

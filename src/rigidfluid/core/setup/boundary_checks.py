@@ -15,6 +15,7 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.fluid.conditions import BoundaryCondition
+    from rigidfluid.core.geometry.arrays import FloatArray
     from rigidfluid.core.geometry.piece import Piece
     from rigidfluid.core.setup.model import Model
 
@@ -39,9 +40,10 @@ def check_boundary(model: Model) -> None:
     placed = list(zip(model.conditions, model.domain.pieces, strict=True))
     for condition, piece in placed:
         if condition.is_wall:
-            _check_sliding(model, condition, piece)
+            _check_wall(model, condition, piece)
     for condition, piece in placed:
-        _check_values(model, condition, piece)
+        if not condition.is_wall:
+            _check_values(model, condition, piece)
 
 
 def check_inflow(model: Model) -> None:
@@ -111,11 +113,10 @@ def _check_pairs(model: Model) -> None:
     for first, second in model.domain.periodic:
         known = first in range(len(pieces)) and second in range(len(pieces)) and first != second
         if not (known and paired.count(first) == paired.count(second) == 1):
-            found, allowed = (
-                f"the pair {(first, second)}",
-                f"two of the numbers 0 to {len(pieces) - 1}, each in one pair",
+            allowed = f"two of the numbers 0 to {len(pieces) - 1}, each in one pair"
+            raise SceneError(
+                "domain.periodic", f"the pair {(first, second)}", allowed, "Correct the numbers of pieces."
             )
-            raise SceneError("domain.periodic", found, allowed, "Correct the numbers of pieces.")
         if not is_opposite(model.domain, pieces[first], pieces[second]):
             names = f"{pieces[first].name!r} and {pieces[second].name!r}"
             allowed = "flat pieces that are equal and face each other"
@@ -139,14 +140,16 @@ def oblique_conditions(model: Model) -> list[BoundaryCondition]:
     return [each for each, along in zip(model.conditions, across, strict=True) if each.holds_part and not along]
 
 
-def _check_sliding(model: Model, condition: BoundaryCondition, piece: Piece) -> None:
-    """Refuse a wall whose velocity leads out of itself somewhere."""
-    _check_wall_velocity(model, condition, piece)
+def _check_wall(model: Model, condition: BoundaryCondition, piece: Piece) -> None:
+    """Refuse a wall whose velocity is not that by which bodies meet it, or leads out of itself somewhere."""
+    points = points_of(piece.shape, model.domain)
     if condition.sliding is None:
+        _check_wall_velocity(model, condition, points, np.zeros_like(points))
         return
+    moving = condition.sliding(points)
+    _check_wall_velocity(model, condition, points, moving)
     shape, key, given = piece.shape, *_given(condition.sliding)
-    points = points_of(shape, model.domain)
-    moving, normal = condition.sliding(points), shape.normal(points)
+    normal = shape.normal(points)
     across = np.sum(moving * normal, axis=1)
     worst = int(np.argmax(np.abs(across)))
     allowed = ACROSS if shape.plane is not None else ACROSS_CURVED
@@ -159,10 +162,8 @@ def _check_sliding(model: Model, condition: BoundaryCondition, piece: Piece) -> 
         raise SceneError(f"{condition.field}.{key}", found, "a velocity along the wall", f"{remedy}.")
 
 
-def _check_wall_velocity(model: Model, condition: BoundaryCondition, piece: Piece) -> None:
-    """Refuse a wall whose velocity is not that by which bodies meet it."""
-    points = points_of(piece.shape, model.domain)
-    slides = np.zeros_like(points) if condition.sliding is None else condition.sliding(points)
+def _check_wall_velocity(model: Model, condition: BoundaryCondition, points: FloatArray, slides: FloatArray) -> None:
+    """Refuse a wall whose velocity at ``points`` (N, d) is not ``slides`` (N, d), by which bodies meet it."""
     for time in (0.0, 0.5 * model.time.end, model.time.end):
         if not np.array_equal(condition.velocity(time, points), slides):
             found = f"a wall {condition.name!r} with a velocity of its own at time {time:g}"

@@ -24,7 +24,7 @@ def component_bodies(mechanisms: Sequence[PlacedMechanism], dimension: int) -> t
     poses, twists = carried.poses(pose, 0.0), carried.kinematics(pose, 0.0).component_twist(twist)
     return tuple(
         RigidBody(
-            name=component_name(name, part.name),
+            name=f"{name}.{part.name}",
             shape=part.shape,
             density=part.density,
             position=tuple(poses.position[i].tolist()),
@@ -36,8 +36,3 @@ def component_bodies(mechanisms: Sequence[PlacedMechanism], dimension: int) -> t
         )
         for i, (name, part) in enumerate(owners)
     )
-
-
-def component_name(mechanism: str, component: str) -> str:
-    """Name of a component among the bodies."""
-    return f"{mechanism}.{component}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +38,7 @@ def _told(value: Any) -> Any:
         return value.model_dump(mode="json", exclude_none=True)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    if value is None or isinstance(value, bool | int | float | str | Enum):
+    if value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, Mapping):
         return {str(key): _told(inner) for key, inner in value.items()}

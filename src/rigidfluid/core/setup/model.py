@@ -192,7 +192,7 @@ class Model:
         if self.detector is not None:
             return self.detector, self._detector_why
         part, why = choose_detector(self.shapes, self.domain.pieces, self.wet and bool(self.laws), self.registry)
-        return Selected(part, part.Options()), f"chosen as {why}"
+        return Selected(part, part.Options()), why
 
     @cached_property
     def exact_detector(self) -> type[Detector]:
