@@ -22,7 +22,7 @@ from linked_runs import body, linked_scene
 from typer.testing import CliRunner
 
 import rigidfluid
-from rigidfluid.api import OutputError, Simulation, TimeTable, scene_from_dict
+from rigidfluid.api import Fluid, OutputError, Simulation, TimeTable, model_of, scene_from_dict
 from rigidfluid.cli import app
 from rigidfluid.core.output.records import columns
 from rigidfluid.post.reports.report import report
@@ -279,7 +279,7 @@ def test_the_example_of_a_joint_runs(install: Install, tmp_path: Path) -> None:
 def test_the_example_of_a_size_field_runs(install: Install, tmp_path: Path) -> None:
     """Cells next to a fast disk are finer in the second mesh, named in the scene or handed over; its contract holds."""
     example = section(text("docs/plugins.md"), "A size field, from nothing")
-    code, contract, handed_over = blocks(example, "python")
+    code, contract = blocks(example, "python")
     assert imports_the_public_face_alone(code + contract)
     (table,) = (tomllib.loads(block)["mesh"]["field"] for block in blocks(example, "toml"))
     folder = install(code, name="fast", module="rigidfluid_fast")
@@ -287,9 +287,10 @@ def test_the_example_of_a_size_field_runs(install: Install, tmp_path: Path) -> N
     scene["body"][0]["velocity"] = [0.0, -10.0]
     plain, named = scene_from_dict(scene), scene_from_dict(scene | {"mesh": scene["mesh"] | {"field": table}})
     module = importlib.import_module("rigidfluid_fast")
-    names = {"Simulation": Simulation, "scene": plain, "Fast": module.Fast, "FastOptions": module.FastOptions}
-    exec(handed_over, names)
-    simulations = Simulation(plain), Simulation(named), names["simulation"]
+    model = model_of(plain)
+    assert isinstance(model.fluid, Fluid)
+    fluid = replace(model.fluid, size_fields=[module.Fast(module.FastOptions(size=0.03), 2)])
+    simulations = [Simulation(each) for each in (plain, named, replace(model, fluid=fluid))]
     for simulation in simulations:
         simulation.go(0.012)
     without, *with_it = (len(simulation.state.mesh.cells) for simulation in simulations)

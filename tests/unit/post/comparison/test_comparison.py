@@ -46,6 +46,7 @@ BACKENDS = f"""
 
     from rigidfluid.backends.dry import Dry
     from rigidfluid.backends.scikit_fem import ScikitFem
+    from rigidfluid.core.fluid.material import Newtonian
     from rigidfluid.core.model.interfaces import PartOptions
     from rigidfluid.errors import StepError
     from rigidfluid.hookspecs import hookimpl
@@ -395,7 +396,7 @@ def test_complete_runs_are_kept(started: list[tuple[str, bool]], tmp_path: Path)
         scene = backend_scenes(BOUNCE, ["dry", "pushed"], [*SHORT, *settings])["pushed"]
         made = runs.backend_run("pushed", scene, tmp_path, fresh=fresh)
         assert made.results is not None
-        assert made.results.scene == scene
+        assert made.results.summary["scene"] == scene.to_dict()
         return made.kept, len(started)
 
     assert run() == (False, 1)
