@@ -95,6 +95,7 @@ from rigidfluid.core.scene.scene import (
     TimeTable,
     WindowTable,
 )
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
@@ -103,6 +104,7 @@ from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, Rigi
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.obstacles import Obstacles
 from rigidfluid.errors import (
+    ArgumentError,
     MeshError,
     OutputError,
     PluginError,
@@ -132,7 +134,6 @@ from rigidfluid.registry import (
     SIZE_FIELD,
     Registry,
     missing_packages,
-    suggestion,
 )
 
 if TYPE_CHECKING:
@@ -150,6 +151,7 @@ __all__ = [
     "SIZE_FIELD",
     "Advance",
     "Angle",
+    "ArgumentError",
     "AtRest",
     "Body",
     "BoolArray",

@@ -2,6 +2,7 @@
 
 RigidfluidError
 ├── SceneError          the scene or study file, or a value in it, cannot be used
+│   └── ArgumentError   a value that was given in Python, not in a file
 ├── PluginError         a plug-in is missing, misspelt, doubled or incomplete
 ├── MeshError           no valid mesh can be made for this geometry
 ├── OutputError         a result cannot be written or read back
@@ -42,6 +43,10 @@ class RigidfluidError(Exception):
 
 class SceneError(RigidfluidError):
     """The scene or study file, or a value in it, cannot be used."""
+
+
+class ArgumentError(SceneError, ValueError):
+    """A table, or options of a part, cannot be made in Python of these values."""
 
 
 class PluginError(RigidfluidError):

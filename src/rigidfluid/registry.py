@@ -5,7 +5,6 @@ The built-in parts come through the same entry points as everyone else's.
 
 from __future__ import annotations
 
-import difflib
 import inspect
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.entry_points import load, origin
 from rigidfluid.errors import PluginError
 
@@ -162,12 +162,6 @@ class Registry:
         failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}." for one in self.unloaded)
         guess = suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
-
-
-def suggestion(word: str, words: Iterable[str]) -> str:
-    """The question "Did you mean …?" with the nearest of ``words``, or nothing where none is near."""
-    near = difflib.get_close_matches(word, list(words), n=1)
-    return f"Did you mean {near[0]!r}?" if near else ""
 
 
 def _register(manager: pluggy.PluginManager, module: Any, plugin: str) -> None:

@@ -15,10 +15,10 @@ SOURCE = Path(rigidfluid.__file__).parent
 BELOW = {
     "geometry": "",
     "fluid": "geometry",
-    "model": "fluid geometry",
+    "model": "scene fluid geometry",
     "mechanics": "model geometry",
     "joints": "mechanics model geometry",
-    "scene": "model geometry",
+    "scene": "",
     "nested": "mechanics scene model geometry",
     "output": "model geometry",
     "mesh": "mechanics model geometry",

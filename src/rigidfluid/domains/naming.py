@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rigidfluid.core.scene.scene import PRINTABLE
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 Labels = int | str | tuple[int | str, ...]
 """Numbers or names that a file gives to parts of a boundary."""

@@ -14,6 +14,7 @@ from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.scene import StrokeTable
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 from rigidfluid.mechanisms.components import ComponentTable, build_components
@@ -24,7 +25,6 @@ from rigidfluid.mechanisms.strokes import (
     StrokedMechanism,
     Translation,
 )
-from rigidfluid.registry import suggestion
 
 _AT = "mechanism"
 

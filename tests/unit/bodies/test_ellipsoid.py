@@ -1,12 +1,11 @@
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from scipy.optimize import minimize_scalar
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import ArgumentError, SceneError
 
 
 def ellipsoid(*semi_axes: float) -> Ellipsoid:
@@ -84,10 +83,10 @@ def test_as_many_axes_as_dimensions() -> None:
 
 @pytest.mark.parametrize("semi_axes", [[1.0], [1.0, 0.0], [1.0, -1.0], [1.0, float("inf")], [1.0] * 4])
 def test_options_refuse_what_is_no_ellipsoid(semi_axes: list[float]) -> None:
-    with pytest.raises(ValidationError):
+    with pytest.raises(ArgumentError):
         EllipsoidOptions(semi_axes=semi_axes)
 
 
 def test_options_refuse_what_is_no_ball() -> None:
-    with pytest.raises(ValidationError):
+    with pytest.raises(ArgumentError):
         SphereOptions(radius=0.0)

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from touching import contact
 
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 
 RANGE, EPSILON = 0.02, 5e-6
@@ -51,5 +50,5 @@ def test_shapes_that_are_no_balls_are_refused(radii: tuple[float, float]) -> Non
     "keys", [{}, {"epsilon": 0.0}, {"epsilon": 1.0, "epsilon_wall": -1.0}, {"epsilon": 1.0, "eps": 1.0}]
 )
 def test_options_refuse_what_has_no_meaning(keys: dict[str, float]) -> None:
-    with pytest.raises(ValidationError):
+    with pytest.raises(ArgumentError):
         CentreOptions(**keys)

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from touching import NORMAL, contact
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Motion
+from rigidfluid.errors import ArgumentError
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
 RANGE, STIFFNESS, GAP = 0.02, 1e4, 0.005
@@ -78,5 +78,5 @@ def test_friction_is_limited_by_the_whole_normal_force(approach: float) -> None:
     ],
 )
 def test_options_refuse_what_has_no_meaning(keys: dict[str, float]) -> None:
-    with pytest.raises(ValidationError):
+    with pytest.raises(ArgumentError):
         SpringDashpotOptions(stiffness=1.0, **keys)

@@ -10,9 +10,9 @@ from functools import reduce
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.validation import LARGEST
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 LONGEST, DEEPEST = 1000, 200
 """Greatest number of characters of a formula, and of operations nested within one another."""

@@ -8,20 +8,19 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
-    ValidationError,
     ValidationInfo,
     WithJsonSchema,
     field_validator,
 )
 
-from rigidfluid.core.scene.validation import scene_error
+from rigidfluid.core.scene.table_type import TableType
 from rigidfluid.core.scene.vectors import (
     DIMENSION,
     Angular,
@@ -57,25 +56,7 @@ SizeBody = Annotated[
 ]
 
 
-if TYPE_CHECKING:
-    from pydantic._internal._model_construction import ModelMetaclass as _ModelType
-else:
-    _ModelType = type(BaseModel)
-
-
-class _TableType(_ModelType):
-    """Class of tables: who makes one in Python gets our errors; tables that are read are not made by a call."""
-
-    if not TYPE_CHECKING:  # each table has the signature that pydantic gives it
-
-        def __call__(cls, **keys: Any) -> Any:
-            try:
-                return super().__call__(**keys)
-            except ValidationError as error:
-                raise scene_error(cls, error, cls.__name__) from None
-
-
-class _Table(BaseModel, metaclass=_TableType):
+class _Table(BaseModel, metaclass=TableType):
     """A table whose keys are all given here."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

@@ -12,9 +12,9 @@ from pydantic import AliasChoices, AliasPath, BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import WRONG_LENGTH
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 LARGEST, SMALLEST = 1e30, 1e-30
 """Numbers of a scene lie between these, or are zero: powers and products of them then stay finite."""

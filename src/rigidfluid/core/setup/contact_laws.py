@@ -14,9 +14,9 @@ from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Loads
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.checked import AnyRow, Positive, checked
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model

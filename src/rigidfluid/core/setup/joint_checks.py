@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.rigid_body import DIRECTIONS
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.geometry.arrays import FloatArray

@@ -11,6 +11,7 @@ import numpy as np
 
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.nested.placing import check_orientation
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.boundary_checks import check_boundary, check_inflow, check_oblique, check_periodic
@@ -21,7 +22,6 @@ from rigidfluid.core.setup.mechanism_checks import refuse_invalid
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint

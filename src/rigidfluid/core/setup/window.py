@@ -11,8 +11,8 @@ from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.fluid.conditions import BoundaryCondition, PrescribedPressure
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 if TYPE_CHECKING:
     from rigidfluid.core.scene.scene import WindowTable

@@ -16,9 +16,9 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.tables import KINDS
 from rigidfluid.core.run.summary import ENERGIES, FIGURES
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
 from rigidfluid.post.studies.model import FigureTable
-from rigidfluid.registry import suggestion
 
 _FIELD = "error.figure"
 

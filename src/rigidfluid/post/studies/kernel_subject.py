@@ -7,13 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import RigidfluidError, SceneError
 from rigidfluid.post.studies.kernels import KERNELS
 from rigidfluid.post.studies.kernels.kernel import Kernel
 from rigidfluid.post.studies.model import Settings, Study
 from rigidfluid.post.studies.subject import Outcome, Target, tried
-from rigidfluid.registry import suggestion
 
 
 class KernelSubject:

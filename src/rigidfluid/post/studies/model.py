@@ -11,9 +11,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rigidfluid.core.scene.scene import read_toml
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import suggestion
 
 Settings = dict[str, Any]
 """Values by dotted key of the scene."""

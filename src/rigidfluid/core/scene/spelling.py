@@ -1,0 +1,12 @@
+"""The nearest of known words to one that is not known."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+def suggestion(word: str, words: Iterable[str]) -> str:
+    """The question "Did you mean …?" with the nearest of ``words``, or nothing where none is near."""
+    near = difflib.get_close_matches(word, list(words), n=1)
+    return f"Did you mean {near[0]!r}?" if near else ""

@@ -1,0 +1,59 @@
+"""Options of parts that are made in Python."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import pytest
+from pydantic import AliasChoices, Field, ValidationError, field_validator
+
+from rigidfluid.api import ArgumentError, NestedBodyTable, PartOptions, SceneError, SphereOptions
+from rigidfluid.core.scene.validation import read_table
+
+
+class PaintOptions(PartOptions):
+    """Of somebody else's part: an alias, and options of another part made within."""
+
+    colour: str = Field(default="red", validation_alias=AliasChoices("colour", "color"), description="Of its paint")
+    drop: float = Field(default=1.0, description="Size of a drop [length]")
+
+    @field_validator("drop")
+    @classmethod
+    def of_a_ball(cls, drop: float) -> float:
+        """A drop is a ball."""
+        return SphereOptions(radius=drop).radius
+
+
+REFUSED = {
+    "a value out of range": (SphereOptions, {"radius": -1}, r"SphereOptions\.radius: found -1; .* greater than 0\."),
+    "a wrong type": (SphereOptions, {"radius": "wide"}, r"SphereOptions\.radius: found 'wide'; allowed is a valid"),
+    "an unknown key": (SphereOptions, {"raduis": 1.0}, r"SphereOptions\.raduis: found a key.* Did you mean 'radius'\?"),
+    "nothing": (SphereOptions, {}, r"SphereOptions\.radius: found nothing; allowed is .*Add the key 'radius'"),
+    "no string by an alias": (PaintOptions, {"color": 1}, r"PaintOptions\.color.*: found 1; allowed is a valid string"),
+    "a body without a type": (NestedBodyTable, {"position": (0.0,)}, r"NestedBodyTable\.type: found nothing"),
+}
+
+
+@pytest.mark.parametrize(("options", "keys", "said"), REFUSED.values(), ids=REFUSED)
+def test_the_error_names_class_and_field_the_value_and_what_is_allowed(
+    options: type[PartOptions], keys: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(ArgumentError, match=said) as caught:
+        options(**keys)
+    assert isinstance(caught.value, SceneError)
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+def test_who_catches_what_pydantic_raises_catches_it_too() -> None:
+    with pytest.raises(ValueError, match="radius"):
+        SphereOptions(radius=-1)
+    with pytest.raises(ArgumentError, match=r"PaintOptions\.drop: found -1\.0; .*SphereOptions\.radius: found -1\.0"):
+        PaintOptions(drop=-1.0)
+
+
+def test_what_reads_a_table_is_told_by_pydantic_and_names_its_place() -> None:
+    with pytest.raises(ValidationError):
+        SphereOptions.model_validate({"radius": -1.0})
+    with pytest.raises(SceneError, match=r"^body\.0\.radius: found -1\.0"):
+        read_table(SphereOptions, {"radius": -1.0}, "body.0")
