@@ -5,6 +5,7 @@ from __future__ import annotations
 from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.case.part_options import build_part, refuse_unread
 from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.scene import FluidTable, MeshTable
@@ -24,7 +25,7 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
     source = None if table.force is None else VectorExpression.parse(table.force, "fluid.force")
     if not backend.part.wet:
         _refuse_flow(table, backend.part)
-        return NoFluid(table.density or 0.0, backend)
+        return NoFluid(table.density or 0.0, backend, mesh, _size_fields(mesh, registry, dimension))
     beside = f"with backend {backend.part.name!r}"
     for key in ("density", "viscosity"):
         if getattr(table, key) is None:
@@ -41,12 +42,15 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
         inertia=table.model == "navier-stokes",
         source=source,
         initial=initial if isinstance(initial, str) else VectorExpression.parse(initial, "fluid.initial"),
-        size_fields=tuple(
-            build_part(SIZE_FIELD, field, f"mesh.field.{number}", registry, dimension)
-            for number, field in enumerate(mesh.field)
-        ),
+        size_fields=_size_fields(mesh, registry, dimension),
         backend=backend,
     )
+
+
+def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> tuple[SizeField, ...]:
+    """Size fields that a table of a mesh names."""
+    tables = enumerate(() if mesh is None else mesh.field)
+    return tuple(build_part(SIZE_FIELD, table, f"mesh.field.{n}", registry, dimension) for n, table in tables)
 
 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:

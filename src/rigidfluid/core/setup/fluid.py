@@ -68,6 +68,11 @@ class Fluid:
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("scikit-fem"))
 
     @property
+    def insertion(self) -> MeshTable:
+        """The mesh that bodies can be inserted into."""
+        return self.mesh
+
+    @property
     def inert_density(self) -> float:
         """Density of the fluid that bodies have to move with them."""
         return self.density if self.inertia else 0.0
@@ -118,15 +123,21 @@ class NoFluid:
         Density of what bodies displace [mass/length^d].
     backend : Selected
         Class that moves bodies without a fluid, and its options; `dry` if not given.
+    insertion : MeshTable, optional
+        The mesh that bodies can be inserted into; a run has none.
+    size_fields : sequence of SizeField
+        Objects that say how fine the cells of that mesh are.
     """
 
     density: NotNegative = 0.0
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("dry"))
 
+    insertion: MeshTable | None = None
+    size_fields: Annotated[tuple[SizeField, ...], AnyRow] = ()
+
     mesh: ClassVar[None] = None
     inertia: ClassVar[bool] = False
     inert_density: ClassVar[float] = 0.0
-    size_fields: ClassVar[Sequence[SizeField]] = ()
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Zero [length/time]."""

@@ -26,6 +26,7 @@ from rigidfluid.errors import SceneError
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.model.interfaces import Body, Mechanism
+    from rigidfluid.core.scene.scene import MeshTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
 
@@ -68,14 +69,12 @@ def check_model(model: Model) -> None:
 def _check_fluid(model: Model, fluid: Fluid) -> None:
     _check_backend(fluid, wet=True)
     _check_material(fluid)
-    _check_fields(fluid)
     _check_source(model, fluid)
     if fluid.initial != "rest" and not fluid.backend.part.initial_flows:
         allowed = f"'rest' with backend {fluid.backend.part.name!r}"
         raise SceneError("fluid.initial", fluid.initial, allowed, "Leave it out, or choose backend = 'scikit-fem'.")
     fluid.fastest_at_start(model.domain)  # says where it is not finite
-    check_mesh_table(fluid.mesh, model.time)
-    check_cells(fluid.mesh, model.domain)
+    _check_mesh(model, fluid.mesh)
     check_oblique(model)
     check_inflow(model)
 
@@ -100,10 +99,13 @@ def _check_source(model: Model, fluid: Fluid) -> None:
             raise SceneError("fluid.force", found, f"finite forces of shape {corners.shape}", "Correct the function.")
 
 
-def _check_fields(fluid: Fluid) -> None:
-    if fluid.mesh.field and not fluid.size_fields:
-        found = f"{len(fluid.mesh.field)} tables, of which nothing is made"
-        raise SceneError("mesh.field", found, "none beside `Fluid.size_fields`", "Give the fields as objects there.")
+def _check_mesh(model: Model, mesh: MeshTable) -> None:
+    """Refuse a mesh that contradicts itself or what is around it, also one that bodies are but inserted into."""
+    if mesh.field and not model.fluid.size_fields:
+        found, allowed = f"{len(mesh.field)} tables, of which nothing is made", "none beside `size_fields` of the fluid"
+        raise SceneError("mesh.field", found, allowed, "Give the fields as objects there.")
+    check_mesh_table(mesh, model.time)
+    check_cells(mesh, model.domain)
 
 
 def _check_backend(fluid: Fluid | NoFluid, *, wet: bool) -> None:
@@ -140,6 +142,8 @@ def _check_without_fluid(model: Model) -> None:
         backend = model.fluid.backend.part.name
         allowed = f"none with backend {backend!r}, whose bodies go through contacts in substeps of their own"
         raise SceneError("time.tolerance", model.time.tolerance, allowed, "Remove it.")
+    if model.fluid.insertion is not None:
+        _check_mesh(model, model.fluid.insertion)
 
 
 def _check_vectors(placed: RigidBody | PlacedMechanism, dimension: int, at: str) -> None:

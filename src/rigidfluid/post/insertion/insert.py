@@ -30,14 +30,14 @@ _WAYS = {
 def insert(
     case: Case, out: Path | None = None, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Figures, list[Path]]:
-    """Make the first mesh of a scene or a model with a fluid; return the insertion's figures and the files written.
+    """Make the first mesh of a scene or a model that has one; return the insertion's figures and the files written.
 
     They go to ``out``, else to ``out/<scene name>_mesh``; ``progress`` is called with the name of each phase as it
     begins. Raises SceneError or PluginError if the scene cannot be built or has no mesh, MeshError if none can be made,
     OutputError if the disk refuses.
     """
     model = model_of(case)
-    table = model.fluid.mesh
+    table = model.fluid.insertion
     if table is None:
         raise SceneError(
             "mesh", "no such table", "a scene with [mesh] size and size_body", "Add the table; dry runs need none."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -188,6 +189,13 @@ def test_a_scene_without_a_mesh_is_refused_without_a_traceback(tmp_path: Path) -
     assert result.exit_code == 2
     assert result.stderr.startswith("Error: mesh: found no such table")
     assert not (tmp_path / "mesh").exists()
+
+
+def test_a_scene_without_a_fluid_that_has_a_mesh_is_meshed_as_with_one(tmp_path: Path) -> None:
+    wet, _ = insert(scene_from_dict(tomllib.loads(TEXT)), tmp_path / "wet")
+    dry = TEXT.replace("viscosity = 0.1", 'viscosity = 0.1\nbackend = "dry"')
+    other, _ = insert(scene_from_dict(tomllib.loads(dry)), tmp_path / "dry")
+    assert (other.cells, other.vertices, other.surfaces) == (wet.cells, wet.vertices, wet.surfaces)
 
 
 def test_a_way_that_does_not_suit_a_shape_is_refused() -> None:
