@@ -10,6 +10,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from rigidfluid.backends.dolfinx import Dolfinx
+from rigidfluid.backends.dolfinx.options import DolfinxOptions
+from rigidfluid.backends.dry import Dry
+from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
@@ -89,10 +93,13 @@ from rigidfluid.core.scene.scene import (
     OutputTable,
     Positive,
     PrescribedTable,
+    RefineTable,
     Scene,
     SpringTable,
     StrokeTable,
+    TimeFileTable,
     TimeTable,
+    WakeTable,
     WindowTable,
 )
 from rigidfluid.core.scene.spelling import suggestion
@@ -101,8 +108,18 @@ from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model import ConditionMaker, ContactStepping, Model
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
+from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
+from rigidfluid.detectors.ellipsoid import EllipsoidDetector
+from rigidfluid.detectors.facets import FacetDetector
+from rigidfluid.detectors.fast_marching import FastMarchingDetector
+from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
+from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.cad import Cad, CadOptions
+from rigidfluid.domains.channel import Channel, ChannelOptions
+from rigidfluid.domains.mesh import MeshDomain, MeshOptions
 from rigidfluid.domains.obstacles import Obstacles
+from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.errors import (
     ArgumentError,
     MeshError,
@@ -113,8 +130,19 @@ from rigidfluid.errors import (
     StepError,
     StepRejected,
 )
+from rigidfluid.forces.barrier import BarrierLaw, BarrierOptions
+from rigidfluid.forces.centre import CentreLaw, CentreOptions
+from rigidfluid.forces.contact import ContactPointLaw, ContactPointOptions
+from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
+from rigidfluid.forces.normal import NormalLaw, NormalOptions
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 from rigidfluid.hookspecs import hookimpl
+from rigidfluid.joints.ball import Ball, BallOptions
+from rigidfluid.joints.hinge import Hinge, HingeOptions
+from rigidfluid.joints.rod import Rod
+from rigidfluid.joints.slider import Slider, SliderOptions
+from rigidfluid.marching.options import MarchingOptions
+from rigidfluid.mechanisms.articulated import Articulated, ArticulatedOptions, RelativeStrokeTable
 from rigidfluid.mechanisms.components import ComponentTable, build_components
 from rigidfluid.mechanisms.strokes import (
     MovingComponents,
@@ -123,6 +151,7 @@ from rigidfluid.mechanisms.strokes import (
     StrokedMechanism,
     Translation,
 )
+from rigidfluid.mechanisms.three_sphere_swimmer import ThreeSphereSwimmer, ThreeSphereSwimmerOptions
 from rigidfluid.registry import (
     BODY,
     DETECTOR,
@@ -135,6 +164,8 @@ from rigidfluid.registry import (
     Registry,
     missing_packages,
 )
+from rigidfluid.size_fields.vorticity import Vorticity, VorticityOptions
+from rigidfluid.taylor_hood.sparse_backend import SparseOptions
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
@@ -152,17 +183,33 @@ __all__ = [
     "Advance",
     "Angle",
     "ArgumentError",
+    "Articulated",
+    "ArticulatedOptions",
     "AtRest",
+    "Ball",
+    "BallOptions",
+    "BarrierLaw",
+    "BarrierOptions",
     "Body",
     "BoolArray",
     "BoundaryCondition",
     "Box",
     "BoxOptions",
+    "BruteForceDetector",
+    "BruteForceOptions",
+    "Cad",
+    "CadOptions",
+    "CentreLaw",
+    "CentreOptions",
+    "Channel",
+    "ChannelOptions",
     "Component",
     "ComponentTable",
     "ConditionMaker",
     "Constraint",
     "ContactLaw",
+    "ContactPointLaw",
+    "ContactPointOptions",
     "ContactStepping",
     "Contacts",
     "Coordinate",
@@ -170,13 +217,19 @@ __all__ = [
     "CoordinateSpring",
     "Detector",
     "Displacement",
+    "Dolfinx",
+    "DolfinxOptions",
     "Domain",
     "Drive",
     "DrivenCoordinate",
+    "Dry",
     "Ellipsoid",
+    "EllipsoidDetector",
     "EllipsoidOptions",
+    "FacetDetector",
     "FacetSurface",
     "Facets",
+    "FastMarchingDetector",
     "Fields",
     "FloatArray",
     "Flow",
@@ -186,24 +239,35 @@ __all__ = [
     "FluidProblem",
     "FluidState",
     "ForceLaw",
+    "Hinge",
+    "HingeOptions",
     "IntArray",
     "JoinedBodies",
     "Joint",
     "Kinematics",
     "Loads",
+    "LubricationLaw",
+    "LubricationOptions",
+    "MarchingOptions",
     "MarkerPair",
     "Material",
     "Mechanism",
     "Mesh",
+    "MeshDomain",
     "MeshError",
+    "MeshOptions",
     "MeshTable",
     "Model",
     "Motion",
     "MovingComponents",
+    "NarrowBandDetector",
+    "NarrowBandOptions",
     "NestedBodyTable",
     "Newtonian",
     "NoFluid",
     "NoSlip",
+    "NormalLaw",
+    "NormalOptions",
     "Obstacles",
     "OnAxis",
     "OutputError",
@@ -225,11 +289,14 @@ __all__ = [
     "PrescribedPressure",
     "PrescribedTable",
     "PrescribedVelocity",
+    "RefineTable",
     "Registry",
+    "RelativeStrokeTable",
     "Response",
     "RigidBody",
     "RigidDisplacement",
     "RigidfluidError",
+    "Rod",
     "Rotation",
     "RotationDamper",
     "SameAxis",
@@ -237,17 +304,24 @@ __all__ = [
     "SamePoint",
     "Scene",
     "SceneError",
+    "ScikitFem",
     "Selected",
     "Simulation",
     "SizeField",
+    "Slider",
+    "SliderOptions",
     "Slip",
     "SolverCost",
+    "SparseOptions",
     "Sphere",
+    "SphereDetector",
     "SphereOptions",
     "Spring",
     "SpringDashpotLaw",
     "SpringDashpotOptions",
     "SpringTable",
+    "Stenosis",
+    "StenosisOptions",
     "Step",
     "StepError",
     "StepRejected",
@@ -256,10 +330,16 @@ __all__ = [
     "StrokedMechanism",
     "Surface",
     "System",
+    "ThreeSphereSwimmer",
+    "ThreeSphereSwimmerOptions",
+    "TimeFileTable",
     "TimeTable",
     "Translation",
     "Twist",
     "Vector",
+    "Vorticity",
+    "VorticityOptions",
+    "WakeTable",
     "Wall",
     "WindowTable",
     "Wrench",

@@ -10,7 +10,7 @@ from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Film
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
-from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.contact import ContactPointLaw
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
@@ -27,7 +27,7 @@ EPSILONS = {
 
 
 class TestRepulsions(ForceLawContract):
-    @pytest.fixture(params=[CentreLaw, ContactLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
+    @pytest.fixture(params=[CentreLaw, ContactPointLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
     def part(self, request: pytest.FixtureRequest) -> type[Repulsion]:
         return request.param
 
@@ -37,7 +37,7 @@ class TestRepulsions(ForceLawContract):
 
 
 class TestRestitution(ForceLawContract):
-    @pytest.fixture(params=[CentreLaw, ContactLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
+    @pytest.fixture(params=[CentreLaw, ContactPointLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
     def repulsion(self, request: pytest.FixtureRequest) -> ForceLaw:
         return request.param(request.param.Options(epsilon=5e-6), RANGE)
 

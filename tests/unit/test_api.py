@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,14 @@ from rigidfluid import api
 SOURCE = Path(api.__file__).parent
 PUBLIC = ("rigidfluid.api", "rigidfluid.commands", "rigidfluid.testing", "rigidfluid.taylor_hood")
 HEAVY = {"numba", "h5py", "netgen", "skfem", "matplotlib", "pypardiso"}
+
+BUILT_IN = (
+    *(("backends", "rigidfluid_fluid_backends"), ("detectors", "rigidfluid_detectors")),
+    *(("forces", "rigidfluid_force_laws"), ("bodies", "rigidfluid_bodies"), ("domains", "rigidfluid_domains")),
+    *(("mechanisms", "rigidfluid_mechanisms"), ("joints", "rigidfluid_joints")),
+    ("size_fields", "rigidfluid_size_fields"),
+)
+"""Rooms of built-in parts, and the hook of each."""
 
 
 def test_every_name_is_there() -> None:
@@ -38,6 +47,14 @@ def test_the_plug_ins_beside_import_from_it_alone(path: Path) -> None:
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
     homes = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
     assert {home for home in homes if home.split(".")[0] == "rigidfluid" and not home.startswith(PUBLIC)} == set()
+
+
+def test_a_model_can_be_made_of_all_built_in_parts() -> None:
+    hooks = [getattr(import_module(f"rigidfluid.{room}"), hook) for room, hook in BUILT_IN]
+    parts = {part for hook in hooks for part in hook()}
+    needed = parts | {part.Options for part in parts}
+    assert {one.__name__ for one in needed} - set(api.__all__) == set()
+    assert {one for one in needed if getattr(api, one.__name__) is not one} == set()
 
 
 MADE_OF_TABLES = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
-from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.contact import ContactPointLaw
 from rigidfluid.forces.lubrication import LubricationLaw
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
@@ -15,4 +15,4 @@ from rigidfluid.hookspecs import hookimpl
 @hookimpl
 def rigidfluid_force_laws() -> list[type[ForceLaw]]:
     """The built-in force laws."""
-    return [CentreLaw, ContactLaw, NormalLaw, BarrierLaw, SpringDashpotLaw, LubricationLaw]
+    return [CentreLaw, ContactPointLaw, NormalLaw, BarrierLaw, SpringDashpotLaw, LubricationLaw]

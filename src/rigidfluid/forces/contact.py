@@ -10,11 +10,11 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import Contacts
 
 
-class ContactOptions(RepulsionOptions):
+class ContactPointOptions(RepulsionOptions):
     """Keys of a table with law ``contact``; ε is in length³/force."""
 
 
-class ContactLaw(Repulsion):
+class ContactPointLaw(Repulsion):
     """F = (1/ε)(X_i - X_j)(range - gap)² for gap ≤ range, of length gap (range - gap)²/ε.
 
     X_i, X_j are the contact points, gap · n apart. With w = range - gap, U = [range w³/3 - w⁴/4]/ε and the stiffness is
@@ -33,7 +33,7 @@ class ContactLaw(Repulsion):
 
     name: ClassVar[str] = "contact"
     overlap: Literal["repels", "attracts", "unbounded"] = "attracts"
-    Options: ClassVar[type[PartOptions]] = ContactOptions
+    Options: ClassVar[type[PartOptions]] = ContactPointOptions
 
     def unit_force(self, contacts: Contacts) -> FloatArray:
         """gap w², (m,) [length³]."""

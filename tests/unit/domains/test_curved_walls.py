@@ -38,7 +38,7 @@ from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import PluginError, SceneError
-from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.contact import ContactPointLaw
 from rigidfluid.registry import DOMAIN, Registry
 
 DISK = {"type": "sphere", "radius": 0.15, "density": 3.0, "position": [0.35, 0.3]}
@@ -321,7 +321,7 @@ def test_epsilon_of_walls_holds_at_curved_ones() -> None:
     keys = {"law": "contact", "range": 0.3, "epsilon": 1e-3, "epsilon_wall": 1e-5}
     system = build_system(built(DISK | {"position": [0.7, 0.0]}, contact=keys, fluid=DRY))
     found = system.detector.detect(system.pose, None, 0.3)
-    assert isinstance(system.law, ContactLaw)
+    assert isinstance(system.law, ContactPointLaw)
     np.testing.assert_array_equal(system.law.epsilon(found), [1e-5])
 
 

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from touching import contact
 
-from rigidfluid.forces.contact import ContactLaw, ContactOptions
+from rigidfluid.forces.contact import ContactPointLaw, ContactPointOptions
 
 RANGE, EPSILON = 0.02, 5e-6
 
 
-def law(epsilon_wall: float | None = None) -> ContactLaw:
-    return ContactLaw(ContactOptions(epsilon=EPSILON, epsilon_wall=epsilon_wall), RANGE)
+def law(epsilon_wall: float | None = None) -> ContactPointLaw:
+    return ContactPointLaw(ContactPointOptions(epsilon=EPSILON, epsilon_wall=epsilon_wall), RANGE)
 
 
 @pytest.mark.parametrize("gap", [0.013, 0.001, -0.1])

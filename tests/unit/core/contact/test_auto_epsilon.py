@@ -15,12 +15,12 @@ from rigidfluid.core.model.types import Loads
 from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
-from rigidfluid.forces.contact import ContactLaw
+from rigidfluid.forces.contact import ContactPointLaw
 from rigidfluid.forces.normal import NormalLaw
 
 RANGE, SMALLEST = 0.02, 0.005
 MASSES = np.array([2.0, 0.5])
-LAWS = [CentreLaw, ContactLaw, NormalLaw, BarrierLaw]
+LAWS = [CentreLaw, ContactPointLaw, NormalLaw, BarrierLaw]
 LOADS = [(1e-2, 1e-2), (1e-2, 1e2), (1e2, 1e-2), (1e2, 1e2), (1.0, 0.0), (0.0, 1.0)]
 
 
@@ -64,7 +64,7 @@ def test_impact_ends_at_the_smallest_gap(part: type[Repulsion], at_wall: bool, w
 def test_contact_law_turns_a_resting_weight_at_a_ninth_of_the_range_or_before(
     fraction: float, exact: bool, at_wall: bool
 ) -> None:
-    found = smallest_gap(ContactLaw, loads(1.0, 0.0, fraction * RANGE), at_wall)
+    found = smallest_gap(ContactPointLaw, loads(1.0, 0.0, fraction * RANGE), at_wall)
     assert found >= RANGE / 9
     assert (found == pytest.approx(fraction * RANGE, rel=1e-3)) == exact
 

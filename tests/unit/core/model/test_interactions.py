@@ -20,7 +20,7 @@ from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.errors import PluginError, SceneError, StepError
-from rigidfluid.forces.contact import ContactLaw, ContactOptions
+from rigidfluid.forces.contact import ContactPointLaw, ContactPointOptions
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw, NormalOptions
 
@@ -166,7 +166,7 @@ def touching(gap: float) -> Contacts:
 
 def test_the_stiffness_on_the_way_sees_each_range() -> None:
     """`contact` is stiffest at a third of its range, which steps toward a far longer range would pass over."""
-    short = ContactLaw(ContactOptions(epsilon=1e-6), 0.001)
+    short = ContactPointLaw(ContactPointOptions(epsilon=1e-6), 0.001)
     film = LubricationLaw(LubricationOptions(viscosity=1.0, cutoff=1e-4), 0.1)
     both = SumOfLaws([Interaction(f"interaction.{i}", law, "all", ()) for i, law in enumerate((short, film))])
     assert both.range == 0.1
