@@ -48,7 +48,7 @@ def assemble(model: Model) -> System:
     joints = build_joints(model, pose, motions, given, _least_resistance(model))
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)
-    interactions = tuple(law.interaction(model.surfaces, loads) for law in model.laws)
+    interactions = tuple(law.interaction(model.surfaces, loads) for law in model.named_laws)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
     backend = model.fluid.backend

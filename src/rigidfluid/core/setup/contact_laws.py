@@ -45,8 +45,9 @@ class ContactLaw:
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
         Bodies or walls: all contacts of one, or that of two with each other; any contacts if empty.
-    field : str
-        Key of the scene's table that asks for it, for messages.
+    field : str, optional
+        Key of the scene's table that asks for it, for messages; if not given, `contact` of a law alone, and of several
+        `interaction.0` and so on.
     """
 
     law: Selected[ForceLaw]
@@ -56,7 +57,7 @@ class ContactLaw:
     restitution_stokes: Positive | None = None
     between: Between = "all"
     names: Annotated[tuple[str, ...], AnyRow, Field(max_length=2)] = ()
-    field: str = "contact"
+    field: str | None = None
 
     @property
     def aim(self) -> float:
@@ -66,6 +67,7 @@ class ContactLaw:
     def interaction(self, surfaces: Sequence[str], loads: Loads) -> Interaction:
         """The law made for ``loads``, with the contacts that it acts in; ``surfaces`` are the names of bodies and then
         of the domain's pieces. Raises SceneError if the law refuses its options or loads."""
+        assert self.field is not None
         return Interaction(
             field=self.field,
             law=self._made(replace(loads, smallest_gap=self.aim)),
@@ -99,6 +101,12 @@ class ContactLaw:
         return FilmLoss(self.restitution_stokes, loads.film, loads)
 
 
+def told_apart(laws: Sequence[ContactLaw]) -> tuple[ContactLaw, ...]:
+    """The laws of a model, each with its field."""
+    fields = ["contact"] if len(laws) == 1 else [f"interaction.{number}" for number in range(len(laws))]
+    return tuple(replace(law, field=law.field or field) for law, field in zip(laws, fields, strict=True))
+
+
 def has_own_restitution(law: type[ForceLaw]) -> bool:
     """Whether the restitution is an option of the law itself."""
     return "restitution" in law.Options.model_fields
@@ -107,7 +115,7 @@ def has_own_restitution(law: type[ForceLaw]) -> bool:
 def check_laws(model: Model) -> None:
     """Refuse, with SceneError, laws that act nowhere or cannot act there, or whose smallest gap is not below their
     range."""
-    for law in model.laws:
+    for law in model.named_laws:
         if law.smallest_gap is not None and law.smallest_gap >= law.range:
             allowed = f"a length above 0 and below {law.field}.range = {law.range}"
             raise SceneError(f"{law.field}.smallest_gap", law.smallest_gap, allowed, "Shorten it, or widen the range.")

@@ -21,7 +21,7 @@ from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.scene import OutputTable, Scene, TimeTable, WindowTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.components import component_bodies
-from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model_checks import check_model
@@ -149,6 +149,11 @@ class Model:
     def shapes(self) -> tuple[Body, ...]:
         """Shapes of all bodies."""
         return tuple(body.shape for body in self.all_bodies)
+
+    @cached_property
+    def named_laws(self) -> tuple[ContactLaw, ...]:
+        """The laws, each with the field that messages name it by."""
+        return told_apart(self.laws)
 
     @property
     def controlled(self) -> BoolArray:

@@ -23,6 +23,8 @@ from rigidfluid.api import (
     Model,
     Newtonian,
     NoFluid,
+    NormalLaw,
+    NormalOptions,
     NoSlip,
     OutputError,
     OutputTable,
@@ -222,6 +224,9 @@ class Dipped(Nut):
         (lambda: {"domain": BOX.with_periodic(((0, 7),))}, r"domain.periodic: found the pair \(0, 7\)"),
         (lambda: {"domain": BOX.with_periodic(((0, 3),))}, "domain.periodic: .* face each other"),
         (lambda: {"laws": [law(names=("disc",))]}, "contact.names.0: .*'disc'"),
+        (lambda: {"laws": [law(), law(names=("disc",))]}, r"interaction\.1\.names\.0: .*'disc'"),
+        (lambda: {"laws": [law(smallest_gap=0.1), law()]}, r"interaction\.0\.smallest_gap: .* interaction\.0\.range"),
+        (lambda: {"laws": [law(), law(smallest_gap=0.1, field="felt")]}, r"felt\.smallest_gap: .* felt\.range"),
         (lambda: {"laws": [law(names="disk")]}, "ContactLaw.names: found 'disk'"),
         (lambda: {"laws": [law(range=0.0)]}, "ContactLaw.range: found 0.0"),
         (lambda: {"laws": [law(restitution=0.0)]}, "ContactLaw.restitution: found 0.0"),
@@ -253,6 +258,13 @@ class Dipped(Nut):
 def test_a_model_that_contradicts_itself_is_refused_where_it_is_made(change: Any, message: str) -> None:
     with pytest.raises(RigidfluidError, match=message):
         fall(**change())
+
+
+def test_an_option_that_a_law_refuses_of_its_loads_names_which_of_several_it_is() -> None:
+    strong = Selected(NormalLaw, NormalOptions(epsilon="auto"))
+    resting = fall(fluid=NoFluid(2.0), laws=[law(), ContactLaw(strong, range=0.05)])
+    with pytest.raises(SceneError, match=r"^interaction\.1\.epsilon: "):
+        build_system(resting)
 
 
 def test_numbers_of_numpy_and_lists_are_taken() -> None:
