@@ -89,6 +89,16 @@ def test_built_in_parts_import_neither_each_other_nor_the_loop(kind: str) -> Non
     }
 
 
+def test_those_who_read_write_or_vary_tables_import_the_scene_and_nobody_else() -> None:
+    importers = []
+    for path in SOURCE.rglob("*.py"):
+        nodes = [node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.ImportFrom)]
+        importers += [str(path.relative_to(SOURCE))] * ("Scene" in {name.name for node in nodes for name in node.names})
+    others = {name for name in importers if not name.startswith(("core/case/", "post/studies/", "post/comparison/"))}
+    assert others == {"__init__.py", "api.py", "core/setup/model.py"}
+    assert len(importers) <= 12
+
+
 def test_nothing_imports_the_command_line_and_what_is_for_commands_alone() -> None:
     paths = [path for path in SOURCE.rglob("*.py") if path.name != "__main__.py" and path.parent.name != "cli"]
     beside = ("rigidfluid.cli", "rigidfluid.commands", "rigidfluid.plugin_commands")

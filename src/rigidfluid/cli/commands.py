@@ -86,7 +86,7 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
-            with compilation_told(), progress_bar(loaded) as show:
+            with compilation_told(), progress_bar(loaded.name, loaded.time) as show:
                 simulate(
                     loaded, folder, resume=resume, progress=show, processes=console.LAUNCH.size, finished=ends.append
                 )

@@ -11,7 +11,7 @@ from rigidfluid.cli.console import make_console, tell_aside
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import Progress
-    from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.core.scene.scene import TimeTable
     from rigidfluid.post.progress import RunsProgress
 
 
@@ -36,8 +36,8 @@ def compilation_told() -> Iterator[None]:
 
 
 @contextmanager
-def progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
-    """Yield a function that shows the progress of a run in a bar, on the first process's terminal alone."""
+def progress_bar(name: str, time: TimeTable) -> Iterator[Callable[[Progress], None]]:
+    """Yield a function that shows in a bar how far a run is in its time, on the first process's terminal alone."""
     terminal = make_console(stderr=True)
     if console.LAUNCH.rank > 0 or not terminal.is_terminal:
         yield lambda _: None
@@ -46,7 +46,7 @@ def progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
     from rich.progress import Progress as Bar
 
     columns = (
-        TextColumn(scene.name),
+        TextColumn(name),
         BarColumn(),
         TextColumn(
             "time {task.completed:.4g} of {task.total:.4g}, step {task.fields[step]:.3g}, gap {task.fields[gap]:.3g}"
@@ -56,7 +56,7 @@ def progress_bar(scene: Scene) -> Iterator[Callable[[Progress], None]]:
         TextColumn("to go"),
     )
     with Bar(*columns, console=terminal) as bar:
-        task = bar.add_task(scene.name, total=scene.time.end, step=scene.time.step, gap=float("inf"), warning="")
+        task = bar.add_task(name, total=time.end, step=time.step, gap=float("inf"), warning="")
         yield lambda now: bar.update(
             task, completed=now.time, step=now.step, gap=now.gap, warning=_mesh_failures(now.failed_remeshes)
         )

@@ -49,7 +49,7 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
 
 def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> tuple[SizeField, ...]:
     """Size fields that a table of a mesh names."""
-    tables = enumerate(() if mesh is None else mesh.field)
+    tables = enumerate(mesh.field if mesh else ())
     return tuple(build_part(SIZE_FIELD, table, f"mesh.field.{n}", registry, dimension) for n, table in tables)
 
 
