@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rigidfluid.core.case.part_options import values_of
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.scene.scene import MechanismTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
@@ -21,13 +22,8 @@ def placed_mechanisms(
     """
     return tuple(
         PlacedMechanism(
-            name=table.name,
             mechanism=_built(table, registry, dimension, f"mechanism.{number}"),
-            position=table.position,
-            angle=table.angle,
-            orientation=table.orientation,
-            velocity=table.velocity,
-            angular_velocity=table.angular_velocity,
+            **values_of(table, PlacedMechanism, "mechanism"),
         )
         for number, table in enumerate(tables)
     )

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from typing import Any, TypeVar
+
+from pydantic import BaseModel
 
 from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
 from rigidfluid.core.scene.scene import BodyTable, SizeFieldTable
@@ -12,6 +15,12 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import Kind, Registry
 
 S = TypeVar("S", bound=SpatialPart)
+
+
+def values_of(table: BaseModel, kind: type[Any], part: str) -> dict[str, Any]:
+    """Values of the fields of a ``kind`` of the model's dataclasses, from a table with keys of the same names; all but
+    its ``part``."""
+    return {field.name: getattr(table, field.name) for field in fields(kind) if field.name != part}
 
 
 def own_options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:

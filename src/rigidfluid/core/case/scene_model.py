@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from functools import lru_cache, singledispatch
 
 from rigidfluid.core.case.boundary import condition_makers
@@ -13,7 +12,7 @@ from rigidfluid.core.case.fluid import scene_fluid
 from rigidfluid.core.case.joint_kinds import scene_joints
 from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
-from rigidfluid.core.case.part_options import build_part, own_options, refuse_unread
+from rigidfluid.core.case.part_options import build_part, own_options, refuse_unread, values_of
 from rigidfluid.core.case.periodic import periodic_pairs
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
@@ -110,8 +109,7 @@ def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Reg
 
 def _body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:
     shape = build_part(BODY, table, at, registry, dimension)
-    own = {field.name: getattr(table, field.name) for field in fields(RigidBody) if field.name != "shape"}
-    return RigidBody(shape=shape, **own)
+    return RigidBody(shape=shape, **values_of(table, RigidBody, "shape"))
 
 
 def _detector(

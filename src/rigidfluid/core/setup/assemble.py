@@ -27,7 +27,7 @@ from rigidfluid.core.setup.loads import build_loads
 from rigidfluid.core.setup.masses import Masses, masses_of
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
-from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
+from rigidfluid.core.setup.rigid_body import Start
 from rigidfluid.core.setup.window import build_window, open_wake_end
 
 _MOST_PAIRS = 1000
@@ -91,7 +91,7 @@ def assemble(model: Model) -> System:
 
 def _motions(model: Model, masses: Masses) -> tuple[Motions, PrescribedMotion]:
     """The motions that carry the bodies, where and as they start, and those that are given."""
-    wholes: tuple[RigidBody | PlacedMechanism, ...] = (*model.bodies, *model.mechanisms)
+    wholes: tuple[Start, ...] = (*model.bodies, *model.mechanisms)
     start = initial_pose(wholes, model.dimension)
     given = prescribed_motion(model.bodies, start)
     single = model.controlled[: len(model.bodies)]

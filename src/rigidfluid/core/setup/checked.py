@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from functools import wraps
 from typing import Annotated, Any, TypeVar, cast, dataclass_transform
 
@@ -13,7 +14,7 @@ from pydantic.dataclasses import dataclass
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.scene.scene import PRINTABLE
 from rigidfluid.core.scene.validation import LARGEST, allowed_by, value_text
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import ArgumentError
 
 T = TypeVar("T")
 
@@ -53,7 +54,7 @@ AnyRow = BeforeValidator(_row)
 
 @dataclass_transform(frozen_default=True)
 def checked(cls: type[T]) -> type[T]:
-    """Make a frozen dataclass whose values are of their types; raises SceneError for others when one is made."""
+    """Make a frozen dataclass whose values are of their types; raises ArgumentError for others when one is made."""
     made = dataclass(frozen=True, config=_CONFIG)(cls)
     init: Callable[..., None] = made.__init__
 
@@ -62,18 +63,21 @@ def checked(cls: type[T]) -> type[T]:
         try:
             init(self, *values, **named)
         except ValidationError as error:
-            raise _refusal(cls.__name__, error) from None
+            raise _refusal(made, error) from None
 
     setattr(made, "__init__", checking)  # noqa: B010  of a type, which has no such attribute for mypy
     return cast(type[T], made)
 
 
-def _refusal(name: str, error: ValidationError) -> SceneError:
-    """Our error for the first complaint about the values of a class of this name."""
-    complaint = error.errors()[0]
-    field = f"{name}.{'.'.join(map(str, complaint['loc']))}"
+def _refusal(made: type[Any], error: ValidationError) -> ArgumentError:
+    """Our error for the first complaint about the values of a class."""
+    complaint, name, names = error.errors()[0], made.__name__, [field.name for field in fields(made)]
+    first, *inner = complaint["loc"]
+    if isinstance(first, int) and first < len(names):  # a value that was given without its name
+        first = names[first]
+    field = ".".join(map(str, (name, first, *inner)))
     if complaint["type"] == "missing":
-        return SceneError(field, "nothing", "a value", "Add it.")
-    if complaint["type"] == "unexpected_keyword_argument":
-        return SceneError(field, "an argument that is not there", f"arguments of {name}", "Correct or remove it.")
-    return SceneError(field, value_text(complaint["input"]), allowed_by(complaint), "Correct the value.")
+        return ArgumentError(field, "nothing", "a value", "Add it.")
+    if complaint["type"] in ("unexpected_keyword_argument", "unexpected_positional_argument"):
+        return ArgumentError(field, "an argument that is not there", f"arguments of {name}", "Correct or remove it.")
+    return ArgumentError(field, value_text(complaint["input"]), allowed_by(complaint), "Correct the value.")

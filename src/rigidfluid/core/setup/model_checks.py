@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interfaces import Body, Mechanism
     from rigidfluid.core.scene.scene import MeshTable
     from rigidfluid.core.setup.model import Model
-    from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody
+    from rigidfluid.core.setup.rigid_body import RigidBody, Start
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -146,7 +146,7 @@ def _check_without_fluid(model: Model) -> None:
         _check_mesh(model, model.fluid.insertion)
 
 
-def _check_vectors(placed: RigidBody | PlacedMechanism, dimension: int, at: str) -> None:
+def _check_vectors(placed: Start, dimension: int, at: str) -> None:
     turns = 1 if dimension == 2 else 3
     lengths = {"position": dimension, "velocity": dimension, "angular_velocity": turns}
     for name, length in lengths.items():

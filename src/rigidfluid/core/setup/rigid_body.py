@@ -18,7 +18,36 @@ DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 
 
 @checked
-class RigidBody:
+class Start:
+    """Place and velocities at the start, of the centre of mass; other arguments of a class that has them come before,
+    from the bases after this one."""
+
+    position: Vector
+    angle: Number | None = None
+    orientation: Vector | None = None
+    velocity: Vector | None = None
+    angular_velocity: Vector | None = None
+
+
+@checked
+class _Shaped:
+    """A shape with its name and density."""
+
+    name: Name
+    shape: Body
+    density: Positive
+
+
+@checked
+class _NamedMechanism:
+    """A mechanism with its name."""
+
+    name: Name
+    mechanism: Mechanism
+
+
+@checked
+class RigidBody(Start, _Shaped):
     """A rigid body with the velocities v and ω about its centre of mass: where it starts, and what moves it.
 
     Parameters
@@ -49,14 +78,6 @@ class RigidBody:
         Springs and dampers between it and the ground.
     """
 
-    name: Name
-    shape: Body
-    density: Positive
-    position: Vector
-    angle: Number | None = None
-    orientation: Vector | None = None
-    velocity: Vector | None = None
-    angular_velocity: Vector | None = None
     part_of: str | None = None
     fixed: bool = False
     prescribed: PrescribedTable | None = None
@@ -81,17 +102,9 @@ class RigidBody:
 
 
 @checked
-class PlacedMechanism:
+class PlacedMechanism(Start, _NamedMechanism):
     """A mechanism named ``name`` in its place at the start, that of its centre of mass; the other values are those of a
     `RigidBody`."""
-
-    name: Name
-    mechanism: Mechanism
-    position: Vector
-    angle: Number | None = None
-    orientation: Vector | None = None
-    velocity: Vector | None = None
-    angular_velocity: Vector | None = None
 
 
 @checked
