@@ -16,6 +16,7 @@ from matplotlib.image import AxesImage
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.writer import writing
+from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
 from rigidfluid.post.movies.shot import Shot, Window, shot_of
@@ -58,16 +59,22 @@ class _Frame:
     path: Path | None
 
 
-def movie(folder: Path, out: Path | None = None, look: Look | None = None, progress: Progress | None = None) -> Path:
+def movie(
+    folder: Path,
+    out: Path | None = None,
+    look: Look | None = None,
+    progress: Progress | None = None,
+    model: Model | None = None,
+) -> Path:
     """Make a movie from the results in a folder, of a complete run or not: a picture for each output time.
 
     A 3D flow is shown in a slice through the first body or the one followed; without a fluid all bodies are seen along
     the normal of that plane. The file ``out`` is .mp4 or .gif; without it movie.mp4 in the folder, movie.gif if nothing
-    encodes MP4. ``progress`` is told how many pictures are done, of how many. Raises OutputError for missing or
-    unreadable results, another kind of file, or a disk that refuses; SceneError or PluginError if the run's scene
-    cannot be built here, as without one of its plug-ins.
+    encodes MP4. ``progress`` is told how many pictures are done, of how many. A run of a model made in Python
+    wants the ``model``. Raises OutputError for missing or unreadable results, another kind of file, or a disk that
+    refuses; SceneError or PluginError if the run's scene cannot be built here, as without one of its plug-ins.
     """
-    look, results = look or Look(), read_results(Path(folder), motion_only=True)
+    look, results = look or Look(), read_results(Path(folder), motion_only=True, model=model)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
     shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
     scale = _scale(frames, shot, look)

@@ -152,7 +152,7 @@ def _same(model: Model, told: dict[str, Any], folder: Path) -> Model:
 def _model(tables: dict[str, Any], folder: Path) -> Model:
     if IN_PYTHON in tables:
         found = f"results of the model {tables['scene']['name']!r}, made in Python"
-        remedy = "Make the report in Python, report(folder, model=model) of rigidfluid.post.reports."
+        remedy = "Give the model in Python, to report(folder, model=model) or movie(folder, model=model)."
         raise OutputError(str(folder), found, "results of a scene", remedy)
     return model_of(scene_of_results(tables))
 

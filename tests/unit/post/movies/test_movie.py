@@ -18,6 +18,7 @@ from typer.testing import CliRunner
 import rigidfluid
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import load_scene
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, paint_flow
@@ -50,6 +51,20 @@ def frames(path: Path) -> list[np.ndarray]:
             file.seek(number)
             found.append(np.asarray(file.convert("RGB")))
     return found
+
+
+def test_a_run_of_a_model_made_in_python_has_a_movie_with_the_model_alone(dry: Path, tmp_path: Path) -> None:
+    scene = load_scene(SCENES / "dry_bounce.toml", ["time.end=0.02", "output.every=0.005"])
+    made = replace(model_of(scene), name="made")
+    rigidfluid.run(made, tmp_path / "run")
+    with pytest.raises(OutputError, match=r"made in Python.* or movie\(folder, model=model\)"):
+        movie(tmp_path / "run", tmp_path / "a.gif", Look(longer=60))
+    with pytest.raises(OutputError, match="results of another model"):
+        movie(tmp_path / "run", tmp_path / "a.gif", Look(longer=60), model=replace(made, gravity=(0.0, -1.0)))
+    shown = frames(movie(tmp_path / "run", tmp_path / "a.gif", Look(longer=60), model=made))
+    as_by_the_scene = frames(movie(dry, tmp_path / "b.gif", Look(longer=60)))
+    assert len(shown) == 5
+    np.testing.assert_array_equal(shown, as_by_the_scene)
 
 
 @pytest.mark.parametrize("run", ["dry", "wet"])
