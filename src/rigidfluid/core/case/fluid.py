@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from rigidfluid.core.case.expressions import VectorExpression
-from rigidfluid.core.case.part_options import build_part, refuse_unread
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.nested.part_options import build_part, refuse_unread
 from rigidfluid.core.scene.scene import FluidTable, MeshTable
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.fluid import Fluid, NoFluid

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.nested.part_options import told_at
 from rigidfluid.core.nested.strokes import read_stroke_rows
 from rigidfluid.core.scene.scene import JointTable, StrokeTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.rigid_body import JoinedBodies
-from rigidfluid.errors import SceneError
 from rigidfluid.registry import JOINT, Registry
 
 
@@ -34,11 +34,9 @@ def read_drives(tables: Sequence[JointTable]) -> tuple[JointTable, ...]:
 
 def _built(table: JointTable, registry: Registry, dimension: int, at: str) -> Joint:
     part = registry.get(JOINT, table.type, f"{at}.type")
-    try:
-        return part(_options(table, part, registry, at), dimension)
-    except SceneError as error:  # a joint does not know its number
-        subject = f"{at}.{error.subject.partition('.')[2]}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    options = _options(table, part, registry, at)
+    with told_at(at, JOINT):
+        return part(options, dimension)
 
 
 def _options(table: JointTable, part: type[Joint], registry: Registry, at: str) -> PartOptions:

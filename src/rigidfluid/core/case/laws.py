@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rigidfluid.core.case.part_options import own_options, refuse_unread
 from rigidfluid.core.model.interactions import Between
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.nested.part_options import own_options, refuse_unread
 from rigidfluid.core.scene.scene import ContactTable, InteractionTable
 from rigidfluid.core.setup.contact_laws import ContactLaw, has_own_restitution
 from rigidfluid.registry import FORCE_LAW, Registry

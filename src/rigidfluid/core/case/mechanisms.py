@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rigidfluid.core.case.part_options import values_of
+from rigidfluid.core.case.table_values import values_of
 from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.nested.part_options import build_part, told_at
 from rigidfluid.core.scene.scene import MechanismTable
-from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.rigid_body import PlacedMechanism
-from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import MECHANISM, Registry
 
 
@@ -30,16 +29,7 @@ def placed_mechanisms(
 
 
 def _built(table: MechanismTable, registry: Registry, dimension: int, at: str) -> Mechanism:
-    part = registry.get(MECHANISM, table.type, f"{at}.type")
-    known = fields_by_key(part.Options)
-    for key in table.options:
-        if key not in known:
-            raise unknown_key(f"{at}.{key}", {*known, *type(table).model_fields})
-    options = read_table(part.Options, table.options, at)
-    try:
-        mechanism = part(options, dimension)
+    mechanism = build_part(MECHANISM, table, at, registry, dimension)
+    with told_at(at, MECHANISM):
         mechanism.components  # noqa: B018  it may be there that it refuses its options
-    except (SceneError, PluginError) as error:  # a mechanism does not know its number
-        subject = f"{at}.{error.subject.partition('.')[2]}"
-        raise type(error)(subject, error.found, error.allowed, error.remedy) from None
     return mechanism

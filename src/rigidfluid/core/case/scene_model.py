@@ -12,12 +12,13 @@ from rigidfluid.core.case.fluid import scene_fluid
 from rigidfluid.core.case.joint_kinds import scene_joints
 from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
-from rigidfluid.core.case.part_options import build_part, own_options, refuse_unread, values_of
 from rigidfluid.core.case.periodic import periodic_pairs
+from rigidfluid.core.case.table_values import values_of
 from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Part
 from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.nested.part_options import build_part, own_options, refuse_unread
 from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.contact_laws import ContactLaw

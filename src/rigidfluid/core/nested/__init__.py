@@ -1,1 +1,1 @@
-"""Tables within the tables of parts: bodies in their place, rows over time, strokes."""
+"""Parts of tables, and tables within those of parts: bodies in their place, rows over time, strokes."""

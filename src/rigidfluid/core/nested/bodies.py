@@ -8,9 +8,9 @@ from typing import TypeVar
 from pydantic import ConfigDict, Field
 
 from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.nested.part_options import build_part
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation
-from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry
@@ -49,16 +49,7 @@ def build_shape(table: NestedBodyTable, at: str, dimension: int) -> Body:
     of wrong length or an invalid shape, PluginError for an unknown body type."""
     check_length(table.position, f"{at}.position", dimension)
     check_orientation(table, dimension, at)
-    part, options = Registry.load().get(BODY, table.type, f"{at}.type"), dict(table.model_extra or {})
-    known = fields_by_key(part.Options)
-    for key in options:
-        if key not in known:
-            raise unknown_key(f"{at}.{key}", {*known, *type(table).model_fields})
-    try:
-        return part(read_table(part.Options, options, at), dimension)
-    except SceneError as error:  # a body does not know its place in the scene
-        subject = error.subject if error.subject.startswith(at) else f"{at}.{error.subject.removeprefix('body.')}"
-        raise SceneError(subject, error.found, error.allowed, error.remedy) from None
+    return build_part(BODY, table, at, Registry.load(), dimension)
 
 
 def check_length(vector: Sequence[float], at: str, dimension: int) -> None:

@@ -1,0 +1,71 @@
+"""Parts of their tables: their options among the keys, and how they are built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Protocol, TypeVar
+
+from pydantic import BaseModel
+
+from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
+from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import Kind, Registry
+
+S = TypeVar("S", bound=SpatialPart)
+
+
+class NamesPart(Protocol):
+    """A table that names a part, and has its keys beside its own."""
+
+    @property
+    def type(self) -> str:
+        """Name of the part."""
+
+    @property
+    def model_extra(self) -> dict[str, Any] | None:
+        """Keys of the part."""
+
+
+def own_options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:
+    """The part's own of the keys given; ``at`` is the place of their table in the scene."""
+    own = fields_by_key(part.Options)
+    return read_table(part.Options, {key: given[key] for key in given if key in own}, at)
+
+
+def refuse_unread(
+    options: Mapping[str, Any], readers: Sequence[type[Part]], common: Mapping[str, Any], at: str, hint: str = ""
+) -> None:
+    """Raise SceneError for a key that none of the ``readers`` has, and that is not ``common`` to all such tables."""
+    known = set().union(*(fields_by_key(reader.Options) for reader in readers))
+    for key in options:
+        if key not in known:
+            raise unknown_key(f"{at}.{key}", known | set(common), hint)
+
+
+def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dimension: int) -> S:
+    """Part of a kind that a table names, at the place ``at`` of the scene (``body.0``, ``domain.obstacle.0``).
+
+    Raises PluginError if it is missing, SceneError for an option that is unknown or refused.
+    """
+    assert isinstance(table, BaseModel)
+    part = registry.get(kind, table.type, f"{at}.type")
+    options = dict(table.model_extra or {})
+    refuse_unread(options, [part], type(table).model_fields, at)
+    read = read_table(part.Options, options, at)
+    with told_at(at, kind):
+        return part(read, dimension)
+
+
+@contextmanager
+def told_at(at: str, kind: Kind[Any]) -> Iterator[None]:
+    """Name the place ``at`` of a part of a kind in its errors: it does not know its number."""
+    own = f"{kind.field.rpartition('.')[0]}."
+    try:
+        yield
+    except (SceneError, PluginError) as error:
+        if isinstance(error, PluginError) and not error.subject.startswith(own):
+            raise  # about a plug-in, and not a place in the scene
+        subject = f"{at}.{error.subject.removeprefix(own)}"
+        raise type(error)(subject, error.found, error.allowed, error.remedy) from None
