@@ -73,7 +73,8 @@ def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near
         path, movement = _implicit_step(system, law, movement, start, followed, part)
         impulse = add_wrench(impulse, path.impulse, 1.0)
         lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
-    return arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS, movement.friction_loss)
+    path = arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS)
+    return replace(path, friction=movement.friction_loss)
 
 
 def _implicit_step(
